@@ -1,0 +1,2 @@
+include(CMakePackageConfigHelpers)
+install(DIRECTORY include/crashrank DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

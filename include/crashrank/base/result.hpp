@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace crashrank {
+
+/// What kind of trouble an Error is. The CLI maps the kinds to its exit codes.
+enum class ErrorCode {
+  usage,           ///< the caller asked for something that has no meaning (exit code 2)
+  bad_input,       ///< a file, mesh, scenario or pose is not acceptable (3)
+  not_found,       ///< a file or program is missing or unreadable (3)
+  limit_exceeded,  ///< input larger than a stated limit (3)
+  out_of_budget,   ///< a deadline, memory or work budget ended the work (4)
+  internal,        ///< the library's or the machine's own failure (1)
+};
+
+/// A failure told so that a person can mend it: where, what, and what to do about it.
+struct Error {
+  ErrorCode code = ErrorCode::internal;
+  std::string file;    ///< file concerned, empty where none is
+  std::string place;   ///< element, line or key in the file, empty where the whole file is meant
+  std::string reason;  ///< what is wrong, a clause without a full stop
+  std::string remedy;  ///< what to do about it, empty where nothing is known
+
+  /// "FILE: PLACE: REASON; REMEDY" on one line, absent members left out. Names inside are as they
+  /// came: escape before showing them in HTML or on a terminal.
+  std::string message() const {
+    std::string text;
+    for (const std::string* head : {&file, &place}) {
+      if (!head->empty()) text += *head + ": ";
+    }
+    text += reason;
+    if (!remedy.empty()) text += "; " + remedy;
+    return text;
+  }
+};
+
+/// Makes an Error without a file; callers that know the file add it.
+inline Error make_error(ErrorCode code, std::string reason, std::string remedy = {}) {
+  return Error{code, {}, {}, std::move(reason), std::move(remedy)};
+}
+
+/// A value or an Error (std::expected comes with C++23 only). Reading the one that is not there is
+/// a broken invariant of the caller and asserts.
+template <class T> class [[nodiscard]] Result {
+public:
+  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+  Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+  bool ok() const noexcept { return state_.index() == 0; }
+  explicit operator bool() const noexcept { return ok(); }
+
+  T& value() & {
+    assert(ok());
+    return *std::get_if<0>(&state_);
+  }
+  const T& value() const& {
+    assert(ok());
+    return *std::get_if<0>(&state_);
+  }
+  T&& value() && {
+    assert(ok());
+    return std::move(*std::get_if<0>(&state_));
+  }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+
+  const Error& error() const& {
+    assert(!ok());
+    return *std::get_if<1>(&state_);
+  }
+  Error& error() & {
+    assert(!ok());
+    return *std::get_if<1>(&state_);
+  }
+
+private:
+  std::variant<T, Error> state_;
+};
+
+/// Success without a value.
+struct Success {};
+using Status = Result<Success>;
+
+}  // namespace crashrank

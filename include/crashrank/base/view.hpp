@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+namespace crashrank {
+
+/// A pointer and a length: the one view type of the public headers, the same in C++17 and C++20.
+/// It owns nothing; what it looks at has to outlive it. Safe to copy between threads, as a pointer.
+template <class T> class View {
+public:
+  using value_type = std::remove_const_t<T>;
+
+  constexpr View() noexcept = default;
+  constexpr View(T* data, std::size_t size) noexcept : data_(data), size_(size) {}
+  View(std::vector<value_type>& items) noexcept : data_(items.data()), size_(items.size()) {}
+  template <class U = T, class = std::enable_if_t<std::is_const_v<U>>>
+  View(const std::vector<value_type>& items) noexcept : data_(items.data()), size_(items.size()) {}
+  template <class U = T, class = std::enable_if_t<std::is_const_v<U>>>
+  constexpr View(View<value_type> items) noexcept : data_(items.data()), size_(items.size()) {}
+
+  constexpr T* data() const noexcept { return data_; }
+  constexpr std::size_t size() const noexcept { return size_; }
+  constexpr bool empty() const noexcept { return size_ == 0; }
+  constexpr T* begin() const noexcept { return data_; }
+  constexpr T* end() const noexcept { return data_ + size_; }
+  constexpr T& operator[](std::size_t i) const noexcept { return data_[i]; }
+
+private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace crashrank

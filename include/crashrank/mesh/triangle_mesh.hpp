@@ -1,0 +1,54 @@
+#pragma once
+
+#include "crashrank/base/box.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+
+/// Three corners in body coordinates, m. A triangle is the convex hull of its corners: a segment or
+/// a point when they are collinear or equal.
+struct Triangle {
+  std::array<Eigen::Vector3f, 3> corner;
+};
+
+/// A named run of consecutive triangles: a bumper, a door. The parts of a mesh cover its triangles
+/// in order, without gap or overlap; their names are unique within the mesh.
+struct Part {
+  std::string name;
+  std::uint32_t first_triangle = 0;
+  std::uint32_t triangle_count = 0;
+};
+
+/// A body's surface: float32 vertices in body coordinates (m; x forward, y left, z up), triangles
+/// by vertex index in the order of the file they came from, parts over them. Degenerate and
+/// duplicate triangles keep their places, so that a triangle's index means the same everywhere.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Part> parts;
+
+  std::size_t size() const noexcept { return triangles.size(); }
+
+  Triangle triangle(std::size_t index) const {
+    const std::array<std::uint32_t, 3>& v = triangles[index];
+    return {{vertices[v[0]], vertices[v[1]], vertices[v[2]]}};
+  }
+
+  Box bounds() const {
+    Box box;
+    for (const Eigen::Vector3f& vertex : vertices) box.grow(vertex);
+    return box;
+  }
+};
+
+/// Triangle indices are 32-bit and signed in the published pair lists.
+inline constexpr std::size_t max_triangles = 0x7fffffff;
+
+}  // namespace crashrank

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "crashrank/base/box.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crashrank {
+
+/// How a set of triangles is split in two.
+enum class SplitRule {
+  min_relative_segment,  ///< each half's relative segment weighted by its share of the triangles
+  paper,                 ///< Wiseman & Grinberg 2016, section 3, to the letter; one triangle a leaf
+  sah,                   ///< surface-area heuristic, for comparison
+  median,                ///< median of the longest axis, for comparison
+};
+
+/// Along which axes the boxes stand.
+enum class BoxFrame {
+  world,     ///< the body's own x, y, z
+  gaussian,  ///< eigenvectors of the covariance of the vertices ("Fitting points with Gaussian
+             ///< distribution", section 2), largest eigenvalue first
+};
+
+/// One box of the tree, 32 bytes. Siblings lie side by side, the left at an odd index; all
+/// descendants of a node form one contiguous range that begins at its left child.
+struct Node {
+  Box box;                  ///< in the tree's frame, encloses every triangle below
+  std::uint32_t first = 0;  ///< inner node: index of its left child; leaf: first slot
+  std::uint32_t count = 0;  ///< leaf: number of triangles, at least 1; inner node: 0
+
+  bool is_leaf() const noexcept { return count != 0; }
+};
+
+/// A binary tree of axis-aligned boxes over the triangles of one mesh. Values only: copy, move and
+/// send it as you like; reading from many threads is safe.
+struct AabbTree {
+  /// Columns are the box axes in body coordinates, orthonormal: u = axesᵀ·x.
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  bool axes_are_world = true;  ///< axes is exactly the identity
+  std::vector<Node> nodes;     ///< nodes[0] is the root
+  /// Slot to triangle index of the mesh. A subtree's triangles are a contiguous run of slots.
+  std::vector<std::uint32_t> order;
+  std::vector<Triangle> triangles;  ///< corners by slot, body coordinates
+
+  bool empty() const noexcept { return nodes.empty(); }
+  std::size_t bytes() const noexcept {
+    return nodes.size() * sizeof(Node) + order.size() * sizeof(std::uint32_t) +
+           triangles.size() * sizeof(Triangle);
+  }
+};
+
+/// A run of consecutive elements.
+struct Range {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// Slots of all triangles below a node. O(depth).
+inline Range slots_below(const AabbTree& tree, std::uint32_t node) {
+  std::uint32_t left = node;
+  while (!tree.nodes[left].is_leaf()) left = tree.nodes[left].first;
+  std::uint32_t right = node;
+  while (!tree.nodes[right].is_leaf()) right = tree.nodes[right].first + 1;
+  const Node& last = tree.nodes[right];
+  return {tree.nodes[left].first, last.first + last.count - tree.nodes[left].first};
+}
+
+/// All nodes below a node, itself excluded: one contiguous range. O(depth).
+inline Range descendants(const AabbTree& tree, std::uint32_t node) {
+  const std::uint32_t first = tree.nodes[node].is_leaf() ? node + 1 : tree.nodes[node].first;
+  std::uint32_t right = node;
+  while (!tree.nodes[right].is_leaf()) right = tree.nodes[right].first + 1;
+  return {first, right + 1 - first};
+}
+
+}  // namespace crashrank

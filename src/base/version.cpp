@@ -1,0 +1,9 @@
+#include "crashrank/base/version.hpp"
+
+#include "crashrank/base/library_version.hpp"
+
+namespace crashrank {
+
+const char* library_version() noexcept { return CRASHRANK_VERSION_STRING; }
+
+}  // namespace crashrank

@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> stages{"base",     "mesh",  "tree", "collide",
+                                      "dispatch", "crash", "rank", "report"};
+
+int level(const std::string& stage) {
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    if (stages[i] == stage) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+// Data flows mesh -> tree -> collide -> dispatch -> crash -> rank -> report: a stage may include
+// itself and what stands to its left.
+std::vector<std::string> violations(const fs::path& root) {
+  static const std::regex include(R"re(^\s*#\s*include\s*[<"](?:crashrank/)?([a-z]+)/)re");
+  std::vector<std::string> found;
+  for (const std::string& stage : stages) {
+    const fs::path folder = root / stage;
+    if (!fs::exists(folder)) continue;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string suffix = entry.path().extension().string();
+      if (suffix != ".hpp" && suffix != ".cpp" && suffix != ".h") continue;
+      std::ifstream in(entry.path());
+      std::string line;
+      while (std::getline(in, line)) {
+        std::smatch match;
+        if (std::regex_search(line, match, include) && level(match[1]) > level(stage)) {
+          found.push_back(entry.path().string() + ": " + line);
+        }
+      }
+    }
+  }
+  return found;
+}
+
+TEST(Layering, NoStageKnowsALaterOne) {
+  const fs::path source(CRASHRANK_SOURCE_DIR);
+  for (const fs::path& root : {source / "include/crashrank", source / "src"}) {
+    ASSERT_TRUE(fs::exists(root / "base"));
+    EXPECT_EQ(violations(root), std::vector<std::string>{});
+  }
+}
+
+TEST(Layering, AnUpwardIncludeIsSeen) {
+  const fs::path root = fs::path(testing::TempDir()) / "layering";
+  fs::create_directories(root / "tree");
+  std::ofstream(root / "tree/bad.hpp") << "#include \"crashrank/rank/rank.hpp\"\n";
+  EXPECT_EQ(violations(root).size(), 1U);
+  fs::remove_all(root);
+}
+
+}  // namespace
