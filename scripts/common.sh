@@ -1,0 +1,27 @@
+# Shared by the scripts beside it: sourced, not run. Leaves the shell in the repository root.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# As many compilers as there are processors, and as the free memory carries: 1.5 GB each.
+jobs() {
+  local processors memory
+  processors=$(nproc)
+  memory=$(awk '/MemAvailable/ {print int($2 / 1500000)}' /proc/meminfo)
+  [ "${memory:-1}" -ge 1 ] || memory=1
+  echo $((processors < memory ? processors : memory))
+}
+
+step() { printf '\n== %s\n' "$*"; }
+
+# Every compiler warns about other things: warnings are errors with the one they were mended for.
+home_compiler() { [ "$(g++ -dumpversion)" = 12 ]; }
+
+# configure PRESET: through ccache where the machine has it.
+configure() {
+  local options=()
+  if command -v ccache >/dev/null; then
+    options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  home_compiler || options+=(-DCRASHRANK_WERROR=OFF)
+  cmake --preset "$1" ${options[@]+"${options[@]}"}
+}
