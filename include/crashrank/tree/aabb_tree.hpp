@@ -46,6 +46,7 @@ struct AabbTree {
   /// Slot to triangle index of the mesh. A subtree's triangles are a contiguous run of slots.
   std::vector<std::uint32_t> order;
   std::vector<Triangle> triangles;  ///< corners by slot, body coordinates
+  std::uint32_t depth = 0;          ///< see `measure_depth`; bounds every traversal's stack
 
   bool empty() const noexcept { return nodes.empty(); }
   std::size_t bytes() const noexcept {
@@ -53,6 +54,20 @@ struct AabbTree {
            triangles.size() * sizeof(Triangle);
   }
 };
+
+/// Edges on the longest way from the root to a leaf: 0 for a lone leaf. O(nodes), with one pass
+/// because a child's index is above its parent's.
+inline std::uint32_t measure_depth(const std::vector<Node>& nodes) {
+  std::vector<std::uint32_t> depth(nodes.size(), 0);
+  std::uint32_t deepest = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    deepest = depth[i] > deepest ? depth[i] : deepest;
+    if (nodes[i].is_leaf()) continue;
+    depth[nodes[i].first] = depth[i] + 1;
+    depth[nodes[i].first + 1] = depth[i] + 1;
+  }
+  return deepest;
+}
 
 /// A run of consecutive elements.
 struct Range {
