@@ -85,12 +85,18 @@ inline Range slots_below(const AabbTree& tree, std::uint32_t node) {
   return {tree.nodes[left].first, last.first + last.count - tree.nodes[left].first};
 }
 
-/// All nodes below a node, itself excluded: one contiguous range. O(depth).
+/// All nodes below a node, itself excluded: one contiguous range, a node's two children first, then
+/// what lies below the left one, then what lies below the right one. O(depth).
 inline Range descendants(const AabbTree& tree, std::uint32_t node) {
-  const std::uint32_t first = tree.nodes[node].is_leaf() ? node + 1 : tree.nodes[node].first;
-  std::uint32_t right = node;
-  while (!tree.nodes[right].is_leaf()) right = tree.nodes[right].first + 1;
-  return {first, right + 1 - first};
+  if (tree.nodes[node].is_leaf()) return {node + 1, 0};
+  const std::uint32_t first = tree.nodes[node].first;
+  std::uint32_t left = first;
+  while (true) {
+    const bool right_inner = !tree.nodes[left + 1].is_leaf();
+    const bool left_inner = !tree.nodes[left].is_leaf();
+    if (!right_inner && !left_inner) return {first, left + 2 - first};
+    left = tree.nodes[right_inner ? left + 1 : left].first;
+  }
 }
 
 }  // namespace crashrank
