@@ -1,0 +1,175 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/pose.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/crash/motion.hpp"
+#include "crashrank/mesh/import.hpp"
+#include "crashrank/rank/measure.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+
+/// What a body is; decides its mass where none is given.
+enum class BodyKind {
+  car,
+  truck,
+  bus,
+  motorcycle,
+  bicycle,
+  pedestrian,
+  barrier,
+  pole,
+  building,
+};
+
+/// "car", "truck", ... as in scenario files.
+CRASHRANK_API const char* body_kind_name(BodyKind kind) noexcept;
+
+/// Mass of a body from its kind and size, kg: a car −1333.5 + 526.9·(length·width)^0.8 and at least
+/// 300, a truck 25000, a bus 13000, a motorcycle 250, a bicycle 90, a pedestrian 75, rider included
+/// (TUM's planner for harm-aware trajectories). Barriers, poles and buildings do not move:
+/// infinity. `extent_m` is length, width, height.
+CRASHRANK_API double guess_mass_kg(BodyKind kind, const Eigen::Vector3d& extent_m);
+
+/// A shape of a scenario, before anybody has read its mesh.
+struct ScenarioModel {
+  std::string name;
+  std::string mesh;  ///< as the scenario writes it
+  std::string path;  ///< where it is; what `load_scenario` found to be allowed, else empty
+  BodyKind kind = BodyKind::car;
+  std::optional<double> mass_kg;  ///< absent: guessed from kind and size
+  ImportTransform transform;
+};
+
+/// The ego vehicle at time 0.
+struct ScenarioEgo {
+  std::size_t model = 0;  ///< index into Scenario::models
+  Pose pose;
+  double speed_mps = 0.0;             ///< along its forward axis; negative when reversing
+  double yaw_rate_radps = 0.0;        ///< left positive
+  std::optional<double> wheelbase_m;  ///< absent: 0.6 of the mesh's length
+  double max_acceleration_mps2 = 3.0;
+  double max_steering_rad = 0.6108652381980153;  ///< 35 degrees
+};
+
+/// Something that can be hit, and how it moves: from its pose with speed, acceleration and yaw
+/// rate, or through timed poses when there are any.
+struct ScenarioActor {
+  std::string name;
+  std::size_t model = 0;  ///< index into Scenario::models
+  Pose pose;
+  double speed_mps = 0.0;          ///< along its forward axis
+  double acceleration_mps2 = 0.0;  ///< along its forward axis; against the speed it brakes
+  double yaw_rate_radps = 0.0;     ///< held while it moves
+  std::vector<TimedPose> poses;
+};
+
+/// A manoeuvre written out: acceleration with steering or yaw rate, or timed poses when there are
+/// any. With neither steering nor yaw rate the ego's path keeps its curvature.
+struct ListedCandidate {
+  std::string name;
+  double acceleration_mps2 = 0.0;        ///< along the forward axis; against the speed it brakes
+  std::optional<double> steering_rad;    ///< of the road wheels, left positive
+  std::optional<double> yaw_rate_radps;  ///< held while it moves
+  std::vector<TimedPose> poses;
+};
+
+/// Size of a generated grid of manoeuvres.
+struct CandidateGrid {
+  std::size_t accelerations = 15;
+  std::size_t steerings = 15;
+};
+
+/// How far bodies move on past first contact before the damage is read: for a time along their
+/// motions, or, when `depth_m` is there, along their relative velocity at contact. The default
+/// 0.05 s is as deep as bodies get that are stopped evenly within a crash pulse of 0.1 s.
+struct Crush {
+  double time_s = 0.05;
+  std::optional<double> depth_m;
+};
+
+/// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json.
+struct Scenario {
+  std::string name;
+  std::string description;
+  std::vector<ScenarioModel> models;  ///< sorted by name
+  ScenarioEgo ego;
+  std::vector<ListedCandidate> listed;
+  std::optional<CandidateGrid> grid = CandidateGrid{};
+  bool add_straight_braking = true;
+  std::vector<ScenarioActor> actors;
+  double horizon_s = 4.0;
+  Crush crush;
+  Measure measure = Measure::polygons;
+  double grip = 0.8;  ///< friction between tyre and road
+};
+
+/// Bounds on what a scenario may ask for; the published schema states the same numbers.
+namespace scenario_limits {
+inline constexpr std::size_t file_bytes = std::size_t{16} << 20;
+inline constexpr std::size_t models = 256;
+inline constexpr std::size_t actors = 1000;
+inline constexpr std::size_t listed_candidates = 10'000;
+inline constexpr std::size_t grid_side = 101;
+inline constexpr std::size_t poses = 10'000;
+inline constexpr std::size_t name_characters = 128;
+inline constexpr std::size_t description_characters = 4000;
+inline constexpr std::size_t path_characters = 4096;
+inline constexpr double horizon_s = 60.0;
+inline constexpr double position_m = 1e5;
+inline constexpr double angle_deg = 360.0;
+inline constexpr double speed_mps = 150.0;
+inline constexpr double acceleration_mps2 = 50.0;
+inline constexpr double yaw_rate_dps = 720.0;
+inline constexpr double steering_deg = 80.0;
+inline constexpr double min_wheelbase_m = 0.1;
+inline constexpr double max_wheelbase_m = 30.0;
+inline constexpr double min_mass_kg = 0.1;
+inline constexpr double max_mass_kg = 1e6;
+inline constexpr double min_scale = 1e-6;
+inline constexpr double max_scale = 1e6;
+inline constexpr double min_grip = 0.01;
+inline constexpr double max_grip = 3.0;
+inline constexpr double crush_time_s = 1.0;
+inline constexpr double crush_depth_m = 5.0;
+}  // namespace scenario_limits
+
+/// Reads a scenario from its text; `file` only names it in errors and lends it its name when the
+/// scenario has none. Touches no file: `ScenarioModel::path` stays empty. Every error is bad_input
+/// or limit_exceeded and names the key path, as "actors[2].speed_mps", or line and column where
+/// the text is no JSON. Linear in the text; safe from any thread.
+CRASHRANK_API Result<Scenario> parse_scenario(const std::string& text, const std::string& file);
+
+/// Where a scenario's meshes may lie besides the places it has a right to.
+struct ScenarioPaths {
+  std::vector<std::string> allowed_folders;
+};
+
+/// Finds where a mesh named by a scenario is, symbolic links followed. It has to lie in the
+/// scenario's folder or below it; or, when a folder above holds a file named `crashrank.root`,
+/// below the nearest such folder; or below an allowed one. So a scenario from a stranger reaches
+/// nothing but what came with it, and a project whose scenarios share a folder of models says so
+/// with one file. Errors: bad_input when it lies elsewhere. Whether the mesh exists is for the one
+/// who reads it to find out. `scenario_file` may be a name that does not exist in a folder that
+/// does (text from a pipe).
+CRASHRANK_API Result<std::string> resolve_mesh_path(const std::string& scenario_file,
+                                                    const std::string& mesh,
+                                                    const ScenarioPaths& paths = {});
+
+/// `parse_scenario`, then `resolve_mesh_path` for each model. Reads no mesh: the caller does, with
+/// the importer or from compiled model files, in the order of `Scenario::models`.
+CRASHRANK_API Result<Scenario> load_scenario(const std::string& text, const std::string& file,
+                                             const ScenarioPaths& paths = {});
+
+/// Reads the file, at most `scenario_limits::file_bytes`, and loads it. Errors also: not_found.
+CRASHRANK_API Result<Scenario> load_scenario_file(const std::string& file,
+                                                  const ScenarioPaths& paths = {});
+
+}  // namespace crashrank

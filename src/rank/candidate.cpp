@@ -1,0 +1,185 @@
+#include "crashrank/rank/candidate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace crashrank {
+namespace {
+
+// An absent wheelbase is this share of the vehicle's length; passenger cars lie between 0.56 and
+// 0.64.
+constexpr double wheelbase_per_length = 0.6;
+
+double full_grip_mps2(const Scenario& scenario) { return scenario.grip * standard_gravity_mps2; }
+
+double direction_of(double speed_mps) { return speed_mps < 0.0 ? -1.0 : 1.0; }
+
+double wheelbase_m(const Scenario& scenario, double ego_length_m) {
+  const double length = std::max(ego_length_m, scenario_limits::min_wheelbase_m);
+  return scenario.ego.wheelbase_m.value_or(wheelbase_per_length * length);
+}
+
+Result<Motion> timed_motion(const std::vector<TimedPose>& poses, const std::string& path) {
+  Result<Motion> motion = Motion::timed(poses);
+  if (!motion) motion.error().place = path + ".poses: " + motion.error().place;
+  return motion;
+}
+
+Candidate arc_candidate(const ScenarioEgo& ego, std::string name, CandidateOrigin origin,
+                        double acceleration_mps2, double curvature_per_m) {
+  ArcMotion arc;
+  arc.start = ego.pose;
+  arc.speed_mps = ego.speed_mps;
+  arc.curvature_per_m = curvature_per_m;
+  arc.acceleration_mps2 = acceleration_mps2;
+  return {std::move(name), origin, arc, acceleration_mps2, curvature_per_m};
+}
+
+Result<Candidate> listed_candidate(const Scenario& scenario, std::size_t index, double wheelbase) {
+  const ListedCandidate& listed = scenario.listed[index];
+  const ScenarioEgo& ego = scenario.ego;
+  if (!listed.poses.empty()) {
+    Result<Motion> motion =
+        timed_motion(listed.poses, "candidates.listed[" + std::to_string(index) + "]");
+    if (!motion) return motion.error();
+    return Candidate{listed.name, CandidateOrigin::listed, std::move(*motion), 0.0, 0.0};
+  }
+  if (listed.yaw_rate_radps || (!listed.steering_rad && ego.speed_mps == 0.0)) {
+    TurnMotion turn;
+    turn.start = ego.pose;
+    turn.speed_mps = ego.speed_mps;
+    turn.yaw_rate_radps = listed.yaw_rate_radps.value_or(ego.yaw_rate_radps);
+    turn.acceleration_mps2 = listed.acceleration_mps2;
+    const double curvature = ego.speed_mps == 0.0 ? 0.0 : turn.yaw_rate_radps / ego.speed_mps;
+    return Candidate{listed.name, CandidateOrigin::listed, turn, listed.acceleration_mps2,
+                     curvature};
+  }
+  const double curvature = listed.steering_rad
+                               ? curvature_from_steering(*listed.steering_rad, wheelbase)
+                               : ego.yaw_rate_radps / ego.speed_mps;
+  return arc_candidate(ego, listed.name, CandidateOrigin::listed, listed.acceleration_mps2,
+                       curvature);
+}
+
+// Straight ahead, with at least half of the deceleration that the grip gives.
+bool brakes_straight(const Candidate& candidate, const Scenario& scenario) {
+  const double deceleration = -candidate.acceleration_mps2 * direction_of(scenario.ego.speed_mps);
+  return candidate.curvature_per_m == 0.0 && deceleration >= 0.5 * full_grip_mps2(scenario);
+}
+
+double level(std::size_t index, std::size_t count) {
+  if (count == 1) return 0.0;
+  return (2.0 * static_cast<double>(index) - static_cast<double>(count - 1)) /
+         static_cast<double>(count - 1);
+}
+
+double highest_speed_mps(double speed, double acceleration, double horizon_s) {
+  return std::max(std::abs(speed), std::abs(speed + acceleration * horizon_s));
+}
+
+struct GridPoint {
+  double acceleration_mps2;
+  double curvature_per_m;
+};
+
+GridPoint grid_point(const Scenario& scenario, double u, double w, double max_curvature) {
+  const ScenarioEgo& ego = scenario.ego;
+  const double grip = full_grip_mps2(scenario);
+  const double longitudinal = u < 0.0 ? grip : std::min(grip, ego.max_acceleration_mps2);
+  double along_way = u * longitudinal * std::sqrt(1.0 - 0.5 * w * w);
+  // A vehicle that stands has nothing to brake.
+  if (ego.speed_mps == 0.0) along_way = std::max(along_way, 0.0);
+  const double lateral = w * grip * std::sqrt(1.0 - 0.5 * u * u);
+  const double start = std::abs(ego.speed_mps);
+  const double speed =
+      along_way < 0.0 ? start : highest_speed_mps(start, along_way, scenario.horizon_s);
+  const double held = speed == 0.0 ? std::copysign(max_curvature, w) : lateral / (speed * speed);
+  const double curvature = w == 0.0 ? 0.0 : std::clamp(held, -max_curvature, max_curvature);
+  return {along_way * direction_of(ego.speed_mps), curvature};
+}
+
+std::string grid_name(std::size_t i, std::size_t j, const GridPoint& point, double wheelbase) {
+  constexpr double deg_per_rad = 57.29577951308232;
+  const double steering = std::atan(point.curvature_per_m * wheelbase) * deg_per_rad;
+  // Zero is written without a sign, whatever its bits say.
+  const double acceleration = point.acceleration_mps2 == 0.0 ? 0.0 : point.acceleration_mps2;
+  char text[96];
+  std::snprintf(text, sizeof text, "a%02zu s%02zu (%+.2f m/s2, %+.2f deg)", i, j, acceleration,
+                steering == 0.0 ? 0.0 : steering);
+  return text;
+}
+
+std::vector<Candidate> grid_candidates(const Scenario& scenario, double wheelbase) {
+  std::vector<Candidate> candidates;
+  const CandidateGrid& grid = *scenario.grid;
+  const double max_curvature = curvature_from_steering(scenario.ego.max_steering_rad, wheelbase);
+  candidates.reserve(grid.accelerations * grid.steerings);
+  for (std::size_t i = 0; i < grid.accelerations; ++i) {
+    for (std::size_t j = 0; j < grid.steerings; ++j) {
+      const GridPoint point = grid_point(scenario, level(i, grid.accelerations),
+                                         level(j, grid.steerings), max_curvature);
+      candidates.push_back(arc_candidate(scenario.ego, grid_name(i, j, point, wheelbase),
+                                         CandidateOrigin::grid, point.acceleration_mps2,
+                                         point.curvature_per_m));
+    }
+  }
+  return candidates;
+}
+
+// The wish, numbered when it is taken; taken from then on.
+std::string free_name(std::set<std::string>& taken, const std::string& wish) {
+  std::string name = wish;
+  for (int number = 2; !taken.insert(name).second; ++number) {
+    name = wish + " " + std::to_string(number);
+  }
+  return name;
+}
+
+}  // namespace
+
+Result<std::vector<Candidate>> make_candidates(const Scenario& scenario, double ego_length_m) {
+  const double wheelbase = wheelbase_m(scenario, ego_length_m);
+  std::vector<Candidate> candidates;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < scenario.listed.size(); ++i) {
+    Result<Candidate> candidate = listed_candidate(scenario, i, wheelbase);
+    if (!candidate) return candidate.error();
+    names.insert(candidate->name);
+    candidates.push_back(std::move(*candidate));
+  }
+  std::vector<Candidate> grid;
+  if (scenario.grid) grid = grid_candidates(scenario, wheelbase);
+
+  const auto braking = [&scenario](const Candidate& candidate) {
+    return brakes_straight(candidate, scenario);
+  };
+  if (scenario.add_straight_braking &&
+      std::none_of(candidates.begin(), candidates.end(), braking) &&
+      std::none_of(grid.begin(), grid.end(), braking)) {
+    const double deceleration = scenario.ego.speed_mps == 0.0 ? 0.0 : full_grip_mps2(scenario);
+    candidates.push_back(arc_candidate(scenario.ego, free_name(names, "brake straight ahead"),
+                                       CandidateOrigin::added_braking,
+                                       -deceleration * direction_of(scenario.ego.speed_mps), 0.0));
+  }
+  for (Candidate& candidate : grid) candidate.name = free_name(names, candidate.name);
+  candidates.insert(candidates.end(), std::make_move_iterator(grid.begin()),
+                    std::make_move_iterator(grid.end()));
+  return candidates;
+}
+
+Result<Motion> make_motion(const ScenarioActor& actor) {
+  if (!actor.poses.empty()) return timed_motion(actor.poses, "actors." + actor.name);
+  TurnMotion turn;
+  turn.start = actor.pose;
+  turn.speed_mps = actor.speed_mps;
+  turn.yaw_rate_radps = actor.yaw_rate_radps;
+  turn.acceleration_mps2 = actor.acceleration_mps2;
+  return Motion(turn);
+}
+
+}  // namespace crashrank

@@ -1,0 +1,188 @@
+#include "rank/json_object.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+namespace crashrank::detail {
+namespace {
+
+std::size_t characters(const std::string& utf8) {
+  return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  }));
+}
+
+std::string printable(const std::string& text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    shown += byte < 0x20 || byte == 0x7F ? '?' : c;
+    if (shown.size() == 64) return shown + "...";
+  }
+  return shown;
+}
+
+}  // namespace
+
+void refuse_at(Status& status, const std::string& path, const std::string& reason,
+               const std::string& remedy, ErrorCode code) {
+  if (status.ok()) status = Error{code, {}, path, reason, remedy};
+}
+
+std::string number_text(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", number);
+  return text;
+}
+
+double checked_number(const nlohmann::json& value, const std::string& path, NumberRange range,
+                      Status& status, double otherwise) {
+  const std::string bounds = (range.above ? "more than " : "from ") + number_text(range.lowest) +
+                             (range.above ? ", at most " : " to ") + number_text(range.highest);
+  if (!value.is_number()) {
+    refuse_at(status, path, std::string("is ") + value.type_name() + ", not a number",
+              "give a number " + bounds);
+    return otherwise;
+  }
+  const double number = value.get<double>();
+  const bool low = range.above ? number > range.lowest : number >= range.lowest;
+  if (!(low && number <= range.highest)) {
+    refuse_at(status, path, "is " + number_text(number) + ", out of range",
+              "give a number " + bounds);
+    return otherwise;
+  }
+  return number;
+}
+
+void check_name(const std::string& text, const std::string& path, std::size_t max_characters,
+                Status& status) {
+  if (text.empty()) refuse_at(status, path, "is empty", "give it a name");
+  if (characters(text) > max_characters) {
+    refuse_at(status, path, "is longer than " + std::to_string(max_characters) + " characters",
+              "shorten it", ErrorCode::limit_exceeded);
+  }
+  const bool control = std::any_of(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte < 0x20 || byte == 0x7F;
+  });
+  if (control) refuse_at(status, path, "holds a control character", "remove it");
+}
+
+JsonObject::JsonObject(const nlohmann::json& value, std::string path, Status& status,
+                       std::initializer_list<const char*> known)
+    : value_(&value), path_(std::move(path)), status_(&status) {
+  if (!value.is_object()) {
+    static const nlohmann::json empty = nlohmann::json::object();
+    value_ = &empty;
+    refuse_at(status, path_, std::string("is ") + value.type_name() + ", not an object",
+              "write it as {...}");
+    return;
+  }
+  for (const auto& item : value.items()) {
+    const bool is_known = std::any_of(known.begin(), known.end(),
+                                      [&item](const char* key) { return item.key() == key; });
+    if (is_known) continue;
+    std::string list;
+    for (const char* key : known) list += (list.empty() ? "" : ", ") + std::string(key);
+    refuse_at(status, path_of(printable(item.key()).c_str()), "there is no such key",
+              "the keys here are " + list);
+    return;
+  }
+}
+
+std::string JsonObject::path_of(const char* key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
+
+void JsonObject::refuse(const char* key, const std::string& reason,
+                        const std::string& remedy) const {
+  refuse_at(*status_, path_of(key), reason, remedy);
+}
+
+const nlohmann::json* JsonObject::find(const char* key) const {
+  const auto found = value_->find(key);
+  return found == value_->end() ? nullptr : &*found;
+}
+
+bool JsonObject::has(const char* key) const { return find(key) != nullptr; }
+
+void JsonObject::require(const char* key) const {
+  if (!has(key)) refuse(key, "is missing", "add it");
+}
+
+std::string JsonObject::text(const char* key, std::size_t max_characters) const {
+  const nlohmann::json* value = find(key);
+  if (value == nullptr) return {};
+  if (!value->is_string()) {
+    refuse(key, std::string("is ") + value->type_name() + ", not text", "write it in quotes");
+    return {};
+  }
+  std::string text = value->get<std::string>();
+  if (characters(text) > max_characters) {
+    refuse_at(*status_, path_of(key),
+              "is longer than " + std::to_string(max_characters) + " characters", "shorten it",
+              ErrorCode::limit_exceeded);
+  }
+  return text;
+}
+
+std::string JsonObject::name(const char* key, std::size_t max_characters) const {
+  const std::string name = text(key, max_characters);
+  if (has(key)) check_name(name, path_of(key), max_characters, *status_);
+  return name;
+}
+
+double JsonObject::number(const char* key, NumberRange range, double otherwise) const {
+  const nlohmann::json* value = find(key);
+  return value == nullptr ? otherwise
+                          : checked_number(*value, path_of(key), range, *status_, otherwise);
+}
+
+std::optional<double> JsonObject::optional_number(const char* key, NumberRange range) const {
+  if (!has(key)) return std::nullopt;
+  return number(key, range, range.highest);
+}
+
+std::size_t JsonObject::count(const char* key, std::size_t lowest, std::size_t highest,
+                              std::size_t otherwise) const {
+  const double number =
+      this->number(key, {static_cast<double>(lowest), static_cast<double>(highest)},
+                   static_cast<double>(otherwise));
+  if (number != std::floor(number)) {
+    refuse(key, "is " + number_text(number) + ", not a whole number", "round it");
+    return otherwise;
+  }
+  return static_cast<std::size_t>(number);
+}
+
+bool JsonObject::flag(const char* key, bool otherwise) const {
+  const nlohmann::json* value = find(key);
+  if (value == nullptr) return otherwise;
+  if (!value->is_boolean()) {
+    refuse(key, std::string("is ") + value->type_name() + ", not true or false",
+           "write true or false");
+    return otherwise;
+  }
+  return value->get<bool>();
+}
+
+const nlohmann::json* JsonObject::array(const char* key, std::size_t lowest,
+                                        std::size_t highest) const {
+  const nlohmann::json* value = find(key);
+  if (value == nullptr) return nullptr;
+  if (!value->is_array()) {
+    refuse(key, std::string("is ") + value->type_name() + ", not an array", "write it as [...]");
+    return nullptr;
+  }
+  if (value->size() < lowest || value->size() > highest) {
+    refuse_at(*status_, path_of(key), "has " + std::to_string(value->size()) + " elements",
+              "give " + std::to_string(lowest) + " to " + std::to_string(highest),
+              value->size() > highest ? ErrorCode::limit_exceeded : ErrorCode::bad_input);
+    return nullptr;
+  }
+  return value;
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "crashrank/base/result.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <string>
+
+namespace crashrank::detail {
+
+/// A closed range of numbers; `above` excludes the lower end.
+struct NumberRange {
+  double lowest;
+  double highest;
+  bool above = false;
+};
+
+/// Reads one JSON object with every key accounted for. The first trouble met stays in the Status
+/// shared by a whole document; once it is there, reads return what they were given as default, so
+/// that callers need to look once, at the end.
+class JsonObject {
+public:
+  /// Refuses a value that is no object and keys that are not in `known`.
+  JsonObject(const nlohmann::json& value, std::string path, Status& status,
+             std::initializer_list<const char*> known);
+
+  bool has(const char* key) const;
+  /// Refuses with "KEY is missing" when it is.
+  void require(const char* key) const;
+
+  std::string text(const char* key, std::size_t max_characters) const;
+  /// Text without control characters, at least one character.
+  std::string name(const char* key, std::size_t max_characters) const;
+  double number(const char* key, NumberRange range, double otherwise) const;
+  std::optional<double> optional_number(const char* key, NumberRange range) const;
+  std::size_t count(const char* key, std::size_t lowest, std::size_t highest,
+                    std::size_t otherwise) const;
+  bool flag(const char* key, bool otherwise) const;
+  /// An array of at most that many elements; null when it is absent or wrong.
+  const nlohmann::json* array(const char* key, std::size_t lowest, std::size_t highest) const;
+  /// The value as it is; only for keys that are there.
+  const nlohmann::json& at(const char* key) const { return (*value_)[key]; }
+
+  std::string path_of(const char* key) const;
+  const std::string& path() const { return path_; }
+  Status& status() const { return *status_; }
+  void refuse(const char* key, const std::string& reason, const std::string& remedy) const;
+
+private:
+  const nlohmann::json* find(const char* key) const;
+
+  const nlohmann::json* value_;
+  std::string path_;
+  Status* status_;
+};
+
+/// Puts an error into a status that has none yet.
+void refuse_at(Status& status, const std::string& path, const std::string& reason,
+               const std::string& remedy, ErrorCode code = ErrorCode::bad_input);
+
+/// A number as short text that still tells it from its neighbours in a message.
+std::string number_text(double number);
+
+double checked_number(const nlohmann::json& value, const std::string& path, NumberRange range,
+                      Status& status, double otherwise);
+
+/// Whether text is a name: not empty, at most that many characters, no control characters.
+void check_name(const std::string& text, const std::string& path, std::size_t max_characters,
+                Status& status);
+
+}  // namespace crashrank::detail

@@ -1,0 +1,43 @@
+#include "crashrank/rank/measure.hpp"
+
+#include <array>
+
+namespace crashrank {
+namespace {
+
+struct Entry {
+  Measure measure;
+  const char* name;
+  const char* unit;
+};
+
+constexpr std::array<Entry, 3> entries{{
+    {Measure::polygons, "polygons", "triangles"},
+    {Measure::area, "area", "m2"},
+    {Measure::closing_energy, "closing-energy", "J"},
+}};
+
+const Entry& entry_of(Measure measure) noexcept {
+  for (const Entry& entry : entries) {
+    if (entry.measure == measure) return entry;
+  }
+  return entries.front();
+}
+
+}  // namespace
+
+const char* measure_name(Measure measure) noexcept { return entry_of(measure).name; }
+
+const char* measure_unit(Measure measure) noexcept { return entry_of(measure).unit; }
+
+Result<Measure> measure_from_name(const std::string& name) {
+  std::string known;
+  for (const Entry& entry : entries) {
+    if (name == entry.name) return entry.measure;
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return make_error(ErrorCode::usage, "there is no measure \"" + name + "\"",
+                    "choose one of " + known);
+}
+
+}  // namespace crashrank

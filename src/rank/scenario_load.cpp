@@ -1,0 +1,101 @@
+#include "crashrank/rank/scenario.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+namespace crashrank {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* root_marker = "crashrank.root";
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  const auto [end, at] = std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return end == folder.end() || (std::next(end) == folder.end() && end->empty());
+}
+
+// The folder that owns a scenario's files: the nearest one, itself or above, that says so, or else
+// its own.
+fs::path owning_folder(const fs::path& folder) {
+  std::error_code ignored;
+  for (fs::path at = folder;; at = at.parent_path()) {
+    if (fs::exists(at / root_marker, ignored)) return at;
+    if (at == at.parent_path()) return folder;
+  }
+}
+
+}  // namespace
+
+Result<std::string> resolve_mesh_path(const std::string& scenario_file, const std::string& mesh,
+                                      const ScenarioPaths& paths) {
+  std::error_code error;
+  const fs::path folder =
+      fs::weakly_canonical(fs::absolute(scenario_file, error).parent_path(), error);
+  if (error) {
+    return Error{
+        ErrorCode::not_found, scenario_file, {}, "its folder cannot be reached", "check the path"};
+  }
+  const fs::path path = fs::weakly_canonical(folder / mesh, error);
+  if (error) {
+    return Error{ErrorCode::bad_input,
+                 scenario_file,
+                 {},
+                 "the path \"" + mesh + "\" cannot be followed",
+                 "check it"};
+  }
+  const fs::path owner = owning_folder(folder);
+  if (is_below(path, owner)) return path.string();
+  for (const std::string& allowed : paths.allowed_folders) {
+    const fs::path root = fs::weakly_canonical(fs::absolute(allowed, error), error);
+    if (!error && is_below(path, root)) return path.string();
+  }
+  return Error{ErrorCode::bad_input,
+               scenario_file,
+               {},
+               "\"" + mesh + "\" lies outside the scenario's folder " + owner.string(),
+               "copy it there, put an empty file named crashrank.root into the folder that holds "
+               "both, or allow the mesh's folder when calling"};
+}
+
+Result<Scenario> load_scenario(const std::string& text, const std::string& file,
+                               const ScenarioPaths& paths) {
+  Result<Scenario> scenario = parse_scenario(text, file);
+  if (!scenario) return scenario;
+  for (ScenarioModel& model : scenario->models) {
+    Result<std::string> path = resolve_mesh_path(file, model.mesh, paths);
+    if (!path) {
+      path.error().place = "models." + model.name + ".mesh";
+      return path.error();
+    }
+    model.path = std::move(*path);
+  }
+  return scenario;
+}
+
+Result<Scenario> load_scenario_file(const std::string& file, const ScenarioPaths& paths) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (error || !fs::exists(status)) {
+    return Error{ErrorCode::not_found, file, {}, "there is no such file", "check the path"};
+  }
+  if (!fs::is_regular_file(status)) {
+    return Error{ErrorCode::not_found, file, {}, "is not a file", "name a scenario in JSON"};
+  }
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    return Error{ErrorCode::not_found, file, {}, "cannot be read", "check its permissions"};
+  }
+  // One byte more than is allowed tells a file that is too large, even one that grows meanwhile.
+  std::string text;
+  std::string block(std::size_t{64} << 10, '\0');
+  while (in && text.size() <= scenario_limits::file_bytes) {
+    in.read(block.data(), static_cast<std::streamsize>(block.size()));
+    text.append(block, 0, static_cast<std::size_t>(in.gcount()));
+  }
+  return load_scenario(text, file, paths);
+}
+
+}  // namespace crashrank

@@ -1,0 +1,335 @@
+#include "crashrank/rank/scenario.hpp"
+#include "rank/json_object.hpp"
+#include "rank/json_text.hpp"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+namespace crashrank {
+namespace {
+
+namespace limits = scenario_limits;
+using detail::JsonObject;
+using detail::NumberRange;
+using nlohmann::json;
+
+constexpr double rad_per_deg = 0.017453292519943295;
+constexpr NumberRange position{-limits::position_m, limits::position_m};
+constexpr NumberRange angle{-limits::angle_deg, limits::angle_deg};
+constexpr NumberRange speed{-limits::speed_mps, limits::speed_mps};
+constexpr NumberRange acceleration{-limits::acceleration_mps2, limits::acceleration_mps2};
+constexpr NumberRange yaw_rate{-limits::yaw_rate_dps, limits::yaw_rate_dps};
+constexpr NumberRange steering{-limits::steering_deg, limits::steering_deg};
+
+std::string indexed(const char* key, std::size_t index) {
+  return std::string(key) + "[" + std::to_string(index) + "]";
+}
+
+Pose read_pose_members(const JsonObject& object) {
+  const Eigen::Vector3d translation(object.number("x_m", position, 0.0),
+                                    object.number("y_m", position, 0.0),
+                                    object.number("z_m", position, 0.0));
+  return pose_from_angles(translation, rad_per_deg * object.number("yaw_deg", angle, 0.0),
+                          rad_per_deg * object.number("pitch_deg", angle, 0.0),
+                          rad_per_deg * object.number("roll_deg", angle, 0.0));
+}
+
+Pose read_pose(const JsonObject& parent) {
+  if (!parent.has("pose")) return {};
+  const JsonObject object(parent.at("pose"), parent.path_of("pose"), parent.status(),
+                          {"x_m", "y_m", "z_m", "yaw_deg", "pitch_deg", "roll_deg"});
+  return read_pose_members(object);
+}
+
+std::vector<TimedPose> read_poses(const JsonObject& parent) {
+  std::vector<TimedPose> poses;
+  const json* array = parent.array("poses", 1, limits::poses);
+  if (array == nullptr) return poses;
+  poses.reserve(array->size());
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const JsonObject object((*array)[i], parent.path_of(indexed("poses", i).c_str()),
+                            parent.status(),
+                            {"t_s", "x_m", "y_m", "z_m", "yaw_deg", "pitch_deg", "roll_deg"});
+    object.require("t_s");
+    const double time = object.number("t_s", {0.0, limits::horizon_s}, 0.0);
+    if (poses.empty() ? time != 0.0 : time <= poses.back().time_s) {
+      object.refuse("t_s", poses.empty() ? "the first pose is not at time 0" : "does not rise",
+                    "start at 0 and let times rise from pose to pose");
+    }
+    poses.push_back({time, read_pose_members(object)});
+    if (!parent.status().ok()) break;
+  }
+  return poses;
+}
+
+BodyKind read_kind(const JsonObject& object) {
+  constexpr std::array<BodyKind, 9> kinds{
+      BodyKind::car,        BodyKind::truck,   BodyKind::bus,
+      BodyKind::motorcycle, BodyKind::bicycle, BodyKind::pedestrian,
+      BodyKind::barrier,    BodyKind::pole,    BodyKind::building};
+  object.require("kind");
+  const std::string text = object.text("kind", limits::name_characters);
+  std::string known;
+  for (const BodyKind kind : kinds) {
+    if (text == body_kind_name(kind)) return kind;
+    known += (known.empty() ? "" : ", ") + std::string(body_kind_name(kind));
+  }
+  object.refuse("kind", "is not a kind of body", "choose one of " + known);
+  return BodyKind::car;
+}
+
+Axis read_axis(const JsonObject& object, const char* key, Axis otherwise) {
+  constexpr std::array<std::pair<const char*, Axis>, 6> axes{{{"+x", Axis::plus_x},
+                                                              {"-x", Axis::minus_x},
+                                                              {"+y", Axis::plus_y},
+                                                              {"-y", Axis::minus_y},
+                                                              {"+z", Axis::plus_z},
+                                                              {"-z", Axis::minus_z}}};
+  if (!object.has(key)) return otherwise;
+  const std::string text = object.text(key, limits::name_characters);
+  for (const auto& [name, axis] : axes) {
+    if (text == name) return axis;
+  }
+  object.refuse(key, "is not an axis", "choose one of +x, -x, +y, -y, +z, -z");
+  return otherwise;
+}
+
+bool same_line(Axis a, Axis b) { return static_cast<int>(a) / 2 == static_cast<int>(b) / 2; }
+
+ScenarioModel read_model(const json& value, const std::string& name, const std::string& path,
+                         Status& status) {
+  const JsonObject object(value, path, status,
+                          {"mesh", "kind", "mass_kg", "scale", "up", "forward", "origin_m"});
+  ScenarioModel model;
+  model.name = name;
+  object.require("mesh");
+  model.mesh = object.name("mesh", limits::path_characters);
+  model.kind = read_kind(object);
+  if (object.has("mass_kg") && !object.at("mass_kg").is_null()) {
+    model.mass_kg = object.optional_number("mass_kg", {limits::min_mass_kg, limits::max_mass_kg});
+  }
+  model.transform.scale = object.number("scale", {limits::min_scale, limits::max_scale}, 1.0);
+  model.transform.up = read_axis(object, "up", Axis::plus_z);
+  model.transform.forward = read_axis(object, "forward", Axis::plus_x);
+  if (same_line(model.transform.up, model.transform.forward)) {
+    object.refuse("forward", "lies along the same line as up", "give two different axes");
+  }
+  if (const json* origin = object.array("origin_m", 3, 3)) {
+    for (int i = 0; i < 3; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      model.transform.origin_m[i] = detail::checked_number(
+          (*origin)[index], object.path_of(indexed("origin_m", index).c_str()), position, status,
+          0.0);
+    }
+  }
+  return model;
+}
+
+std::size_t read_model_name(const JsonObject& object, const std::vector<ScenarioModel>& models) {
+  object.require("model");
+  const std::string name = object.name("model", limits::name_characters);
+  std::string known;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (models[i].name == name) return i;
+    if (i < 10) known += (known.empty() ? "" : ", ") + models[i].name;
+  }
+  object.refuse("model", "is not among the models", "the models are " + known);
+  return 0;
+}
+
+ScenarioEgo read_ego(const json& value, const std::vector<ScenarioModel>& models, Status& status) {
+  const JsonObject object(value, "ego", status,
+                          {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m",
+                           "max_acceleration_mps2", "max_steering_deg"});
+  ScenarioEgo ego;
+  ego.model = read_model_name(object, models);
+  ego.pose = read_pose(object);
+  object.require("speed_mps");
+  ego.speed_mps = object.number("speed_mps", speed, 0.0);
+  ego.yaw_rate_radps = rad_per_deg * object.number("yaw_rate_dps", yaw_rate, 0.0);
+  ego.wheelbase_m =
+      object.optional_number("wheelbase_m", {limits::min_wheelbase_m, limits::max_wheelbase_m});
+  ego.max_acceleration_mps2 = object.number(
+      "max_acceleration_mps2", {0.0, limits::acceleration_mps2}, ego.max_acceleration_mps2);
+  ego.max_steering_rad =
+      rad_per_deg * object.number("max_steering_deg", {0.0, limits::steering_deg}, 35.0);
+  return ego;
+}
+
+ListedCandidate read_candidate(const json& value, const std::string& path, Status& status) {
+  const JsonObject object(value, path, status,
+                          {"name", "acceleration_mps2", "steering_deg", "yaw_rate_dps", "poses"});
+  ListedCandidate candidate;
+  object.require("name");
+  candidate.name = object.name("name", limits::name_characters);
+  candidate.poses = read_poses(object);
+  candidate.acceleration_mps2 = object.number("acceleration_mps2", acceleration, 0.0);
+  if (const auto degrees = object.optional_number("steering_deg", steering)) {
+    candidate.steering_rad = rad_per_deg * *degrees;
+  }
+  if (const auto rate = object.optional_number("yaw_rate_dps", yaw_rate)) {
+    candidate.yaw_rate_radps = rad_per_deg * *rate;
+  }
+  if (object.has("poses")) {
+    for (const char* key : {"acceleration_mps2", "steering_deg", "yaw_rate_dps"}) {
+      if (object.has(key)) object.refuse(key, "stands beside poses", "keep one of them");
+    }
+  } else if (object.has("steering_deg") && object.has("yaw_rate_dps")) {
+    object.refuse("yaw_rate_dps", "stands beside steering_deg", "keep one of them");
+  }
+  return candidate;
+}
+
+ScenarioActor read_actor(const json& value, const std::string& path,
+                         const std::vector<ScenarioModel>& models, Status& status) {
+  const JsonObject object(
+      value, path, status,
+      {"name", "model", "pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses"});
+  ScenarioActor actor;
+  object.require("name");
+  actor.name = object.name("name", limits::name_characters);
+  actor.model = read_model_name(object, models);
+  actor.pose = read_pose(object);
+  actor.speed_mps = object.number("speed_mps", speed, 0.0);
+  actor.acceleration_mps2 = object.number("acceleration_mps2", acceleration, 0.0);
+  actor.yaw_rate_radps = rad_per_deg * object.number("yaw_rate_dps", yaw_rate, 0.0);
+  actor.poses = read_poses(object);
+  if (object.has("poses")) {
+    for (const char* key : {"pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps"}) {
+      if (object.has(key)) object.refuse(key, "stands beside poses", "keep one of them");
+    }
+  }
+  return actor;
+}
+
+void read_candidates(const JsonObject& root, Scenario& scenario) {
+  if (!root.has("candidates")) return;
+  Status& status = root.status();
+  const JsonObject object(root.at("candidates"), "candidates", status,
+                          {"listed", "grid", "add_straight_braking"});
+  std::set<std::string> names;
+  if (const json* listed = object.array("listed", 0, limits::listed_candidates)) {
+    for (std::size_t i = 0; i < listed->size() && status.ok(); ++i) {
+      const std::string path = object.path_of(indexed("listed", i).c_str());
+      scenario.listed.push_back(read_candidate((*listed)[i], path, status));
+      if (!names.insert(scenario.listed.back().name).second) {
+        detail::refuse_at(status, path + ".name", "is taken by an earlier candidate",
+                          "choose another name");
+      }
+    }
+  }
+  if (!scenario.listed.empty()) scenario.grid.reset();
+  if (object.has("grid") && object.at("grid").is_boolean()) {
+    scenario.grid = object.flag("grid", true) ? std::optional(CandidateGrid{}) : std::nullopt;
+  } else if (object.has("grid")) {
+    const JsonObject grid(object.at("grid"), object.path_of("grid"), status,
+                          {"accelerations", "steerings"});
+    scenario.grid = CandidateGrid{grid.count("accelerations", 1, limits::grid_side, 15),
+                                  grid.count("steerings", 1, limits::grid_side, 15)};
+  }
+  scenario.add_straight_braking = object.flag("add_straight_braking", true);
+}
+
+void read_actors(const JsonObject& root, Scenario& scenario) {
+  const json* actors = root.array("actors", 0, limits::actors);
+  if (actors == nullptr) return;
+  std::set<std::string> names;
+  scenario.actors.reserve(actors->size());
+  for (std::size_t i = 0; i < actors->size() && root.status().ok(); ++i) {
+    const std::string path = indexed("actors", i);
+    scenario.actors.push_back(read_actor((*actors)[i], path, scenario.models, root.status()));
+    if (!names.insert(scenario.actors.back().name).second) {
+      detail::refuse_at(root.status(), path + ".name", "is taken by an earlier actor",
+                        "choose another name");
+    }
+  }
+}
+
+void read_crush(const JsonObject& root, Crush& crush) {
+  if (!root.has("crush")) return;
+  const JsonObject object(root.at("crush"), "crush", root.status(), {"time_s", "depth_m"});
+  if (object.has("time_s") == object.has("depth_m")) {
+    detail::refuse_at(root.status(), "crush", "needs either time_s or depth_m", "give one of them");
+  }
+  crush.time_s = object.number("time_s", {0.0, limits::crush_time_s}, crush.time_s);
+  crush.depth_m = object.optional_number("depth_m", {0.0, limits::crush_depth_m});
+}
+
+void read_models(const JsonObject& root, Scenario& scenario) {
+  root.require("models");
+  if (!root.has("models")) return;
+  const json& models = root.at("models");
+  if (!models.is_object() || models.empty() || models.size() > limits::models) {
+    detail::refuse_at(
+        root.status(), "models", "is not an object of 1 to 256 models",
+        "write it as {\"name\": {...}}",
+        models.is_object() && !models.empty() ? ErrorCode::limit_exceeded : ErrorCode::bad_input);
+    return;
+  }
+  for (const auto& [name, value] : models.items()) {
+    const std::string path = "models." + name;
+    detail::check_name(name, "models", limits::name_characters, root.status());
+    if (!root.status().ok()) return;
+    scenario.models.push_back(read_model(value, name, path, root.status()));
+  }
+}
+
+Scenario read_scenario(const json& document, Status& status) {
+  Scenario scenario;
+  const JsonObject root(document, {}, status,
+                        {"$schema", "scenario_version", "name", "description", "models", "ego",
+                         "candidates", "actors", "horizon_s", "crush", "measure", "grip"});
+  root.require("scenario_version");
+  root.text("$schema", limits::path_characters);
+  if (root.has("scenario_version") && root.at("scenario_version") != 1) {
+    root.refuse("scenario_version", "is not a version this program reads", "it reads version 1");
+  }
+  scenario.name = root.name("name", limits::name_characters);
+  scenario.description = root.text("description", limits::description_characters);
+  read_models(root, scenario);
+  root.require("ego");
+  if (!status.ok()) return scenario;
+  scenario.ego = read_ego(root.at("ego"), scenario.models, status);
+  read_candidates(root, scenario);
+  read_actors(root, scenario);
+  scenario.horizon_s = root.number("horizon_s", {0.0, limits::horizon_s, true}, 4.0);
+  read_crush(root, scenario.crush);
+  if (root.has("measure")) {
+    const Result<Measure> measure =
+        measure_from_name(root.text("measure", limits::name_characters));
+    if (measure) {
+      scenario.measure = *measure;
+    } else {
+      root.refuse("measure", measure.error().reason, measure.error().remedy);
+    }
+  }
+  scenario.grip = root.number("grip", {limits::min_grip, limits::max_grip}, 0.8);
+  return scenario;
+}
+
+}  // namespace
+
+Result<Scenario> parse_scenario(const std::string& text, const std::string& file) {
+  if (text.size() > limits::file_bytes) {
+    return Error{
+        ErrorCode::limit_exceeded, file, {}, "is larger than 16 MiB", "split the scenario"};
+  }
+  Result<json> document = detail::parse_json(text);
+  if (!document) {
+    document.error().file = file;
+    return document.error();
+  }
+  Status status = Success{};
+  Scenario scenario = read_scenario(*document, status);
+  if (!status.ok()) {
+    status.error().file = file;
+    return status.error();
+  }
+  if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
+  return scenario;
+}
+
+}  // namespace crashrank

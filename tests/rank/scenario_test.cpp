@@ -1,0 +1,216 @@
+#include "crashrank/rank/scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace crashrank {
+namespace {
+
+using nlohmann::json;
+
+std::string read(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  EXPECT_TRUE(in) << path;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+json sample() { return json::parse(read(CRASHRANK_RANK_DATA "/sample.json")); }
+
+Error error_of(const std::string& text) {
+  const Result<Scenario> scenario = parse_scenario(text, "f.json");
+  EXPECT_FALSE(scenario.ok());
+  return scenario.ok() ? Error{} : scenario.error();
+}
+
+TEST(Scenario, EveryKeyOfTheSampleArrives) {
+  const Result<Scenario> parsed = parse_scenario(sample().dump(), "f.json");
+  ASSERT_TRUE(parsed.ok()) << parsed.error().message();
+  const Scenario& s = *parsed;
+  EXPECT_EQ(s.name, "sample");
+  ASSERT_EQ(s.models.size(), 2U);
+  EXPECT_EQ(s.models[0].name, "car");
+  EXPECT_EQ(s.models[0].mesh, "meshes/box.obj");
+  EXPECT_EQ(s.models[0].kind, BodyKind::car);
+  EXPECT_EQ(s.models[0].mass_kg, 1500.0);
+  EXPECT_EQ(s.models[1].kind, BodyKind::barrier);
+  EXPECT_FALSE(s.models[1].mass_kg.has_value());
+  EXPECT_EQ(s.models[1].transform.scale, 10.0);
+  EXPECT_EQ(s.ego.model, 0U);
+  EXPECT_EQ(s.ego.speed_mps, 20.0);
+  EXPECT_EQ(s.ego.wheelbase_m, 2.7);
+  EXPECT_NEAR(s.ego.max_steering_rad, 35.0 * M_PI / 180.0, 1e-15);
+  ASSERT_EQ(s.listed.size(), 4U);
+  EXPECT_FALSE(s.listed[0].steering_rad || s.listed[0].yaw_rate_radps);
+  EXPECT_EQ(s.listed[1].acceleration_mps2, -3.0);
+  EXPECT_NEAR(*s.listed[1].steering_rad, 2.5 * M_PI / 180.0, 1e-15);
+  EXPECT_NEAR(*s.listed[2].yaw_rate_radps, -12.0 * M_PI / 180.0, 1e-15);
+  ASSERT_EQ(s.listed[3].poses.size(), 2U);
+  EXPECT_EQ(s.listed[3].poses[1].time_s, 1.0);
+  EXPECT_EQ(s.listed[3].poses[1].pose.translation, Eigen::Vector3d(18.0, 1.0, 0.0));
+  ASSERT_TRUE(s.grid.has_value());
+  EXPECT_EQ(s.grid->accelerations, 3U);
+  EXPECT_EQ(s.grid->steerings, 5U);
+  EXPECT_TRUE(s.add_straight_braking);
+  ASSERT_EQ(s.actors.size(), 3U);
+  EXPECT_EQ(s.actors[0].speed_mps, 15.0);
+  EXPECT_EQ(s.actors[0].acceleration_mps2, -2.0);
+  EXPECT_NEAR(s.actors[0].yaw_rate_radps, 3.0 * M_PI / 180.0, 1e-15);
+  EXPECT_NEAR(s.actors[0].pose.rotation(0, 0), -1.0, 1e-15);
+  EXPECT_EQ(s.actors[1].model, 1U);
+  EXPECT_EQ(s.actors[2].poses.size(), 2U);
+  EXPECT_EQ(s.horizon_s, 4.0);
+  EXPECT_EQ(s.crush.time_s, 0.05);
+  EXPECT_FALSE(s.crush.depth_m.has_value());
+  EXPECT_EQ(s.measure, Measure::area);
+  EXPECT_EQ(s.grip, 0.8);
+}
+
+// The same variants are given to the published schema by schema_test.py.
+TEST(Scenario, EveryErrorNamesItsKeyPath) {
+  const json variants = json::parse(read(CRASHRANK_RANK_DATA "/bad_scenarios.json"));
+  ASSERT_GT(variants.size(), 50U);
+  for (const json& variant : variants) {
+    SCOPED_TRACE(variant.at("why").get<std::string>());
+    const std::string text = sample().patch(variant.at("patch")).dump();
+    const Result<Scenario> scenario = parse_scenario(text, "f.json");
+    EXPECT_EQ(scenario.ok(), !variant.contains("place"));
+    if (scenario.ok()) continue;
+    EXPECT_EQ(scenario.error().place, variant.value("place", std::string()));
+    EXPECT_EQ(scenario.error().file, "f.json");
+    EXPECT_FALSE(scenario.error().reason.empty());
+    EXPECT_FALSE(scenario.error().remedy.empty());
+    EXPECT_TRUE(scenario.error().code == ErrorCode::bad_input ||
+                scenario.error().code == ErrorCode::limit_exceeded);
+    EXPECT_EQ(scenario.error().message().find('\n'), std::string::npos);
+  }
+}
+
+TEST(Scenario, TheSchemaStatesTheParsersLimits) {
+  const json schema = json::parse(read(CRASHRANK_SCHEMA));
+  const auto at = [&schema](const char* pointer) { return schema.at(json::json_pointer(pointer)); };
+  namespace limits = scenario_limits;
+  EXPECT_EQ(at("/properties/models/maxProperties"), limits::models);
+  EXPECT_EQ(at("/properties/actors/maxItems"), limits::actors);
+  EXPECT_EQ(at("/$defs/candidates/properties/listed/maxItems"), limits::listed_candidates);
+  EXPECT_EQ(at("/$defs/candidates/properties/grid/oneOf/1/properties/accelerations/maximum"),
+            limits::grid_side);
+  EXPECT_EQ(at("/$defs/poses/maxItems"), limits::poses);
+  EXPECT_EQ(at("/$defs/name/maxLength"), limits::name_characters);
+  EXPECT_EQ(at("/$defs/model/properties/mesh/maxLength"), limits::path_characters);
+  EXPECT_EQ(at("/properties/description/maxLength"), limits::description_characters);
+  EXPECT_EQ(at("/properties/horizon_s/maximum"), limits::horizon_s);
+  EXPECT_EQ(at("/$defs/poses/items/properties/t_s/maximum"), limits::horizon_s);
+  EXPECT_EQ(at("/$defs/position_m/maximum"), limits::position_m);
+  EXPECT_EQ(at("/$defs/angle_deg/maximum"), limits::angle_deg);
+  EXPECT_EQ(at("/$defs/speed_mps/maximum"), limits::speed_mps);
+  EXPECT_EQ(at("/$defs/acceleration_mps2/maximum"), limits::acceleration_mps2);
+  EXPECT_EQ(at("/$defs/yaw_rate_dps/maximum"), limits::yaw_rate_dps);
+  EXPECT_EQ(at("/$defs/ego/properties/max_steering_deg/maximum"), limits::steering_deg);
+  EXPECT_EQ(at("/$defs/ego/properties/wheelbase_m/minimum"), limits::min_wheelbase_m);
+  EXPECT_EQ(at("/$defs/ego/properties/wheelbase_m/maximum"), limits::max_wheelbase_m);
+  EXPECT_EQ(at("/$defs/model/properties/mass_kg/minimum"), limits::min_mass_kg);
+  EXPECT_EQ(at("/$defs/model/properties/mass_kg/maximum"), limits::max_mass_kg);
+  EXPECT_EQ(at("/$defs/model/properties/scale/minimum"), limits::min_scale);
+  EXPECT_EQ(at("/$defs/model/properties/scale/maximum"), limits::max_scale);
+  EXPECT_EQ(at("/properties/grip/minimum"), limits::min_grip);
+  EXPECT_EQ(at("/properties/grip/maximum"), limits::max_grip);
+  EXPECT_EQ(at("/$defs/crush/oneOf/0/properties/time_s/maximum"), limits::crush_time_s);
+  EXPECT_EQ(at("/$defs/crush/oneOf/1/properties/depth_m/maximum"), limits::crush_depth_m);
+}
+
+TEST(Scenario, DefaultsAreThoseOfTheSchema) {
+  const json schema = json::parse(read(CRASHRANK_SCHEMA));
+  const auto at = [&schema](const char* pointer) { return schema.at(json::json_pointer(pointer)); };
+  const std::string least = R"({"scenario_version":1,"models":{"m":{"mesh":"a.obj","kind":"car"}},)"
+                            R"("ego":{"model":"m","speed_mps":1}})";
+  const Result<Scenario> s = parse_scenario(least, "folder/least.json");
+  ASSERT_TRUE(s.ok()) << s.error().message();
+  EXPECT_EQ(s->name, "least");
+  EXPECT_EQ(at("/properties/horizon_s/default"), s->horizon_s);
+  EXPECT_EQ(at("/properties/grip/default"), s->grip);
+  EXPECT_EQ(at("/properties/measure/default"), measure_name(s->measure));
+  EXPECT_EQ(at("/$defs/ego/properties/max_acceleration_mps2/default"),
+            s->ego.max_acceleration_mps2);
+  EXPECT_NEAR(at("/$defs/ego/properties/max_steering_deg/default").get<double>(),
+              s->ego.max_steering_rad * 180.0 / M_PI, 1e-12);
+  ASSERT_TRUE(s->grid.has_value());
+  EXPECT_EQ(s->grid->accelerations, 15U);
+  EXPECT_EQ(s->grid->steerings, 15U);
+  EXPECT_TRUE(s->add_straight_braking);
+  EXPECT_EQ(s->crush.time_s, 0.05);
+}
+
+TEST(Scenario, ListedCandidatesReplaceTheGrid) {
+  json document = sample();
+  document["candidates"].erase("grid");
+  EXPECT_FALSE(parse_scenario(document.dump(), "f")->grid.has_value());
+  document["candidates"]["grid"] = true;
+  EXPECT_TRUE(parse_scenario(document.dump(), "f")->grid.has_value());
+}
+
+TEST(Scenario, TextThatIsNoJsonNamesLineAndColumn) {
+  EXPECT_EQ(error_of("{\n  \"a\": }").place, "line 2, column 8");
+  EXPECT_EQ(error_of("").place, "line 1, column 1");
+  EXPECT_EQ(error_of("{} x").place, "line 1, column 4");
+  EXPECT_EQ(error_of("{\"a\": 1,}").place, "line 1, column 9");
+  EXPECT_EQ(error_of("{// no\n}").place, "line 1, column 2");
+  EXPECT_EQ(error_of("{\"a\": \"\xff\"}").place.substr(0, 6), "line 1");
+  EXPECT_EQ(error_of("[]").reason, "is array, not an object");
+}
+
+TEST(Scenario, AKeyThatComesTwiceIsAnError) {
+  EXPECT_EQ(error_of(R"({"grip": 1, "grip": 2})").place, "grip");
+  EXPECT_EQ(error_of(R"({"actors": [{"name": "a"}, {"name": "b", "name": "c"}]})").place,
+            "actors[1].name");
+}
+
+TEST(Scenario, HostileTextIsRefusedCheaply) {
+  EXPECT_EQ(error_of(std::string(1'000'000, '[')).reason, "nested too deeply");
+  EXPECT_EQ(error_of("{\"grip\": 1e999}").code, ErrorCode::bad_input);
+  EXPECT_EQ(error_of(std::string(scenario_limits::file_bytes + 1, ' ')).code,
+            ErrorCode::limit_exceeded);
+  json crowded = sample();
+  for (int i = 0; i < 1001; ++i) {
+    crowded["actors"].push_back({{"name", std::to_string(i)}, {"model", "car"}});
+  }
+  EXPECT_EQ(error_of(crowded.dump()).code, ErrorCode::limit_exceeded);
+  EXPECT_EQ(error_of(crowded.dump()).place, "actors");
+}
+
+TEST(Scenario, UnknownKeysAreShownWithoutControlCharacters) {
+  const Error error = error_of("{\"a\\nb\\u001b[2J\": 1}");
+  EXPECT_EQ(error.place, "a?b?[2J");
+}
+
+TEST(MassGuess, FollowsKindAndSize) {
+  const Eigen::Vector3d car(4.5, 1.8, 1.5);
+  EXPECT_NEAR(guess_mass_kg(BodyKind::car, car), -1333.5 + 526.9 * std::exp(0.8 * std::log(8.1)),
+              1e-9);
+  EXPECT_EQ(guess_mass_kg(BodyKind::car, {1.0, 1.0, 1.0}), 300.0);
+  EXPECT_EQ(guess_mass_kg(BodyKind::truck, car), 25000.0);
+  EXPECT_EQ(guess_mass_kg(BodyKind::bus, car), 13000.0);
+  EXPECT_EQ(guess_mass_kg(BodyKind::motorcycle, car), 250.0);
+  EXPECT_EQ(guess_mass_kg(BodyKind::bicycle, car), 90.0);
+  EXPECT_EQ(guess_mass_kg(BodyKind::pedestrian, car), 75.0);
+  for (const BodyKind kind : {BodyKind::barrier, BodyKind::pole, BodyKind::building}) {
+    EXPECT_TRUE(std::isinf(guess_mass_kg(kind, car)));
+  }
+}
+
+TEST(Measure, NamesReadBack) {
+  for (const Measure measure : {Measure::polygons, Measure::area, Measure::closing_energy}) {
+    EXPECT_EQ(*measure_from_name(measure_name(measure)), measure);
+  }
+  EXPECT_STREQ(measure_unit(Measure::area), "m2");
+  EXPECT_EQ(measure_from_name("harmless").error().code, ErrorCode::usage);
+}
+
+}  // namespace
+}  // namespace crashrank
