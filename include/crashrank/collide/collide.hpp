@@ -14,9 +14,9 @@
 namespace crashrank {
 
 /// Tests all triangle pairs of two leaves; calls `found(Pair)`, which returns false to stop.
-/// Returns false when stopped.
-template <class Found>
-bool collide_leaves(const AabbTree& a, const Node& leaf_a, const AabbTree& b, const Node& leaf_b,
+/// Returns false when stopped. `Tree` is AabbTree or TreeView.
+template <class Tree, class Found>
+bool collide_leaves(const Tree& a, const Node& leaf_a, const Tree& b, const Node& leaf_b,
                     const Pose& b_in_a, CollideWork& work, Found&& found) {
   for (std::uint32_t j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) {
     const TriangleD tb = carry(b_in_a, b.triangles[j]);

@@ -27,9 +27,9 @@ inline std::size_t traversal_stack_size(std::uint32_t depth_a, std::uint32_t dep
 /// Visits all pairs of leaves below (start.a, start.b) whose boxes, and all boxes above them, may
 /// touch. `visit(leaf_a, leaf_b)` returns false to stop. Descends into the larger box. `stack` has
 /// room for `traversal_stack_size` entries and its content on entry does not matter.
-/// Returns false when stopped. Adds the boxes tested to `work`.
-template <class Visit>
-bool traverse(const AabbTree& a, const AabbTree& b, const BoxTransform& to, NodePair start,
+/// Returns false when stopped. Adds the boxes tested to `work`. `Tree` is AabbTree or TreeView.
+template <class Tree, class Visit>
+bool traverse(const Tree& a, const Tree& b, const BoxTransform& to, NodePair start,
               View<NodePair> stack, CollideWork& work, Visit&& visit) {
   const auto touch = [&](NodePair pair) {
     ++work.bv_tests;

@@ -121,6 +121,7 @@ inline Result<AabbTree> build_tree(const TriangleMesh& mesh, const BuildOptions&
       break;
   }
 
+  tree.depth = measure_depth(tree.nodes);
   tree.order.resize(records.size());
   for (std::size_t i = 0; i < records.size(); ++i) tree.order[i] = records[i].index;
   for (const Node& node : tree.nodes) {

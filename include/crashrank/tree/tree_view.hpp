@@ -1,0 +1,19 @@
+#pragma once
+
+#include "crashrank/base/view.hpp"
+#include "crashrank/tree/aabb_tree.hpp"
+
+#include <cstdint>
+
+namespace crashrank {
+
+/// The arrays of a tree, or of a copied part of one, as traversal reads them. Owns nothing.
+struct TreeView {
+  View<const Node> nodes;
+  View<const std::uint32_t> order;
+  View<const Triangle> triangles;
+};
+
+inline TreeView view_of(const AabbTree& tree) { return {tree.nodes, tree.order, tree.triangles}; }
+
+}  // namespace crashrank
