@@ -3,7 +3,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # As many compilers as there are processors, and as the free memory carries: 1.5 GB each.
-jobs() {
+parallel_jobs() {
   local processors memory
   processors=$(nproc)
   memory=$(awk '/MemAvailable/ {print int($2 / 1500000)}' /proc/meminfo)

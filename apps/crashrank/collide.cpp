@@ -1,0 +1,276 @@
+#include "command.hpp"
+#include "console.hpp"
+#include "cost.hpp"
+#include "json.hpp"
+#include "mesh_arguments.hpp"
+#include "poses.hpp"
+#include "streams.hpp"
+#include "tree_arguments.hpp"
+
+#include "crashrank/collide/collide.hpp"
+#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/report/table.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crashrank::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string a;
+  std::string b;
+  MeshArguments mesh;
+  TreeArguments tree;
+  std::vector<std::string> poses;
+  std::string poses_file;
+  std::string pairs_file;
+  int repeat = 1;
+  bool any = false;
+  bool json = false;
+};
+
+struct Body {
+  Model model;
+  double build_s = 0.0;
+};
+
+struct Query {
+  CollideResult result;
+  double seconds = 0.0;
+  double sort_seconds = 0.0;
+  std::string hash;  ///< empty with --any, whose pair depends on the tree
+};
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Status check(const Options& options) {
+  if (const Status single = one_standard_input({options.a, options.b, options.poses_file});
+      !single) {
+    return single.error();
+  }
+  if (options.json && is_standard(options.pairs_file)) {
+    return make_error(ErrorCode::usage, "--json and --pairs - would both write standard output",
+                      "give --pairs a file");
+  }
+  if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
+    return build.error();
+  }
+  if (const Result<ImportTransform> transform = options.mesh.transform(); !transform) {
+    return transform.error();
+  }
+  return Success{};
+}
+
+Result<Body> load_body(const std::string& path, const Options& options) {
+  Result<ImportedMesh> imported = load_mesh(path, options.mesh, true);
+  if (!imported) return imported.error();
+  const Result<BuildOptions> build = options.tree.build_options();
+  if (!build) return build.error();
+  const Clock::time_point start = Clock::now();
+  Result<Model> model = make_model(std::move(imported->mesh), *build);
+  const double build_s = seconds_since(start);
+  if (!model) {
+    Error error = model.error();
+    if (error.file.empty()) error.file = path;
+    return error;
+  }
+  return Body{std::move(*model), build_s};
+}
+
+Result<std::vector<Pose>> load_poses(const Options& options) {
+  std::vector<Pose> poses;
+  for (const std::string& text : options.poses) {
+    const Result<Pose> pose = parse_pose_option(text);
+    if (!pose) return pose.error();
+    poses.push_back(*pose);
+  }
+  if (!options.poses_file.empty()) {
+    Result<std::vector<Pose>> more = read_poses(options.poses_file);
+    if (!more) return more.error();
+    poses.insert(poses.end(), more->begin(), more->end());
+  }
+  if (poses.empty()) poses.emplace_back();
+  return poses;
+}
+
+/// Runs one query `repeat` times; `pairs` ends sorted.
+Query ask(const Body& a, const Body& b, const Pose& pose, const Options& options,
+          CollideWorkspace& workspace, std::vector<Pair>& pairs) {
+  Query query;
+  std::vector<double> seconds(static_cast<std::size_t>(options.repeat));
+  CollideOptions how;
+  how.any = options.any;
+  for (double& taken : seconds) {
+    const Clock::time_point start = Clock::now();
+    query.result = collide(a.model.tree, b.model.tree, pose, pairs, workspace, how);
+    taken = seconds_since(start);
+  }
+  const auto middle = seconds.begin() + options.repeat / 2;
+  std::nth_element(seconds.begin(), middle, seconds.end());
+  query.seconds = *middle;
+  const Clock::time_point start = Clock::now();
+  std::sort(pairs.begin(), pairs.end());
+  query.sort_seconds = seconds_since(start);
+  if (!options.any) query.hash = pairs_hash(pairs);
+  return query;
+}
+
+void write_pairs(OutputFile& out, std::size_t query, const std::vector<Pair>& pairs) {
+  fmt::memory_buffer lines;
+  for (const Pair& pair : pairs) {
+    fmt::format_to(std::back_inserter(lines), "{},{},{}\n", query, pair.a, pair.b);
+  }
+  out.write(fmt::to_string(lines));
+}
+
+double predicted(const Query& query, const Cost& cost) {
+  const CollideWork& work = query.result.work;
+  const double boxes = work.bv_tests > 0 ? static_cast<double>(work.bv_tests) * cost.cb_s : 0.0;
+  const double triangles =
+      work.primitive_tests > 0 ? static_cast<double>(work.primitive_tests) * cost.cp_s : 0.0;
+  return boxes + triangles;
+}
+
+Json body_json(const std::string& file, const Body& body) {
+  return {{"file", file},
+          {"triangles", body.model.mesh.size()},
+          {"nodes", body.model.tree.nodes.size()},
+          {"depth", body.model.tree.depth},
+          {"build_s", body.build_s}};
+}
+
+Json to_json(const Options& options, const Body& a, const Body& b,
+             const std::vector<Query>& queries, const Cost& cost) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const Query& query = queries[i];
+    list.push_back({{"index", i},
+                    {"intersecting", query.result.intersecting},
+                    {"pairs", query.result.pairs},
+                    {"bv_tests", query.result.work.bv_tests},
+                    {"primitive_tests", query.result.work.primitive_tests},
+                    {"exact_tests", query.result.work.exact_tests},
+                    {"seconds", query.seconds},
+                    {"sort_seconds", query.sort_seconds},
+                    {"predicted_seconds", predicted(query, cost)},
+                    {"hash", options.any ? Json(nullptr) : Json(query.hash)}});
+  }
+  return {{"queries", std::move(list)},   {"cost", {{"Cb_s", cost.cb_s}, {"Cp_s", cost.cp_s}}},
+          {"a", body_json(options.a, a)}, {"b", body_json(options.b, b)},
+          {"split", options.tree.split},  {"frame", options.tree.frame},
+          {"any", options.any},           {"repeat", options.repeat}};
+}
+
+std::string to_text(const std::vector<Query>& queries, const Cost& cost, bool colours) {
+  Table table({{"query", true},
+               {"touch"},
+               {"pairs", true},
+               {"Nb", true},
+               {"Np", true},
+               {"measured us", true},
+               {"Nb Cb + Np Cp us", true},
+               {"hash"}});
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const Query& query = queries[i];
+    table.add_row({std::to_string(i), query.result.intersecting ? "yes" : "no",
+                   std::to_string(query.result.pairs), std::to_string(query.result.work.bv_tests),
+                   std::to_string(query.result.work.primitive_tests),
+                   fmt::format("{:.2f}", query.seconds * 1e6),
+                   fmt::format("{:.2f}", predicted(query, cost) * 1e6), query.hash});
+  }
+  return table.text(colours) +
+         fmt::format("Cb = {:.2f} ns a box test, Cp = {:.2f} ns a triangle test, measured here.\n",
+                     cost.cb_s * 1e9, cost.cp_s * 1e9);
+}
+
+int run(const Options& options) {
+  if (const Status sound = check(options); !sound) return fail(sound.error());
+  const Result<std::vector<Pose>> poses = load_poses(options);
+  if (!poses) return fail(poses.error());
+  const Result<Body> a = load_body(options.a, options);
+  if (!a) return fail(a.error());
+  const Result<Body> b = load_body(options.b, options);
+  if (!b) return fail(b.error());
+  std::optional<OutputFile> pairs_out;
+  if (!options.pairs_file.empty()) {
+    Result<OutputFile> out = OutputFile::open(options.pairs_file);
+    if (!out) return fail(out.error());
+    pairs_out = std::move(*out);
+    pairs_out->write("query,a,b\n");
+  }
+
+  const Cost cost = measure_cost(a->model.tree, b->model.tree);
+  CollideWorkspace workspace;
+  std::vector<Pair> pairs;
+  std::vector<Query> queries;
+  queries.reserve(poses->size());
+  {
+    Progress progress("colliding", poses->size());
+    for (const Pose& pose : *poses) {
+      queries.push_back(ask(*a, *b, pose, options, workspace, pairs));
+      if (pairs_out) write_pairs(*pairs_out, queries.size() - 1, pairs);
+      progress.update(queries.size());
+    }
+  }
+  if (pairs_out) {
+    if (const Status closed = pairs_out->close(); !closed) return fail(closed.error());
+  }
+  if (options.json) {
+    print_json(to_json(options, *a, *b, queries, cost));
+  } else if (!is_standard(options.pairs_file)) {
+    print(to_text(queries, cost, colours_wanted()));
+  }
+  return exit_done;
+}
+
+constexpr const char* epilogue =
+    R"(B stands at each pose in A's frame: R = Rz(yaw) Ry(pitch) Rx(roll), then the translation.
+A triangle's number is its place in the file. hash is the first 16 hex digits of SHA-256 over the
+sorted pairs as little-endian int32. seconds runs from the call to all pairs in the buffer, unsorted.
+
+Examples:
+  crashrank collide car.obj truck.glb --pose 4.2,0.3,0,180,0,0
+  crashrank collide car.obj pole.stl --poses poses.txt --repeat 20 --pairs pairs.csv --json)";
+
+}  // namespace
+
+void add_collide(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("collide", "Find the triangles of two bodies that touch, exactly");
+  command->add_option("A", options->a, "Mesh file of body A; - is standard input")->required();
+  command->add_option("B", options->b, "Mesh file of body B")->required();
+  command
+      ->add_option("--pose", options->poses,
+                   "x,y,z,yaw_deg,pitch_deg,roll_deg of B in A, m and degrees; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command->add_option("--poses", options->poses_file,
+                      "File with one row-major 4x4 matrix of B in A a line; - is standard input");
+  command->add_flag("--any", options->any, "Stop at the first pair found");
+  command->add_option("--repeat", options->repeat, "Runs of each query; the median time is told")
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--pairs", options->pairs_file,
+                      "Write the pairs as CSV query,a,b, sorted; - is standard output");
+  command->add_flag("--json", options->json, "Answer in JSON");
+  options->tree.add_to(*command);
+  options->mesh.add_to(*command);
+  command->footer(epilogue);
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace crashrank::cli

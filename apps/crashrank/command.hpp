@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace crashrank::cli {
+
+/// What a parsed command line asks for; answers the exit code.
+using Action = std::function<int()>;
+
+// Each adds its subcommand, and sets `action` when the command line names it.
+void add_inspect(CLI::App& app, Action& action);
+void add_collide(CLI::App& app, Action& action);
+
+}  // namespace crashrank::cli

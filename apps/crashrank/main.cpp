@@ -1,0 +1,67 @@
+#include "command.hpp"
+#include "console.hpp"
+
+#include "crashrank/base/library_version.hpp"
+
+#include <exception>
+#include <new>
+#include <string>
+
+namespace crashrank::cli {
+namespace {
+
+constexpr const char* epilogue =
+    R"(Data goes to standard output, messages to standard error; - names a standard stream.
+Exit codes: 0 done, 1 internal failure, 2 usage, 3 bad input, 4 a budget ended it with a
+partial answer.
+
+Examples:
+  crashrank inspect car.obj --json
+  crashrank collide car.obj truck.glb --pose 4.2,0.3,0,180,0,0)";
+
+/// The first line of what the parser has to say, and where to read on.
+int usage(const CLI::App& app, const CLI::ParseError& problem) {
+  const CLI::App* named = &app;
+  while (!named->get_subcommands().empty()) named = named->get_subcommands().front();
+  const std::string help =
+      named == &app ? "crashrank --help" : "crashrank " + named->get_name() + " --help";
+  const std::string text = problem.what();
+  return fail(make_error(ErrorCode::usage, text.substr(0, text.find('\n')), "see " + help));
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Ranks the crashes a vehicle can still choose, least harmful first.", "crashrank");
+  app.set_version_flag("--version", std::string("crashrank ") + library_version());
+  app.footer(epilogue);
+  app.require_subcommand(1);
+  Action action;
+  add_inspect(app, action);
+  add_collide(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto named = app.get_subcommands();
+    print(named.empty() ? app.help() : named.front()->help());
+    return finish(exit_done);
+  } catch (const CLI::CallForVersion&) {
+    print(app.version() + "\n");
+    return finish(exit_done);
+  } catch (const CLI::ParseError& problem) {
+    return usage(app, problem);
+  }
+  return finish(action());
+}
+
+}  // namespace
+}  // namespace crashrank::cli
+
+int main(int argc, char** argv) {
+  using namespace crashrank;
+  try {
+    return cli::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return cli::fail(make_error(ErrorCode::out_of_budget, "out of memory"));
+  } catch (const std::exception& problem) {
+    return cli::fail(make_error(ErrorCode::internal, problem.what()));
+  }
+}

@@ -1,0 +1,131 @@
+#include "streams.hpp"
+
+#include "console.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+namespace crashrank::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const {
+    if (file != nullptr && file != stdin) std::fclose(file);
+  }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+Error file_error(ErrorCode code, const std::string& path, std::string reason,
+                 std::string remedy = {}) {
+  Error error = make_error(code, std::move(reason), std::move(remedy));
+  error.file = is_standard(path) ? "standard input" : path;
+  return error;
+}
+
+/// Hands the file to `take` in pieces of at most 64 KiB.
+template <class Take> Status read_pieces(const std::string& path, std::size_t limit, Take take) {
+  std::error_code ignored;
+  if (!is_standard(path) && fs::is_directory(path, ignored)) {
+    return file_error(ErrorCode::bad_input, path, "is a folder, not a file");
+  }
+  const File file(is_standard(path) ? stdin : std::fopen(path.c_str(), "rb"));
+  if (!file) {
+    return file_error(ErrorCode::not_found, path, std::string("cannot open: ") + strerror(errno));
+  }
+  std::string piece(std::size_t{1} << 16U, '\0');
+  std::size_t total = 0;
+  while (const std::size_t got = std::fread(piece.data(), 1, piece.size(), file.get())) {
+    total += got;
+    if (total > limit) {
+      return file_error(ErrorCode::limit_exceeded, path,
+                        "is larger than " + std::to_string(limit) + " bytes");
+    }
+    if (!take(piece.data(), got)) {
+      return file_error(ErrorCode::internal, path, "cannot keep it in a temporary file",
+                        "make room in the folder that TMPDIR names");
+    }
+  }
+  if (std::ferror(file.get()) != 0) {
+    return file_error(ErrorCode::bad_input, path, std::string("cannot read: ") + strerror(errno));
+  }
+  return Success{};
+}
+
+}  // namespace
+
+Result<std::string> read_text(const std::string& path, std::size_t limit) {
+  std::string text;
+  const Status status = read_pieces(path, limit, [&](const char* data, std::size_t size) {
+    text.append(data, size);
+    return true;
+  });
+  if (!status) return status.error();
+  return text;
+}
+
+void StandardInputFile::Remove::operator()(const std::string* path) const {
+  std::error_code ignored;
+  fs::remove(*path, ignored);
+  delete path;
+}
+
+Result<StandardInputFile> StandardInputFile::receive(std::size_t limit,
+                                                     const std::string& extension) {
+  std::error_code failure;
+  const fs::path folder = fs::temp_directory_path(failure);
+  std::string name = (folder / ("crashrank-XXXXXX." + extension)).string();
+  const int suffix = static_cast<int>(extension.size()) + 1;
+  const int descriptor = failure ? -1 : mkstemps(name.data(), suffix);
+  if (descriptor < 0) {
+    return file_error(ErrorCode::internal, "-", "cannot keep it in a temporary file",
+                      "let TMPDIR name a folder that can be written to");
+  }
+  StandardInputFile received;
+  received.path_.reset(new std::string(name));
+  const File file(fdopen(descriptor, "wb"));
+  const Status status = read_pieces("-", limit, [&](const char* data, std::size_t size) {
+    return std::fwrite(data, 1, size, file.get()) == size;
+  });
+  if (!status) return status.error();
+  if (std::fflush(file.get()) != 0) {
+    return file_error(ErrorCode::internal, "-", "cannot keep it in a temporary file",
+                      "make room in the folder that TMPDIR names");
+  }
+  return received;
+}
+
+void OutputFile::Close::operator()(std::FILE* file) const { std::fclose(file); }
+
+Result<OutputFile> OutputFile::open(const std::string& path) {
+  OutputFile out;
+  out.path_ = path;
+  if (is_standard(path)) return out;
+  out.file_.reset(std::fopen(path.c_str(), "wb"));
+  if (!out.file_) {
+    return file_error(ErrorCode::not_found, path, std::string("cannot write: ") + strerror(errno));
+  }
+  return out;
+}
+
+void OutputFile::write(const std::string& text) {
+  if (!file_) return print(text);
+  if (error_ == 0 && std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size()) {
+    error_ = errno;
+  }
+}
+
+Status OutputFile::close() {
+  if (!file_) return Success{};  // `finish` speaks for standard output
+  if (std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
+  if (error_ == 0) return Success{};
+  return file_error(ErrorCode::internal, path_, std::string("cannot write: ") + strerror(error_));
+}
+
+}  // namespace crashrank::cli

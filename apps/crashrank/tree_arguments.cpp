@@ -1,0 +1,59 @@
+#include "tree_arguments.hpp"
+
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace crashrank::cli {
+namespace {
+
+constexpr std::array<std::pair<const char*, SplitRule>, 4> rules{
+    {{"min-relative-segment", SplitRule::min_relative_segment},
+     {"paper", SplitRule::paper},
+     {"sah", SplitRule::sah},
+     {"median", SplitRule::median}}};
+
+constexpr std::array<std::pair<const char*, BoxFrame>, 2> frames{
+    {{"world", BoxFrame::world}, {"gaussian", BoxFrame::gaussian}}};
+
+template <class Table> auto find(const Table& table, const std::string& name) {
+  std::optional<decltype(table[0].second)> found;
+  for (const auto& [known, value] : table) {
+    if (name == known) found.emplace(value);
+  }
+  return found;
+}
+
+}  // namespace
+
+void TreeArguments::add_to(CLI::App& command) {
+  const std::string group = "Trees";
+  command
+      .add_option("--split", split,
+                  "How triangles are split: min-relative-segment (default), paper, sah, median")
+      ->group(group);
+  command
+      .add_option("--frame", frame,
+                  "Along what the boxes stand: world (default) or gaussian, the axes of the "
+                  "vertices' covariance")
+      ->group(group);
+}
+
+Result<BuildOptions> TreeArguments::build_options() const {
+  const auto rule = find(rules, split);
+  if (!rule) {
+    return make_error(ErrorCode::usage, "--split " + split + ": is no split rule",
+                      "give min-relative-segment, paper, sah or median");
+  }
+  const auto box_frame = find(frames, frame);
+  if (!box_frame) {
+    return make_error(ErrorCode::usage, "--frame " + frame + ": is no frame",
+                      "give world or gaussian");
+  }
+  BuildOptions options;
+  options.rule = *rule;
+  options.frame = *box_frame;
+  return options;
+}
+
+}  // namespace crashrank::cli
