@@ -32,8 +32,8 @@ foreach(component ${components})
   get_target_property(links ${target} INTERFACE_LINK_LIBRARIES)
   foreach(link ${links})
     string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" link "${link}")
-    if(link MATCHES "^::@" OR link MATCHES "^crashrank(_|::)")
-      continue()  # marks of CMake's own, and our own targets
+    if(link MATCHES "^::@" OR link MATCHES "^crashrank(_|::)" OR link MATCHES "BUILD_INTERFACE")
+      continue()  # marks of CMake's own, our own targets, and headers needed to build alone
     endif()
     if(NOT DEFINED package_of_${link})
       message(FATAL_ERROR "cmake/CrashrankInstall.cmake does not know whose package ${link} is")
