@@ -1,0 +1,101 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/pose.hpp"
+#include "crashrank/collide/box_test.hpp"
+#include "crashrank/collide/pair.hpp"
+#include "crashrank/collide/triangle_distance.hpp"
+#include "crashrank/tree/aabb_tree.hpp"
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace crashrank {
+
+struct DistanceOptions {
+  /// Bodies further apart than this are not looked at closely: the answer is then `beyond_cutoff`.
+  double cutoff_m = std::numeric_limits<double>::infinity();
+};
+
+/// Points in A's frame, m.
+struct DistanceResult {
+  /// Never above the true distance of the surfaces; 0 exactly when `collide` finds a pair. When
+  /// `beyond_cutoff`, some number above the cutoff.
+  double distance_m = 0.0;
+  double upper_m = 0.0;  ///< distance of the two points, never below the true distance
+  bool beyond_cutoff = false;
+  std::int32_t triangle_a = -1;  ///< in mesh order, -1 beyond the cutoff
+  std::int32_t triangle_b = -1;
+  Eigen::Vector3d point_a_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d point_b_m = Eigen::Vector3d::Zero();
+  CollideWork work;
+};
+
+/// Memory that distance queries reuse, one for each thread. A query needs one entry for each level
+/// of either tree (`traversal_stack_size`); it allocates only to grow beyond an earlier one.
+struct DistanceWorkspace {
+  struct Entry {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    double lower_m = 0.0;
+  };
+  std::vector<Entry> stack;
+};
+
+/// Smallest distance of the surfaces of A and of B, which stands at `b_in_a` in A's frame. A body
+/// inside another is as far as its surface is. Descends into the nearer pair of boxes first and
+/// leaves out boxes further apart than the best pair of points known. Both trees non-empty, the
+/// pose finite and rigid within `max_rigidity_error`. Safe from any thread with its own workspace.
+CRASHRANK_API DistanceResult distance(const AabbTree& a, const AabbTree& b, const Pose& b_in_a,
+                                      DistanceWorkspace& workspace,
+                                      const DistanceOptions& options = {});
+
+namespace detail {
+
+/// Where two boxes lie apart: how far along each axis of a frame, signed from A to B, 0 along axes
+/// on which they overlap. Its length is a lower bound of their distance.
+struct BoxGap {
+  Eigen::Vector3d along_a;  ///< axes of A's boxes
+  Eigen::Vector3d along_b;  ///< axes of B's boxes
+};
+
+inline double positive_gap(double apart, double reach) {
+  const double gap = std::abs(apart) - reach;
+  return gap > 0.0 ? std::copysign(gap, apart) : 0.0;
+}
+
+inline BoxGap box_gap(const Box& a, const Box& b, const BoxTransform& to) {
+  const Eigen::Vector3d a_half = 0.5 * (a.max.cast<double>() - a.min.cast<double>());
+  const Eigen::Vector3d b_half = 0.5 * (b.max.cast<double>() - b.min.cast<double>());
+  const Eigen::Vector3d b_center = 0.5 * (b.max.cast<double>() + b.min.cast<double>());
+  const Eigen::Vector3d a_center = 0.5 * (a.max.cast<double>() + a.min.cast<double>());
+  const Eigen::Matrix3d& r = to.rotation;
+  const Eigen::Matrix3d& s = to.abs_rotation;
+  const Eigen::Vector3d apart = detail::rotate(r, b_center) + to.translation - a_center;
+  BoxGap gap;
+  for (int i = 0; i < 3; ++i) {
+    gap.along_a[i] =
+        positive_gap(apart[i], a_half[i] + (s(i, 0) * b_half[0] + s(i, 1) * b_half[1]) +
+                                   (s(i, 2) * b_half[2] + to.margin_a));
+    const double b_apart = (r(0, i) * apart[0] + r(1, i) * apart[1]) + r(2, i) * apart[2];
+    gap.along_b[i] = positive_gap(b_apart, b_half[i] + (s(0, i) * a_half[0] + s(1, i) * a_half[1]) +
+                                               (s(2, i) * a_half[2] + to.margin_b));
+  }
+  return gap;
+}
+
+/// Factor that makes a length measured along B's axes a lower bound in A's frame when the pose is
+/// not quite a rotation: |Rᵀd|² = dᵀRRᵀd <= (1 + 3e)·|d|² with e the largest entry of |RRᵀ - 1|.
+/// The constant covers the rounding of a length (four roundings and a root).
+inline double shrink_along_b(const BoxTransform& to) {
+  const Eigen::Matrix3d skew =
+      multiply(to.rotation, to.rotation.transpose()) - Eigen::Matrix3d::Identity();
+  return 1.0 - 3.0 * skew.cwiseAbs().maxCoeff() - 0x1p-48;
+}
+
+}  // namespace detail
+}  // namespace crashrank
