@@ -114,19 +114,44 @@ std::string grid_name(std::size_t i, std::size_t j, const GridPoint& point, doub
   return text;
 }
 
+struct GridIndex {
+  std::size_t i;
+  std::size_t j;
+  std::size_t demand;  // u² + w² times the squares of both sides' steps, a whole number
+};
+
+// Where many manoeuvres hit nothing the first one wins, so the gentlest come first.
+std::vector<GridIndex> gentlest_first(const CandidateGrid& grid) {
+  const auto offset = [](std::size_t index, std::size_t count) {
+    return 2 * index > count - 1 ? 2 * index - (count - 1) : (count - 1) - 2 * index;
+  };
+  const std::size_t steps_i = std::max<std::size_t>(grid.accelerations - 1, 1);
+  const std::size_t steps_j = std::max<std::size_t>(grid.steerings - 1, 1);
+  std::vector<GridIndex> order;
+  order.reserve(grid.accelerations * grid.steerings);
+  for (std::size_t i = 0; i < grid.accelerations; ++i) {
+    for (std::size_t j = 0; j < grid.steerings; ++j) {
+      const std::size_t u = offset(i, grid.accelerations) * steps_j;
+      const std::size_t w = offset(j, grid.steerings) * steps_i;
+      order.push_back({i, j, u * u + w * w});
+    }
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const GridIndex& p, const GridIndex& q) { return p.demand < q.demand; });
+  return order;
+}
+
 std::vector<Candidate> grid_candidates(const Scenario& scenario, double wheelbase) {
   std::vector<Candidate> candidates;
   const CandidateGrid& grid = *scenario.grid;
   const double max_curvature = curvature_from_steering(scenario.ego.max_steering_rad, wheelbase);
   candidates.reserve(grid.accelerations * grid.steerings);
-  for (std::size_t i = 0; i < grid.accelerations; ++i) {
-    for (std::size_t j = 0; j < grid.steerings; ++j) {
-      const GridPoint point = grid_point(scenario, level(i, grid.accelerations),
-                                         level(j, grid.steerings), max_curvature);
-      candidates.push_back(arc_candidate(scenario.ego, grid_name(i, j, point, wheelbase),
-                                         CandidateOrigin::grid, point.acceleration_mps2,
-                                         point.curvature_per_m));
-    }
+  for (const auto& [i, j, demand] : gentlest_first(grid)) {
+    const GridPoint point =
+        grid_point(scenario, level(i, grid.accelerations), level(j, grid.steerings), max_curvature);
+    candidates.push_back(arc_candidate(scenario.ego, grid_name(i, j, point, wheelbase),
+                                       CandidateOrigin::grid, point.acceleration_mps2,
+                                       point.curvature_per_m));
   }
   return candidates;
 }

@@ -32,7 +32,7 @@ struct Candidate {
 };
 
 /// All candidates of a scenario in their order: listed, straight braking where it is missing, the
-/// grid by acceleration level, then by steering level, hardest braking and sharpest right first.
+/// grid, the gentlest first: by u² + w², then harder braking, then further right.
 /// `ego_length_m` stands in for an absent wheelbase (0.6 of it).
 ///
 /// The grid covers what the grip allows: levels u, w in [-1, 1] become the longitudinal
@@ -40,7 +40,7 @@ struct Candidate {
 /// onto the disc that keeps its axes, so that no two manoeuvres are alike and the corners are as
 /// hard as the edges. The path's curvature is held and taken at the highest speed within the
 /// horizon: at no time does a manoeuvre leave the grip circle. The curvature is limited by the
-/// steering, too. Time poses of listed candidates are checked. Errors: bad_input, naming the key.
+/// steering, too. Timed poses of listed candidates are checked. Errors: bad_input, naming the key.
 CRASHRANK_API Result<std::vector<Candidate>> make_candidates(const Scenario& scenario,
                                                              double ego_length_m);
 

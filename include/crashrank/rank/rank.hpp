@@ -1,0 +1,151 @@
+#pragma once
+
+#include "crashrank/base/box.hpp"
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/pose.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/base/view.hpp"
+#include "crashrank/collide/pair.hpp"
+#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/rank/candidate.hpp"
+#include "crashrank/rank/measure.hpp"
+#include "crashrank/rank/scenario.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+
+struct RankOptions {
+  std::optional<Measure> measure;  ///< absent: the scenario's
+  /// Threads that share the candidates, the calling one included; 0 or 1: the calling thread alone.
+  /// The answer has the same bits for every number.
+  unsigned workers = 1;
+  ImpactOptions impact;  ///< `start_is_apart` is decided inside
+};
+
+/// What a crash does to one body.
+struct BodyDamage {
+  /// Triangles that meet the other body, in mesh order, rising. A body that lies inside the other
+  /// at the start counts whole.
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::uint32_t> parts;  ///< indices of the mesh's parts that those belong to, rising
+  double area_m2 = 0.0;              ///< of those triangles
+  Box region;  ///< where the surfaces meet, in body coordinates; empty when they do not
+  Pose pose;   ///< body to world at first contact
+};
+
+/// One body hit by a candidate. Points and directions in world coordinates.
+struct Contact {
+  std::size_t actor = 0;  ///< index into Scenario::actors
+  ImpactState state = ImpactState::contact;
+  double time_of_impact_s = 0.0;
+  double gap_m = 0.0;  ///< between the surfaces then, at most the tolerance
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
+  /// Unit, from the ego towards the other; zero for a body that lies inside another.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  /// Length of the difference of the two bodies' velocities at the point.
+  double closing_speed_mps = 0.0;
+  /// Its share along the normal: what brings the surfaces together. Depends on the facet met first.
+  double normal_speed_mps = 0.0;
+  /// ½·m₁m₂/(m₁+m₂)·closing_speed²: all that the crash could turn into damage if the bodies stuck
+  /// together and their velocities passed through the common centre of mass.
+  double closing_energy_j = 0.0;
+  double crush_s = 0.0;  ///< time along the motions for which the damage was read; 0 for a depth
+  double crush_m = 0.0;  ///< way of the contact point relative to the other body in that
+  BodyDamage ego;
+  BodyDamage other;
+};
+
+/// A pass closer than the tolerance that touches nothing.
+struct Graze {
+  std::size_t actor = 0;
+  double time_s = 0.0;
+};
+
+/// Bounds on a score; equal where it is known.
+struct ScoreInterval {
+  double lowest = 0.0;
+  double highest = 0.0;
+};
+
+/// What choosing a candidate leads to.
+struct CandidateResult {
+  std::size_t candidate = 0;    ///< index into RankResult::candidates
+  std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
+  ScoreInterval score_interval;
+  bool collides = false;
+  /// The first contact and all that begin within the crush of it, in time order (then by actor).
+  /// What would be hit later is not listed: after a crash nobody follows the planned motion.
+  std::vector<Contact> contacts;
+  std::vector<Graze> grazes;  ///< before the first contact, in time order
+  /// The ego's damage from all contacts together; a triangle hit twice counts once.
+  BodyDamage ego;
+};
+
+/// A body as it was ranked with.
+struct RankedBody {
+  std::size_t model = 0;  ///< index into Scenario::models
+  double mass_kg = 0.0;   ///< infinity: does not move
+  bool mass_guessed = false;
+};
+
+/// Work done, the same for every number of workers.
+struct RankWork {
+  std::uint64_t box_tests = 0;       ///< of the broad phase
+  std::uint64_t body_pairs = 0;      ///< bodies that came near enough for a closer look
+  ImpactWork impact;                 ///< looking for first contacts
+  std::uint64_t damage_queries = 0;  ///< poses at which intersecting triangles were listed
+  CollideWork damage;
+
+  RankWork& operator+=(const RankWork& other) {
+    box_tests += other.box_tests;
+    body_pairs += other.body_pairs;
+    impact += other.impact;
+    damage_queries += other.damage_queries;
+    damage += other.damage;
+    return *this;
+  }
+};
+
+/// The answer, least harmful first.
+struct RankResult {
+  Measure measure = Measure::polygons;
+  std::vector<Candidate> candidates;     ///< in the order of `make_candidates`
+  std::vector<CandidateResult> ranking;  ///< every candidate once, best first
+  bool complete = true;                  ///< every score is known
+  bool proved = true;                    ///< no other candidate can still take the first place
+  std::vector<std::size_t> in_race;      ///< candidates that can be first, best guess first
+  RankedBody ego;
+  std::vector<RankedBody> actors;
+  RankWork work;
+  double elapsed_s = 0.0;  ///< wall time of the call
+};
+
+/// Ranks the candidates of a scenario by what they would destroy. `models` belong to
+/// `Scenario::models`, index by index, in body coordinates.
+///
+/// For every candidate the ego and the actors follow their motions until the horizon. First contact
+/// is found without stepping over any (time_of_impact); a body inside another at the start is a
+/// contact at time 0. Then the bodies move on by the scenario's crush, as if nothing held them, and
+/// every triangle that meets the other body on the way is damaged: looked at every 0.1 m of the way
+/// (at most 32 times), so that a pole cannot pass through unseen.
+///
+/// Scores add up over the contacts: `polygons` counts damaged triangles of the ego and of all hit,
+/// `area` adds their areas, `closing-energy` the contacts' energies. Order: lower score; then what
+/// touches nothing before what does, a clean miss before a graze; then the later first contact;
+/// then the lower closing speed; then the order of the candidates. No two places are equal.
+///
+/// Cost: about the candidates times the bodies they come near. Errors: bad_input (missing or empty
+/// model, ego without mass, poses out of order), usage (number of models), internal (no memory).
+/// Safe from any thread; allocates.
+CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
+                                      const RankOptions& options = {});
+
+}  // namespace crashrank

@@ -1,0 +1,192 @@
+#include "rank/damage.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crashrank::detail {
+namespace {
+
+constexpr double sample_length_m = 0.1;
+constexpr double max_samples = 32.0;
+
+Box bounds_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  Box box;
+  for (const std::uint32_t index : triangles) {
+    for (const std::uint32_t vertex : mesh.triangles[index]) box.grow(mesh.vertices[vertex]);
+  }
+  return box;
+}
+
+Box carried(const Pose& pose, const Box& box) {
+  Box result;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3f point((corner & 1) != 0 ? box.max.x() : box.min.x(),
+                                (corner & 2) != 0 ? box.max.y() : box.min.y(),
+                                (corner & 4) != 0 ? box.max.z() : box.min.z());
+    result.grow(Eigen::Vector3f(carry(pose, point).cast<float>()));
+  }
+  return result;
+}
+
+Box common(const Box& a, const Box& b) {
+  Box box;
+  box.min = a.min.cwiseMax(b.min);
+  box.max = a.max.cwiseMin(b.max);
+  return box.empty() ? Box{} : box;
+}
+
+// Where along the crush the bodies are, from first contact (0) to the end of it (1).
+class CrushPath {
+public:
+  CrushPath(const Scene& scene, const Motion& ego, const Contact& contact)
+      : ego_(ego), other_(scene.actors[contact.actor].motion), contact_(contact) {
+    Velocity ego_velocity;
+    Velocity other_velocity;
+    ego_.state_at(contact.time_of_impact_s, ego_start_, ego_velocity);
+    other_.state_at(contact.time_of_impact_s, other_start_, other_velocity);
+    if (scene.crush.depth_m) {
+      const Eigen::Vector3d relative_velocity =
+          velocity_of_point(ego_velocity, ego_start_.translation, contact.point_m) -
+          velocity_of_point(other_velocity, other_start_.translation, contact.point_m);
+      const double speed = relative_velocity.norm();
+      if (speed > 0.0) shift_m_ = relative_velocity * (*scene.crush.depth_m / speed);
+      length_m_ = shift_m_.norm();
+      return;
+    }
+    seconds_ = scene.crush.time_s;
+    const double until = contact.time_of_impact_s + seconds_;
+    length_m_ = ego_.reach(scene.ego.radius_m, contact.time_of_impact_s, until) +
+                other_.reach(scene.actors[contact.actor].radius_m, contact.time_of_impact_s, until);
+  }
+
+  double seconds() const { return seconds_; }
+  /// No two points of the bodies move further against each other.
+  double length_m() const { return length_m_; }
+
+  Pose ego_at(double share) const {
+    if (seconds_ > 0.0) return ego_.pose_at(contact_.time_of_impact_s + share * seconds_);
+    Pose pose = ego_start_;
+    pose.translation += share * shift_m_;
+    return pose;
+  }
+  Pose other_at(double share) const {
+    return seconds_ > 0.0 ? other_.pose_at(contact_.time_of_impact_s + share * seconds_)
+                          : other_start_;
+  }
+
+private:
+  const Motion& ego_;
+  const Motion& other_;
+  const Contact& contact_;
+  Pose ego_start_;
+  Pose other_start_;
+  Eigen::Vector3d shift_m_ = Eigen::Vector3d::Zero();
+  double seconds_ = 0.0;
+  double length_m_ = 0.0;
+};
+
+// How far a point that is fixed to the ego moves in the frame of the other.
+double way_of_point(const Pose& ego_first, const Pose& other_first, const Pose& ego_last,
+                    const Pose& other_last, const Eigen::Vector3d& point_m) {
+  const Eigen::Vector3d in_ego = ego_first.rotation.transpose() * (point_m - ego_first.translation);
+  const Eigen::Vector3d before =
+      other_first.rotation.transpose() * (point_m - other_first.translation);
+  const Eigen::Vector3d after =
+      other_last.rotation.transpose() *
+      (ego_last.rotation * in_ego + ego_last.translation - other_last.translation);
+  return (after - before).norm();
+}
+
+void add_all(const TriangleMesh& mesh, TriangleSet& set) {
+  for (std::size_t i = 0; i < mesh.size(); ++i) set.add(static_cast<std::uint32_t>(i));
+}
+
+void finish(const TriangleMesh& mesh, TriangleSet& set, const Pose& pose, BodyDamage& damage) {
+  damage.triangles = set.sorted();
+  damage.pose = pose;
+  sum_up(mesh, damage);
+}
+
+}  // namespace
+
+const std::vector<std::uint32_t>& TriangleSet::sorted() {
+  std::sort(members_.begin(), members_.end());
+  return members_;
+}
+
+void sum_up(const TriangleMesh& mesh, BodyDamage& damage) {
+  damage.area_m2 = 0.0;
+  damage.parts.clear();
+  std::size_t part = 0;
+  for (const std::uint32_t index : damage.triangles) {
+    const Triangle triangle = mesh.triangle(index);
+    const Eigen::Vector3d a = triangle.corner[0].cast<double>();
+    const Eigen::Vector3d b = triangle.corner[1].cast<double>();
+    const Eigen::Vector3d c = triangle.corner[2].cast<double>();
+    damage.area_m2 += 0.5 * (b - a).cross(c - a).norm();
+    while (part < mesh.parts.size() &&
+           index >= mesh.parts[part].first_triangle + mesh.parts[part].triangle_count) {
+      ++part;
+    }
+    const bool known = part < mesh.parts.size() && index >= mesh.parts[part].first_triangle;
+    if (known && (damage.parts.empty() || damage.parts.back() != part)) {
+      damage.parts.push_back(static_cast<std::uint32_t>(part));
+    }
+  }
+}
+
+void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
+                 std::int32_t triangle_ego, std::int32_t triangle_other, DamageScratch& scratch,
+                 RankWork& work) {
+  const Body& other = scene.actors[contact.actor];
+  const Model& ego_model = *scene.ego.model;
+  const Model& other_model = *other.model;
+  const CrushPath path(scene, ego_motion, contact);
+  scratch.ego.clear(ego_model.mesh.size());
+  scratch.other.clear(other_model.mesh.size());
+  scratch.met.clear();
+
+  const Pose ego_first = path.ego_at(0.0);
+  const Pose other_first = path.other_at(0.0);
+  if (triangle_ego >= 0 && triangle_other >= 0) {
+    scratch.ego.add(static_cast<std::uint32_t>(triangle_ego));
+    scratch.other.add(static_cast<std::uint32_t>(triangle_other));
+    scratch.met.push_back(relative(ego_first, other_first));
+  }
+  if (contact.state == ImpactState::contained) {
+    const bool ego_is_inside = scene.ego.radius_m < other.radius_m;
+    add_all(ego_is_inside ? ego_model.mesh : other_model.mesh,
+            ego_is_inside ? scratch.ego : scratch.other);
+  }
+  const double samples = std::clamp(std::ceil(path.length_m() / sample_length_m), 1.0, max_samples);
+  for (double k = 0.0; k <= samples; ++k) {
+    const Pose b_in_a = relative(path.ego_at(k / samples), path.other_at(k / samples));
+    const CollideResult result =
+        collide(ego_model.tree, other_model.tree, b_in_a, scratch.pairs, scratch.collide);
+    ++work.damage_queries;
+    work.damage += result.work;
+    if (!result.intersecting) continue;
+    scratch.met.push_back(b_in_a);
+    for (const Pair& pair : scratch.pairs) {
+      scratch.ego.add(static_cast<std::uint32_t>(pair.a));
+      scratch.other.add(static_cast<std::uint32_t>(pair.b));
+    }
+  }
+  finish(ego_model.mesh, scratch.ego, ego_first, contact.ego);
+  finish(other_model.mesh, scratch.other, other_first, contact.other);
+  contact.crush_s = path.seconds();
+  contact.crush_m =
+      way_of_point(ego_first, other_first, path.ego_at(1.0), path.other_at(1.0), contact.point_m);
+
+  const Box ego_box = bounds_of(ego_model.mesh, contact.ego.triangles);
+  const Box other_box = bounds_of(other_model.mesh, contact.other.triangles);
+  if (ego_box.empty() || other_box.empty()) return;
+  for (const Pose& b_in_a : scratch.met) {
+    contact.ego.region.grow(common(ego_box, carried(b_in_a, other_box)));
+    contact.other.region.grow(common(other_box, carried(inverse(b_in_a), ego_box)));
+  }
+}
+
+}  // namespace crashrank::detail

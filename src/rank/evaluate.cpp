@@ -1,0 +1,248 @@
+#include "rank/evaluate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace crashrank::detail {
+namespace {
+
+constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
+
+// Actors near the ego by slices of time, the soonest first.
+void find_near(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work) {
+  scratch.near.clear();
+  scratch.place.assign(scene.actors.size(), nowhere);
+  for (std::size_t s = 0; s < scene.slices.size(); ++s) {
+    const Box box =
+        swept_box(scene.ego, ego, scene.slice_s[s], scene.slice_s[s + 1], scene.impact.tolerance_m);
+    work.box_tests += scene.slices[s].query(box, [&](std::size_t actor) {
+      std::size_t& place = scratch.place[actor];
+      if (place == nowhere) {
+        place = scratch.near.size();
+        scratch.near.push_back({actor, s, s});
+      }
+      scratch.near[place].last_slice = s;
+    });
+  }
+  std::sort(
+      scratch.near.begin(), scratch.near.end(), [](const Scratch::Near& p, const Scratch::Near& q) {
+        return p.first_slice != q.first_slice ? p.first_slice < q.first_slice : p.actor < q.actor;
+      });
+}
+
+// A contact that begins this long after the first one still belongs to the same crash.
+double longest_window_s(const Scene& scene) {
+  return scene.crush.depth_m ? scenario_limits::crush_time_s : scene.crush.time_s;
+}
+
+double window_s(const Scene& scene, double closing_speed_mps) {
+  if (!scene.crush.depth_m) return scene.crush.time_s;
+  if (!(closing_speed_mps > 0.0)) return 0.0;
+  return std::min(*scene.crush.depth_m / closing_speed_mps, scenario_limits::crush_time_s);
+}
+
+bool starts_as_the_ego(const Scene& scene, const Motion& motion) {
+  const Pose pose = motion.pose_at(0.0);
+  return pose.rotation == scene.ego_start.rotation &&
+         pose.translation == scene.ego_start.translation;
+}
+
+// Fills scratch.hits with everything but clean misses. Returns false when some question stayed
+// undecided.
+bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work) {
+  scratch.hits.clear();
+  find_near(scene, ego, scratch, work);
+  const bool same_start = starts_as_the_ego(scene, ego);
+  bool decided = true;
+  double first_s = std::numeric_limits<double>::infinity();
+  // All that come near in the same slice are asked up to the same time, so that no answer depends
+  // on the order of the actors.
+  double until_s = first_s;
+  std::size_t slice = nowhere;
+  for (const Scratch::Near& near : scratch.near) {
+    if (near.first_slice != slice) {
+      slice = near.first_slice;
+      until_s = first_s + longest_window_s(scene);
+    }
+    const double from = scene.slice_s[near.first_slice];
+    const double until = std::min(scene.slice_s[near.last_slice + 1], until_s);
+    if (from > until) continue;
+    const Body& actor = scene.actors[near.actor];
+    ImpactOptions options = scene.impact;
+    options.start_is_apart =
+        near.first_slice > 0 || (same_start && scene.apart_at_start[near.actor] != 0);
+    const Impact impact = time_of_impact(scene.ego.model->tree, ego, actor.model->tree,
+                                         actor.motion, from, until, scratch.impact, options);
+    ++work.body_pairs;
+    work.impact += impact.work;
+    if (impact.state == ImpactState::undecided) decided = false;
+    if (impact.state == ImpactState::none || impact.state == ImpactState::undecided) continue;
+    scratch.hits.push_back({near.actor, impact});
+    if (impact.hit()) first_s = std::min(first_s, impact.time_s);
+  }
+  std::sort(scratch.hits.begin(), scratch.hits.end(),
+            [](const Scratch::Hit& p, const Scratch::Hit& q) {
+              return p.impact.time_s != q.impact.time_s ? p.impact.time_s < q.impact.time_s
+                                                        : p.actor < q.actor;
+            });
+  return decided;
+}
+
+double closing_energy_j(double ego_kg, double other_kg, double speed_mps) {
+  const double reduced = std::isinf(other_kg) ? ego_kg : ego_kg * other_kg / (ego_kg + other_kg);
+  return 0.5 * reduced * speed_mps * speed_mps;
+}
+
+Contact make_contact(const Scene& scene, const Motion& ego, const Scratch::Hit& hit) {
+  const Body& other = scene.actors[hit.actor];
+  const Impact& impact = hit.impact;
+  Contact contact;
+  contact.actor = hit.actor;
+  contact.state = impact.state;
+  contact.time_of_impact_s = impact.time_s;
+  contact.gap_m = impact.gap_m;
+  contact.normal = impact.normal;
+  Pose ego_pose;
+  Pose other_pose;
+  Velocity ego_velocity;
+  Velocity other_velocity;
+  ego.state_at(impact.time_s, ego_pose, ego_velocity);
+  other.motion.state_at(impact.time_s, other_pose, other_velocity);
+  if (impact.triangle_a >= 0 && impact.triangle_b >= 0) {
+    contact.point_m = 0.5 * (impact.point_a_m + impact.point_b_m);
+  } else {
+    // One lies inside the other: the middle of the smaller one stands for the place.
+    const bool ego_is_inside = scene.ego.radius_m < other.radius_m;
+    const Body& inner = ego_is_inside ? scene.ego : other;
+    const Pose& pose = ego_is_inside ? ego_pose : other_pose;
+    contact.point_m = pose.rotation * inner.center_m + pose.translation;
+  }
+  const Eigen::Vector3d closing =
+      velocity_of_point(ego_velocity, ego_pose.translation, contact.point_m) -
+      velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
+  contact.closing_speed_mps = closing.norm();
+  contact.normal_speed_mps = std::max(0.0, closing.dot(contact.normal));
+  contact.closing_energy_j =
+      closing_energy_j(scene.ego.mass_kg, other.mass_kg, contact.closing_speed_mps);
+  return contact;
+}
+
+void add_grazes(const Scratch& scratch, CandidateResult& result) {
+  const double until = result.collides ? result.contacts.front().time_of_impact_s
+                                       : std::numeric_limits<double>::infinity();
+  for (const Scratch::Hit& hit : scratch.hits) {
+    const bool grazing = hit.impact.state == ImpactState::grazing;
+    if (!grazing && !hit.impact.grazed) continue;
+    const double time = grazing ? hit.impact.time_s : hit.impact.graze_time_s;
+    if (time <= until) result.grazes.push_back({hit.actor, time});
+  }
+  std::sort(result.grazes.begin(), result.grazes.end(), [](const Graze& p, const Graze& q) {
+    return p.time_s != q.time_s ? p.time_s < q.time_s : p.actor < q.actor;
+  });
+}
+
+void sum_up_ego(const Scene& scene, CandidateResult& result) {
+  if (result.contacts.empty()) return;
+  result.ego = result.contacts.front().ego;
+  if (result.contacts.size() == 1) return;
+  for (std::size_t i = 1; i < result.contacts.size(); ++i) {
+    const BodyDamage& more = result.contacts[i].ego;
+    std::vector<std::uint32_t> both;
+    std::set_union(result.ego.triangles.begin(), result.ego.triangles.end(), more.triangles.begin(),
+                   more.triangles.end(), std::back_inserter(both));
+    result.ego.triangles = std::move(both);
+    result.ego.region.grow(more.region);
+  }
+  sum_up(scene.ego.model->mesh, result.ego);
+}
+
+double score_of(const CandidateResult& result, Measure measure) {
+  double score = 0.0;
+  switch (measure) {
+    case Measure::polygons:
+      score = static_cast<double>(result.ego.triangles.size());
+      for (const Contact& contact : result.contacts) {
+        score += static_cast<double>(contact.other.triangles.size());
+      }
+      break;
+    case Measure::area:
+      score = result.ego.area_m2;
+      for (const Contact& contact : result.contacts) score += contact.other.area_m2;
+      break;
+    case Measure::closing_energy:
+      for (const Contact& contact : result.contacts) score += contact.closing_energy_j;
+      break;
+  }
+  return score;
+}
+
+double surface_m2(const TriangleMesh& mesh) {
+  double area = 0.0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const Triangle t = mesh.triangle(i);
+    const Eigen::Vector3d a = t.corner[0].cast<double>();
+    area += 0.5 * (t.corner[1].cast<double>() - a).cross(t.corner[2].cast<double>() - a).norm();
+  }
+  return area;
+}
+
+// No crash of this candidate can score more.
+double highest_score(const Scene& scene, const Motion& ego) {
+  const double end = scene.slice_s.back();
+  const auto top_speed = [end](const Body& body, const Motion& motion) {
+    const MotionBound bound = motion.bound(0.0, end);
+    return bound.speed_mps + bound.angular_radps * body.radius_m;
+  };
+  double score = 0.0;
+  switch (scene.measure) {
+    case Measure::polygons:
+      score = static_cast<double>(scene.ego.model->mesh.size());
+      for (const Body& body : scene.actors) score += static_cast<double>(body.model->mesh.size());
+      break;
+    case Measure::area:
+      score = surface_m2(scene.ego.model->mesh);
+      for (const Body& body : scene.actors) score += surface_m2(body.model->mesh);
+      break;
+    case Measure::closing_energy:
+      for (const Body& body : scene.actors) {
+        // The point of contact may lie as far from either origin as both bodies reach.
+        const double speed = top_speed(scene.ego, ego) + top_speed(body, body.motion);
+        score += closing_energy_j(scene.ego.mass_kg, body.mass_kg, 1.001 * speed);
+      }
+      break;
+  }
+  return score;
+}
+
+}  // namespace
+
+CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
+                         RankWork& work) {
+  CandidateResult result;
+  const bool decided = find_hits(scene, candidate.motion, scratch, work);
+  double last_s = std::numeric_limits<double>::infinity();
+  for (const Scratch::Hit& hit : scratch.hits) {
+    if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
+    Contact contact = make_contact(scene, candidate.motion, hit);
+    if (result.contacts.empty()) {
+      last_s = hit.impact.time_s + window_s(scene, contact.closing_speed_mps);
+    }
+    read_damage(scene, candidate.motion, contact, hit.impact.triangle_a, hit.impact.triangle_b,
+                scratch.damage, work);
+    result.contacts.push_back(std::move(contact));
+  }
+  result.collides = !result.contacts.empty();
+  add_grazes(scratch, result);
+  sum_up_ego(scene, result);
+  if (decided) {
+    result.score = score_of(result, scene.measure);
+    result.score_interval = {*result.score, *result.score};
+  } else {
+    result.score_interval = {0.0, highest_score(scene, candidate.motion)};
+  }
+  return result;
+}
+
+}  // namespace crashrank::detail

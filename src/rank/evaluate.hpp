@@ -1,0 +1,41 @@
+#pragma once
+
+#include "rank/damage.hpp"
+#include "rank/scene.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// Memory that evaluating candidates reuses, one for each worker.
+struct Scratch {
+  /// An actor whose swept box meets the ego's, and in which slices.
+  struct Near {
+    std::size_t actor = 0;
+    std::size_t first_slice = 0;
+    std::size_t last_slice = 0;
+  };
+  struct Hit {
+    std::size_t actor = 0;
+    Impact impact;
+  };
+  std::vector<Near> near;
+  std::vector<std::size_t> place;  ///< by actor: where it is in `near`, or none
+  std::vector<Hit> hits;
+  ImpactWorkspace impact;
+  DamageScratch damage;
+};
+
+/// Follows one candidate to its first contact and reads the damage. Depends on the scene and the
+/// candidate alone.
+CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
+                         RankWork& work);
+
+/// The total order of a ranking: whether `a` stands before `b`.
+bool ranks_before(const CandidateResult& a, const CandidateResult& b);
+
+/// Orders the ranking and says how sure its first place is.
+void put_in_order(RankResult& result);
+
+}  // namespace crashrank::detail

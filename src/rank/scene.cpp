@@ -1,0 +1,142 @@
+#include "rank/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace crashrank::detail {
+namespace {
+
+constexpr double slice_length_s = 0.25;
+constexpr double max_slices = 64.0;
+constexpr float infinity_f = std::numeric_limits<float>::infinity();
+
+Body make_body(const Model& model, double mass_kg, Motion motion) {
+  Body body;
+  body.model = &model;
+  body.mass_kg = mass_kg;
+  body.motion = std::move(motion);
+  const Box& root = model.tree.nodes.front().box;
+  const Eigen::Vector3d low = root.min.cast<double>();
+  const Eigen::Vector3d high = root.max.cast<double>();
+  body.center_m = model.tree.axes * (0.5 * (low + high));
+  body.half_axes_m = model.tree.axes * (0.5 * (high - low)).asDiagonal();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
+                               (corner & 4) != 0 ? 1.0 : -1.0);
+    const Eigen::Vector3d point = body.center_m + body.half_axes_m * sign;
+    body.radius_m = std::max(body.radius_m, point.norm());
+  }
+  return body;
+}
+
+Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> models,
+                               std::size_t index) {
+  if (index >= scenario.models.size()) {
+    return make_error(ErrorCode::bad_input, "a body names a model that is not there",
+                      "keep model indices below the number of models");
+  }
+  const ScenarioModel& model = scenario.models[index];
+  if (models[index].tree.empty()) {
+    return Error{ErrorCode::bad_input, model.path, "models." + model.name, "has no triangle",
+                 "give it a mesh with a surface"};
+  }
+  const Eigen::Vector3d extent = models[index].mesh.bounds().extent().cast<double>();
+  return RankedBody{index, model.mass_kg.value_or(guess_mass_kg(model.kind, extent)),
+                    !model.mass_kg.has_value()};
+}
+
+void find_apart_at_start(Scene& scene) {
+  scene.apart_at_start.assign(scene.actors.size(), 1);
+  const Motion standing = Motion::at_rest(scene.ego_start);
+  const Box ego = swept_box(scene.ego, standing, 0.0, 0.0, scene.impact.tolerance_m);
+  ImpactWorkspace workspace;
+  scene.work.box_tests += scene.slices.front().query(ego, [&](std::size_t i) {
+    const Body& actor = scene.actors[i];
+    const Impact impact = initial_state(scene.ego.model->tree, scene.ego_start, actor.model->tree,
+                                        actor.motion.pose_at(0.0), workspace, scene.impact);
+    scene.apart_at_start[i] = impact.state == ImpactState::none ? 1 : 0;
+    scene.work.impact += impact.work;
+  });
+}
+
+}  // namespace
+
+Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
+              double tolerance_m) {
+  const double middle_s = 0.5 * (from_s + until_s);
+  const Pose pose = motion.pose_at(middle_s);
+  const Eigen::Vector3d center = pose.rotation * body.center_m + pose.translation;
+  const Eigen::Vector3d half = (pose.rotation * body.half_axes_m).cwiseAbs().rowwise().sum();
+  const double moved = std::max(motion.reach(body.radius_m, from_s, middle_s),
+                                motion.reach(body.radius_m, middle_s, until_s));
+  // Rotations may be off by 1e-6, and sums round: a millionth of all lengths covers both.
+  const double margin =
+      moved + tolerance_m + 2e-6 * (1.0 + body.radius_m + center.cwiseAbs().maxCoeff());
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] =
+        std::nextafter(static_cast<float>(center[axis] - half[axis] - margin), -infinity_f);
+    box.max[axis] =
+        std::nextafter(static_cast<float>(center[axis] + half[axis] + margin), infinity_f);
+  }
+  return box;
+}
+
+Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
+                         const RankOptions& options, RankResult& result) {
+  if (models.size() != scenario.models.size()) {
+    return make_error(ErrorCode::usage,
+                      "the scenario has " + std::to_string(scenario.models.size()) +
+                          " models, not " + std::to_string(models.size()),
+                      "give one for each, in the same order");
+  }
+  Scene scene;
+  scene.crush = scenario.crush;
+  scene.measure = options.measure.value_or(scenario.measure);
+  scene.impact = options.impact;
+  scene.impact.start_is_apart = false;
+  scene.ego_start = scenario.ego.pose;
+
+  const Result<RankedBody> ego = ranked_body(scenario, models, scenario.ego.model);
+  if (!ego) return ego.error();
+  result.ego = *ego;
+  if (!std::isfinite(ego->mass_kg)) {
+    const ScenarioModel& model = scenario.models[ego->model];
+    return Error{
+        ErrorCode::bad_input,
+        {},
+        "models." + model.name + ".mass_kg",
+        std::string("is missing, and a ") + body_kind_name(model.kind) + " does not move by itself",
+        "give the ego's model a mass"};
+  }
+  scene.ego = make_body(models[ego->model], ego->mass_kg, {});
+
+  for (const ScenarioActor& actor : scenario.actors) {
+    const Result<RankedBody> body = ranked_body(scenario, models, actor.model);
+    if (!body) return body.error();
+    Result<Motion> motion = make_motion(actor);
+    if (!motion) return motion.error();
+    result.actors.push_back(*body);
+    scene.actors.push_back(make_body(models[body->model], body->mass_kg, std::move(*motion)));
+  }
+
+  const double slices = std::clamp(std::ceil(scenario.horizon_s / slice_length_s), 1.0, max_slices);
+  for (double i = 0.0; i <= slices; ++i) {
+    scene.slice_s.push_back(scenario.horizon_s * (i / slices));
+  }
+  scene.slices.resize(scene.slice_s.size() - 1);
+  std::vector<Box> boxes(scene.actors.size());
+  for (std::size_t s = 0; s < scene.slices.size(); ++s) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      boxes[i] = swept_box(scene.actors[i], scene.actors[i].motion, scene.slice_s[s],
+                           scene.slice_s[s + 1], scene.impact.tolerance_m);
+    }
+    scene.slices[s].build(boxes);
+  }
+  find_apart_at_start(scene);
+  return scene;
+}
+
+}  // namespace crashrank::detail

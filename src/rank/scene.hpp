@@ -1,0 +1,53 @@
+#pragma once
+
+#include "crashrank/base/box.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/base/view.hpp"
+#include "crashrank/collide/broad_phase.hpp"
+#include "crashrank/crash/motion.hpp"
+#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// A body with what the search for contacts needs to know of its size.
+struct Body {
+  const Model* model = nullptr;
+  double mass_kg = 0.0;
+  Motion motion;  ///< of actors; the ego's comes with each candidate
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
+  Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
+  double radius_m = 0.0;  ///< no point of the body is further from its origin
+};
+
+/// A box in world coordinates that holds every point of the body at every time of [from, until],
+/// with a margin that covers contact at the tolerance and rounding.
+Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
+              double tolerance_m);
+
+/// What all candidates of a scenario share, prepared once and then only read.
+struct Scene {
+  Body ego;
+  Pose ego_start;
+  std::vector<Body> actors;
+  /// Time is cut into slices; in each the actors' swept boxes are ready to be asked.
+  std::vector<double> slice_s;  ///< ends of the slices, from 0 to the horizon
+  std::vector<BroadPhase> slices;
+  /// Whether the ego at its start is known to be clear of an actor, by actor.
+  std::vector<char> apart_at_start;
+  Crush crush;
+  Measure measure = Measure::polygons;
+  ImpactOptions impact;
+  RankWork work;  ///< spent on preparing
+};
+
+Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
+                         const RankOptions& options, RankResult& result);
+
+}  // namespace crashrank::detail
