@@ -1,0 +1,83 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/result.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+
+namespace crashrank {
+
+/// One bit per worker in the words that say who holds what.
+inline constexpr std::uint32_t max_workers = 64;
+
+struct PoolOptions {
+  std::uint32_t workers = 4;  ///< threads beside the caller's, 0 to `max_workers`
+  bool pinned = false;        ///< worker i stays on processor i modulo their number
+  /// How long an idle thread looks for work before it sleeps, µs, at most 1000. Negative: 20 where
+  /// there are more processors than workers, 0 elsewhere, where spinning would hold up a worker.
+  std::int32_t spin_us = -1;
+};
+
+/// Threads that are started once and fed by one other thread, the owner, which alone calls the
+/// members. A worker takes tasks in the order posted, one running and one waiting at most; idle
+/// workers and a waiting owner sleep after a short spin. Nothing is allocated after the start.
+class CRASHRANK_API WorkerPool {
+public:
+  /// What a worker runs. A task that throws ends the thread's task, not the thread: see `failure`.
+  struct Task {
+    void (*run)(void* context, std::uint32_t worker) = nullptr;
+    void* context = nullptr;
+  };
+
+  /// Errors: usage for numbers out of range, internal when a thread cannot be started.
+  static Result<WorkerPool> start(const PoolOptions& options);
+
+  WorkerPool(WorkerPool&& other) noexcept;
+  WorkerPool& operator=(WorkerPool&& other) noexcept;
+  /// Ends the threads after the task each has in hand; tasks that wait are dropped.
+  ~WorkerPool();
+
+  std::uint32_t size() const noexcept;
+  /// Tasks posted to a worker and not finished: 0, 1 or 2.
+  std::uint32_t outstanding(std::uint32_t worker) const noexcept;
+  /// Hands a task over; `outstanding(worker)` has to be below 2.
+  void post(std::uint32_t worker, Task task) noexcept;
+  /// Sleeps until a task has finished that had not when `seen` was taken from `finished_tasks()`.
+  void wait_beyond(std::uint32_t seen) noexcept;
+  /// Tasks finished by all workers since the start, modulo 2^32.
+  std::uint32_t finished_tasks() const noexcept;
+  /// Waits until nothing is outstanding.
+  void wait_all() noexcept;
+  /// True after a task threw, until `take_failure`. May be asked at any time, also by workers.
+  bool failed() const noexcept;
+  /// What the first task that threw said, as an Error of kind internal; clears it. Call after
+  /// `wait_all`; success when nothing threw.
+  Status take_failure();
+
+  /// Runs `body(index, worker)` once for every index below `count`, on all workers; returns when
+  /// all are done, or with the first failure. `body` is called from several threads at a time. With
+  /// no workers the calling thread does all (as worker 0).
+  template <class Body> Status for_each(std::size_t count, Body&& body) {
+    using Plain = std::remove_reference_t<Body>;
+    return run_indices(
+        count,
+        [](void* opaque, std::size_t index, std::uint32_t worker) {
+          (*static_cast<Plain*>(opaque))(index, worker);
+        },
+        const_cast<std::remove_const_t<Plain>*>(&body));
+  }
+
+private:
+  struct State;
+  using IndexBody = void (*)(void* opaque, std::size_t index, std::uint32_t worker);
+
+  explicit WorkerPool(std::unique_ptr<State> state) noexcept;
+  Status run_indices(std::size_t count, IndexBody body, void* opaque);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace crashrank

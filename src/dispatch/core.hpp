@@ -1,0 +1,92 @@
+#pragma once
+
+#include "crashrank/base/pose.hpp"
+#include "crashrank/collide/box_test.hpp"
+#include "crashrank/collide/collide.hpp"
+#include "crashrank/collide/pair.hpp"
+#include "crashrank/dispatch/pair_lists.hpp"
+#include "dispatch/part_store.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// Where B stands for the jobs of one query.
+struct QueryFrame {
+  std::uint32_t query = 0;
+  Pose b_in_a;
+  BoxTransform to;
+};
+
+/// A pair of nodes to search, in trees or in copied parts of trees.
+struct Job {
+  std::uint32_t query = 0;
+  std::uint32_t frame = 0;   ///< of the batch
+  std::uint32_t part_a = 0;  ///< number in the core's store, or of the body where trees are shared
+  std::uint32_t part_b = 0;
+  NodePair start;            ///< within those
+  std::uint32_t number = 0;  ///< in the order found
+};
+
+/// What is sent to a core en masse: parts to copy first, then jobs, with the poses they need.
+struct Batch {
+  std::vector<Fetch> fetches;
+  std::vector<QueryFrame> frames;
+  std::vector<Job> jobs;
+
+  void clear() noexcept {
+    fetches.clear();
+    frames.clear();
+    jobs.clear();
+  }
+};
+
+/// What measuring a job and a batch gives; see DispatchRecording.
+struct JobTime {
+  std::uint32_t number = 0;
+  std::uint32_t pairs = 0;
+  double seconds = 0.0;
+};
+struct BatchTime {
+  std::uint32_t jobs = 0;
+  std::uint64_t bytes = 0;
+  double seconds = 0.0;
+};
+
+/// A worker's side of the dispatch: its store, its stack, its results. Between batches the main
+/// thread may touch it; while a batch is out only the worker does.
+struct alignas(64) Core {
+  PartStore store;
+  bool private_parts = false;
+  View<const TreeView> shared_trees;  ///< by body, where trees are shared
+  const std::atomic<bool>* cancel = nullptr;
+  const std::atomic<bool>* stop = nullptr;  ///< set when the rest of the dispatch is of no use
+  FoundPairs* found = nullptr;
+  std::vector<NodePair> stack;
+  CollideWork work;
+  bool measure = false;
+  std::vector<JobTime> job_times;
+  std::vector<BatchTime> batch_times;
+  std::uint32_t number = 0;
+  std::uint32_t next_batch = 0;  ///< the worker's; its last bit says which batch comes next
+  std::array<Batch, 2> batches;  ///< the main thread fills one while the other is out
+
+  /// Copies a batch's parts, then works off its jobs. Throws std::bad_alloc.
+  void run(const Batch& batch);
+  /// Searches one pair of nodes below `parts`.
+  void run(const Job& job, const QueryFrame& frame, View<const TreeView> parts);
+
+private:
+  bool ended() const noexcept {
+    return stop->load(std::memory_order_relaxed) ||
+           (cancel != nullptr && cancel->load(std::memory_order_relaxed));
+  }
+};
+
+/// Processor time of the calling thread, s.
+double thread_seconds() noexcept;
+
+}  // namespace crashrank::detail

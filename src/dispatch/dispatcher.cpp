@@ -1,0 +1,350 @@
+#include "crashrank/dispatch/dispatcher.hpp"
+
+#include "dispatch/choose_depth.hpp"
+#include "dispatch/core.hpp"
+#include "dispatch/find_jobs.hpp"
+#include "dispatch/holdings.hpp"
+#include "dispatch/placer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crashrank {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Status check(View<const DispatchQuery> queries, const DispatchOptions& options) {
+  if (options.depth > max_distribution_depth) {
+    return make_error(ErrorCode::usage, "the distribution depth is 16 at most");
+  }
+  if (options.buffer < 1 || options.buffer > 65536) {
+    return make_error(ErrorCode::usage, "a buffer holds 1 to 65536 jobs");
+  }
+  for (const DispatchQuery& query : queries) {
+    if (query.a == nullptr || query.b == nullptr) {
+      return make_error(ErrorCode::usage, "a query needs the part indices of two models");
+    }
+  }
+  return Success{};
+}
+
+}  // namespace
+
+struct Dispatcher::State {
+  explicit State(WorkerPool started)
+      : pool(std::move(started)), cores(std::max(1U, pool.size())), filling(cores.size()) {}
+
+  WorkerPool pool;
+  std::vector<detail::Core> cores;
+  detail::Holdings holdings;
+  std::vector<TreeView> trees;  ///< by body
+  std::vector<NodePair> stack;
+  std::vector<std::pair<Policy, std::unique_ptr<PlacementPolicy>>> policies;
+  std::atomic<bool> stop{false};
+  detail::QueryFrame frame;  ///< of the query whose jobs are being found
+  CollideWork work;          ///< the main thread's
+  bool holdings_valid = false;
+  StoreMode holdings_mode = StoreMode::shared;
+
+  /// Which of a core's two batches is being filled, and whether it is still to be emptied first.
+  struct Filling {
+    std::uint32_t batch = 0;
+    bool stale = true;
+  };
+  std::vector<Filling> filling;
+
+  // What Placer asks of cores.
+  std::uint32_t outstanding(std::uint32_t core) const noexcept { return pool.outstanding(core); }
+  std::uint32_t seen() const noexcept { return pool.finished_tasks(); }
+  void wait(std::uint32_t seen) noexcept { pool.wait_beyond(seen); }
+
+  void fetch(std::uint32_t core, std::uint32_t body, std::uint32_t node) {
+    const IndexedNode& part = holdings.index(body).nodes()[node];
+    open_batch(core).fetches.push_back({trees[body], part.tree_node, part.below, part.slots});
+  }
+
+  void append(std::uint32_t core, const detail::FoundJob& found) {
+    detail::Batch& batch = open_batch(core);
+    if (batch.frames.empty() || batch.frames.back().query != found.query) {
+      batch.frames.push_back(frame);
+    }
+    detail::Job job;
+    job.query = found.query;
+    job.frame = static_cast<std::uint32_t>(batch.frames.size() - 1);
+    job.number = static_cast<std::uint32_t>(found.number);
+    job.part_a = found.body_a;
+    job.part_b = found.body_b;
+    job.start = {holdings.index(found.body_a).nodes()[found.node_a].tree_node,
+                 holdings.index(found.body_b).nodes()[found.node_b].tree_node};
+    if (cores[core].private_parts) {
+      locate(core, found.body_a, found.node_a, job.part_a, job.start.a);
+      locate(core, found.body_b, found.node_b, job.part_b, job.start.b);
+    }
+    batch.jobs.push_back(job);
+  }
+
+  void send(std::uint32_t core) noexcept {
+    pool.post(core, {[](void* context, std::uint32_t worker) {
+                       State& state = *static_cast<State*>(context);
+                       detail::Core& self = state.cores[worker];
+                       self.run(self.batches[self.next_batch++ & 1U]);
+                     },
+                     this});
+    filling[core].batch ^= 1U;
+    filling[core].stale = true;
+  }
+
+  void prepare(View<const DispatchQuery> queries, PairLists& pairs, const DispatchOptions& options,
+               std::uint32_t depth);
+  DispatchEnd distribute(View<const DispatchQuery> queries, const DispatchOptions& options,
+                         DispatchReport& report);
+  DispatchEnd run_here(View<const DispatchQuery> queries, const DispatchOptions& options);
+  void record(DispatchRecording& recording) const;
+
+private:
+  detail::Batch& open_batch(std::uint32_t core) noexcept {
+    detail::Batch& batch = cores[core].batches[filling[core].batch];
+    if (filling[core].stale) batch.clear();
+    filling[core].stale = false;
+    return batch;
+  }
+
+  /// Where the core finds a node in its own store.
+  void locate(std::uint32_t core, std::uint32_t body, std::uint32_t node, std::uint32_t& part,
+              std::uint32_t& start) const {
+    const detail::Holdings::Place place = holdings.place(core, body, node);
+    const IndexedNode& sent = holdings.index(body).nodes()[place.sent_node];
+    part = place.number;
+    start = detail::copied_node(sent.tree_node, sent.below, start);
+  }
+
+  PlacementPolicy& policy(Policy which) {
+    for (auto& [known, policy] : policies) {
+      if (known == which) return *policy;
+    }
+    policies.emplace_back(which, make_policy(which));
+    return *policies.back().second;
+  }
+};
+
+void Dispatcher::State::prepare(View<const DispatchQuery> queries, PairLists& pairs,
+                                const DispatchOptions& options, std::uint32_t depth) {
+  const bool copies = options.store == StoreMode::private_copy;
+  if (!(options.keep_parts && holdings_valid && holdings_mode == options.store)) {
+    holdings.begin(static_cast<std::uint32_t>(cores.size()));
+    for (detail::Core& core : cores) core.store.clear();
+  }
+  holdings_valid = false;
+  holdings_mode = options.store;
+  std::size_t stack_size = 0;
+  for (const DispatchQuery& query : queries) {
+    holdings.body(*query.a, depth);
+    holdings.body(*query.b, depth);
+    stack_size =
+        std::max(stack_size, traversal_stack_size(query.a->tree_depth(), query.b->tree_depth()));
+  }
+  trees.clear();
+  for (std::uint32_t body = 0; body < holdings.bodies(); ++body) {
+    trees.push_back(view_of(holdings.index(body).tree()));
+  }
+  pairs.begin(cores.size(), queries.size());
+  stop.store(false, std::memory_order_relaxed);
+  work = {};
+  for (std::size_t i = 0; i < cores.size(); ++i) {
+    detail::Core& core = cores[i];
+    core.number = static_cast<std::uint32_t>(i);
+    core.private_parts = copies;
+    core.shared_trees = trees;
+    core.cancel = options.cancel;
+    core.stop = &stop;
+    core.found = &pairs.found_[i];
+    if (core.stack.size() < stack_size) core.stack.resize(stack_size);
+    core.work = {};
+    core.measure = options.recording != nullptr;
+    core.job_times.clear();
+    core.batch_times.clear();
+    core.next_batch = 0;
+    filling[i] = {};
+  }
+}
+
+DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
+                                          const DispatchOptions& options, DispatchReport& report) {
+  PlacementPolicy& chosen = policy(options.policy);
+  chosen.begin(pool.size(), options.seed);
+  const bool copies = options.store == StoreMode::private_copy;
+  detail::Placer<State> placer(*this, holdings, chosen, pool.size(),
+                               {options.buffer, options.store_bytes, options.queue_bytes, copies});
+  const bool measure = options.recording != nullptr;
+  double last = measure ? detail::thread_seconds() : 0.0;
+  DispatchEnd end = DispatchEnd::ok;
+  for (std::size_t i = 0; i < queries.size() && end == DispatchEnd::ok; ++i) {
+    const DispatchQuery& query = queries[i];
+    const auto number = static_cast<std::uint32_t>(i);
+    frame = {number, query.b_in_a, box_transform(query.a->frame(), query.b->frame(), query.b_in_a)};
+    detail::FoundJob job;
+    job.query = number;
+    job.body_a = holdings.body(*query.a, report.depth);
+    job.body_b = holdings.body(*query.b, report.depth);
+    const bool done = detail::find_jobs(
+        *query.a, *query.b, frame.to, report.depth, stack, work,
+        [&](std::uint32_t node_a, std::uint32_t node_b) {
+          if (pool.failed()) return false;
+          if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
+            end = DispatchEnd::cancelled;
+            return false;
+          }
+          job.node_a = node_a;
+          job.node_b = node_b;
+          job.number = placer.placed();
+          if (!placer.place(job)) {
+            end = DispatchEnd::out_of_memory;
+            return false;
+          }
+          if (measure) {
+            const double now = detail::thread_seconds();
+            options.recording->jobs.push_back(
+                {number, job.body_a, job.body_b, node_a, node_b, 0, 0, now - last, 0.0});
+            last = now;
+          }
+          return true;
+        });
+    if (!done) break;
+  }
+  if (end == DispatchEnd::ok && !pool.failed()) {
+    placer.send_rest();
+  } else {
+    stop.store(true, std::memory_order_relaxed);
+  }
+  pool.wait_all();
+  if (end == DispatchEnd::ok && options.cancel != nullptr &&
+      options.cancel->load(std::memory_order_relaxed)) {
+    end = DispatchEnd::cancelled;  // a worker may have skipped jobs
+  }
+  report.jobs = placer.placed();
+  report.batches = placer.batches();
+  report.transferred_bytes = placer.transferred_bytes();
+  report.peak_queue_bytes = placer.peak_queue_bytes();
+  return end;
+}
+
+DispatchEnd Dispatcher::State::run_here(View<const DispatchQuery> queries,
+                                        const DispatchOptions& options) {
+  detail::Core& core = cores[0];
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
+      return DispatchEnd::cancelled;
+    }
+    const DispatchQuery& query = queries[i];
+    detail::Job job;
+    job.query = static_cast<std::uint32_t>(i);
+    job.part_a = holdings.body(*query.a, 0);
+    job.part_b = holdings.body(*query.b, 0);
+    frame = {job.query, query.b_in_a,
+             box_transform(query.a->frame(), query.b->frame(), query.b_in_a)};
+    core.run(job, frame, trees);
+  }
+  return DispatchEnd::ok;
+}
+
+void Dispatcher::State::record(DispatchRecording& recording) const {
+  recording.cores = static_cast<std::uint32_t>(cores.size());
+  recording.bodies.clear();
+  for (std::uint32_t body = 0; body < holdings.bodies(); ++body) {
+    recording.bodies.push_back(&holdings.index(body));
+  }
+  recording.batches.clear();
+  for (const detail::Core& core : cores) {
+    for (const detail::JobTime& time : core.job_times) {
+      RecordedJob& job = recording.jobs[time.number];
+      job.core = core.number;
+      job.pairs = time.pairs;
+      job.run_seconds = time.seconds;
+    }
+    for (const detail::BatchTime& time : core.batch_times) {
+      recording.batches.push_back({core.number, time.jobs, time.bytes, time.seconds});
+    }
+  }
+}
+
+Dispatcher::Dispatcher(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Dispatcher::Dispatcher(Dispatcher&& other) noexcept = default;
+Dispatcher& Dispatcher::operator=(Dispatcher&& other) noexcept = default;
+Dispatcher::~Dispatcher() = default;
+
+Result<Dispatcher> Dispatcher::start(const PoolOptions& options) {
+  Result<WorkerPool> pool = WorkerPool::start(options);
+  if (!pool) return pool.error();
+  return Dispatcher(std::make_unique<State>(std::move(*pool)));
+}
+
+WorkerPool& Dispatcher::pool() noexcept { return state_->pool; }
+
+void Dispatcher::forget_parts() {
+  state_->holdings_valid = false;
+  for (detail::Core& core : state_->cores) core.store.release();
+}
+
+Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLists& pairs,
+                                       const DispatchOptions& options) {
+  if (Status status = check(queries, options); !status) return status.error();
+  State& state = *state_;
+  DispatchReport report;
+  try {
+    const Clock::time_point start = Clock::now();
+    report.depth = options.depth != auto_depth ? options.depth
+                                               : detail::choose_depth(queries, state.pool.size());
+    const bool here = state.pool.size() == 0 || report.depth == auto_depth;
+    if (here) report.depth = auto_depth;
+    if (options.recording != nullptr) options.recording->jobs.clear();
+    state.prepare(queries, pairs, options, report.depth);
+    report.end =
+        here ? state.run_here(queries, options) : state.distribute(queries, options, report);
+    pairs.finish();
+    report.seconds = seconds_since(start);
+    if (Status status = state.pool.take_failure(); !status) return status.error();
+    state.holdings_valid = report.end == DispatchEnd::ok;
+    report.work = state.work;
+    for (std::uint32_t i = 0; i < state.cores.size(); ++i) {
+      report.work += state.cores[i].work;
+      report.peak_part_bytes = std::max(report.peak_part_bytes, state.holdings.bytes(i));
+    }
+    for (std::uint32_t body = 0; body < state.holdings.bodies(); ++body) {
+      report.model_bytes += state.holdings.index(body).model_bytes();
+    }
+    if (options.recording != nullptr) {
+      options.recording->depth = report.depth;
+      state.record(*options.recording);
+    }
+    if (options.sorted) {
+      const Clock::time_point sorting = Clock::now();
+      pairs.begin_sort();
+      if (Status status = state.pool.for_each(
+              queries.size(), [&](std::size_t query, std::uint32_t) { pairs.sort_query(query); });
+          !status) {
+        return status.error();
+      }
+      pairs.end_sort();
+      report.sort_seconds = seconds_since(sorting);
+    }
+    return report;
+  } catch (const std::exception& error) {
+    state.stop.store(true, std::memory_order_relaxed);
+    state.pool.wait_all();
+    static_cast<void>(state.pool.take_failure());
+    return make_error(ErrorCode::internal,
+                      std::string("the dispatch could not be carried out: ") + error.what());
+  }
+}
+
+}  // namespace crashrank

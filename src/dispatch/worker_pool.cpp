@@ -1,0 +1,222 @@
+#include "crashrank/dispatch/worker_pool.hpp"
+
+#include "dispatch/pause.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cassert>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#if defined(__linux__)
+#include <pthread.h>
+#include <sched.h>
+#endif
+
+namespace crashrank {
+
+namespace {
+
+/// A ring of two tasks with one writer, the owner, and one reader, the worker. The counters grow
+/// without end; a task's place is its number's last bit.
+struct alignas(64) Mailbox {
+  std::array<WorkerPool::Task, 2> ring{};
+  alignas(64) std::atomic<std::uint32_t> posted{0};
+  alignas(64) std::atomic<std::uint32_t> finished{0};
+};
+
+void pin_to_processor(std::thread& thread, std::uint32_t worker) {
+#if defined(__linux__)
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (pthread_getaffinity_np(thread.native_handle(), sizeof(allowed), &allowed) != 0) return;
+  const int count = CPU_COUNT(&allowed);
+  if (count == 0) return;
+  int skip = static_cast<int>(worker) % count;
+  for (std::size_t processor = 0; processor < CPU_SETSIZE; ++processor) {
+    if (!CPU_ISSET(processor, &allowed) || skip-- != 0) continue;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(processor, &one);
+    pthread_setaffinity_np(thread.native_handle(), sizeof(one), &one);
+    return;
+  }
+#else
+  static_cast<void>(thread);
+  static_cast<void>(worker);
+#endif
+}
+
+}  // namespace
+
+struct WorkerPool::State {
+  explicit State(std::uint32_t workers) : mailboxes(workers) {}
+
+  std::vector<Mailbox> mailboxes;
+  std::vector<std::thread> threads;
+  std::chrono::microseconds spin{0};
+  alignas(64) std::atomic<std::uint32_t> finished{0};
+  alignas(64) std::atomic<bool> stop{false};
+  std::atomic<bool> failed{false};
+  std::mutex failure_lock;
+  Error failure;
+
+  void fail(const char* what) noexcept {
+    const std::lock_guard<std::mutex> hold(failure_lock);
+    if (failed.load(std::memory_order_relaxed)) return;
+    try {
+      failure = make_error(ErrorCode::internal, std::string("a worker failed: ") + what);
+    } catch (...) {  // the words did not fit into memory; the kind says enough
+      failure = Error{};
+    }
+    failed.store(true, std::memory_order_release);
+  }
+
+  void run(const Task& task, std::uint32_t worker) noexcept {
+    try {
+      task.run(task.context, worker);
+    } catch (const std::bad_alloc&) {
+      fail("out of memory");
+    } catch (const std::exception& error) {
+      fail(error.what());
+    } catch (...) {
+      fail("an exception that is no std::exception");
+    }
+  }
+
+  void serve(std::uint32_t worker) noexcept {
+    Mailbox& mail = mailboxes[worker];
+    for (std::uint32_t taken = 0;; ++taken) {
+      detail::wait_until_changed(mail.posted, taken, spin);
+      if (stop.load(std::memory_order_acquire)) return;
+      run(mail.ring[taken & 1U], worker);
+      mail.finished.store(taken + 1, std::memory_order_release);
+      finished.fetch_add(1, std::memory_order_release);
+      finished.notify_one();
+    }
+  }
+
+  void end() noexcept {
+    stop.store(true, std::memory_order_release);
+    for (Mailbox& mail : mailboxes) {
+      mail.posted.fetch_add(1, std::memory_order_release);
+      mail.posted.notify_one();
+    }
+    for (std::thread& thread : threads) thread.join();
+  }
+
+  ~State() { end(); }
+};
+
+WorkerPool::WorkerPool(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+WorkerPool::WorkerPool(WorkerPool&& other) noexcept = default;
+WorkerPool& WorkerPool::operator=(WorkerPool&& other) noexcept = default;
+WorkerPool::~WorkerPool() = default;
+
+Result<WorkerPool> WorkerPool::start(const PoolOptions& options) {
+  if (options.workers > max_workers) {
+    return make_error(ErrorCode::usage, "more than 64 workers", "ask for 0 to 64");
+  }
+  if (options.spin_us > 1000) {
+    return make_error(ErrorCode::usage, "idle workers may spin for 1000 µs at most");
+  }
+  try {
+    auto state = std::make_unique<State>(options.workers);
+    const bool room = std::thread::hardware_concurrency() > options.workers;
+    state->spin = std::chrono::microseconds(options.spin_us >= 0 ? options.spin_us : room ? 20 : 0);
+    state->threads.reserve(options.workers);
+    State* const raw = state.get();
+    for (std::uint32_t worker = 0; worker < options.workers; ++worker) {
+      state->threads.emplace_back([raw, worker] { raw->serve(worker); });
+      if (options.pinned) pin_to_processor(state->threads.back(), worker);
+    }
+    return WorkerPool(std::move(state));
+  } catch (const std::exception& error) {
+    return make_error(ErrorCode::internal,
+                      std::string("a worker thread could not be started: ") + error.what(),
+                      "ask for fewer workers, or raise the limits on threads and memory");
+  }
+}
+
+std::uint32_t WorkerPool::size() const noexcept {
+  return static_cast<std::uint32_t>(state_->mailboxes.size());
+}
+
+std::uint32_t WorkerPool::outstanding(std::uint32_t worker) const noexcept {
+  const Mailbox& mail = state_->mailboxes[worker];
+  return mail.posted.load(std::memory_order_relaxed) -
+         mail.finished.load(std::memory_order_acquire);
+}
+
+void WorkerPool::post(std::uint32_t worker, Task task) noexcept {
+  assert(outstanding(worker) < 2);
+  Mailbox& mail = state_->mailboxes[worker];
+  mail.ring[mail.posted.load(std::memory_order_relaxed) & 1U] = task;
+  mail.posted.fetch_add(1, std::memory_order_release);
+  mail.posted.notify_one();
+}
+
+std::uint32_t WorkerPool::finished_tasks() const noexcept {
+  return state_->finished.load(std::memory_order_acquire);
+}
+
+void WorkerPool::wait_beyond(std::uint32_t seen) noexcept {
+  detail::wait_until_changed(state_->finished, seen, state_->spin);
+}
+
+void WorkerPool::wait_all() noexcept {
+  for (std::uint32_t worker = 0; worker < size(); ++worker) {
+    for (;;) {
+      const std::uint32_t seen = finished_tasks();
+      if (outstanding(worker) == 0) break;
+      wait_beyond(seen);
+    }
+  }
+}
+
+bool WorkerPool::failed() const noexcept { return state_->failed.load(std::memory_order_acquire); }
+
+Status WorkerPool::take_failure() {
+  const std::lock_guard<std::mutex> hold(state_->failure_lock);
+  if (!state_->failed.load(std::memory_order_acquire)) return Success{};
+  state_->failed.store(false, std::memory_order_release);
+  return std::exchange(state_->failure, Error{});
+}
+
+Status WorkerPool::run_indices(std::size_t count, IndexBody body, void* opaque) {
+  struct Shared {
+    IndexBody body;
+    void* opaque;
+    std::size_t count;
+    const State* state;
+    std::atomic<std::size_t> next{0};
+  } shared{body, opaque, count, state_.get()};
+  const Task task{[](void* context, std::uint32_t worker) {
+                    Shared& work = *static_cast<Shared*>(context);
+                    while (!work.state->failed.load(std::memory_order_relaxed)) {
+                      const std::size_t index = work.next.fetch_add(1, std::memory_order_relaxed);
+                      if (index >= work.count) return;
+                      work.body(work.opaque, index, worker);
+                    }
+                  },
+                  &shared};
+  if (size() == 0) {
+    state_->run(task, 0);
+  } else {
+    wait_all();
+    const auto helpers = static_cast<std::uint32_t>(std::min<std::size_t>(size(), count));
+    for (std::uint32_t worker = 0; worker < helpers; ++worker) post(worker, task);
+    wait_all();
+  }
+  return take_failure();
+}
+
+}  // namespace crashrank

@@ -1,0 +1,145 @@
+#include "crashrank/dispatch/worker_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <ctime>
+#include <new>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+PoolOptions with_workers(std::uint32_t workers) {
+  PoolOptions options;
+  options.workers = workers;
+  return options;
+}
+
+TEST(WorkerPool, RunsEveryIndexOnce) {
+  for (const std::uint32_t workers : {0U, 1U, 2U, 4U, 7U}) {
+    Result<WorkerPool> pool = WorkerPool::start(with_workers(workers));
+    ASSERT_TRUE(pool.ok());
+    for (const std::size_t count : {0U, 1U, 3U, 1000U}) {
+      std::vector<std::atomic<int>> calls(count);
+      const Status status = pool->for_each(count, [&](std::size_t index, std::uint32_t worker) {
+        EXPECT_LT(worker, std::max(1U, workers));
+        calls[index].fetch_add(1);
+      });
+      EXPECT_TRUE(status.ok());
+      for (const std::atomic<int>& call : calls) EXPECT_EQ(call.load(), 1);
+    }
+  }
+}
+
+TEST(WorkerPool, TasksOfAWorkerRunInOrderAndAreNeverLost) {
+  Result<WorkerPool> pool = WorkerPool::start(with_workers(3));
+  ASSERT_TRUE(pool.ok());
+  struct Log {
+    std::vector<int> seen;
+  };
+  struct Numbered {
+    Log* log;
+    int number;
+  };
+  constexpr int rounds = 5000;
+  std::vector<Log> logs(3);
+  std::vector<Numbered> tasks;
+  tasks.reserve(3 * rounds);
+  for (int i = 0; i < rounds; ++i) {
+    for (std::uint32_t worker = 0; worker < 3; ++worker) {
+      for (;;) {
+        const std::uint32_t seen = pool->finished_tasks();
+        if (pool->outstanding(worker) < 2) break;
+        pool->wait_beyond(seen);
+      }
+      tasks.push_back({&logs[worker], i});
+      pool->post(worker, {[](void* context, std::uint32_t) {
+                            const Numbered& task = *static_cast<Numbered*>(context);
+                            task.log->seen.push_back(task.number);
+                          },
+                          &tasks.back()});
+    }
+  }
+  pool->wait_all();
+  for (const Log& log : logs) {
+    ASSERT_EQ(log.seen.size(), static_cast<std::size_t>(rounds));
+    for (int i = 0; i < rounds; ++i) EXPECT_EQ(log.seen[static_cast<std::size_t>(i)], i);
+  }
+}
+
+TEST(WorkerPool, EndsAtAnyMoment) {
+  for (int round = 0; round < 200; ++round) {
+    std::atomic<int> ran{0};
+    Result<WorkerPool> pool = WorkerPool::start(with_workers(4));
+    ASSERT_TRUE(pool.ok());
+    for (int i = 0; i < round % 9; ++i) {
+      const auto worker = static_cast<std::uint32_t>(i) % 4;
+      if (pool->outstanding(worker) < 2) {
+        pool->post(worker, {[](void* context, std::uint32_t) {
+                              static_cast<std::atomic<int>*>(context)->fetch_add(1);
+                            },
+                            &ran});
+      }
+    }
+    WorkerPool moved = std::move(*pool);
+    EXPECT_EQ(moved.size(), 4U);
+  }
+}
+
+TEST(WorkerPool, AnExceptionBecomesOneErrorAndThePoolGoesOn) {
+  Result<WorkerPool> pool = WorkerPool::start(with_workers(4));
+  ASSERT_TRUE(pool.ok());
+  Status status = pool->for_each(100, [](std::size_t index, std::uint32_t) {
+    if (index % 10 == 3) throw std::runtime_error("index " + std::to_string(index % 10));
+  });
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::internal);
+  EXPECT_NE(status.error().reason.find("index 3"), std::string::npos);
+
+  status = pool->for_each(4, [](std::size_t, std::uint32_t) { throw std::bad_alloc(); });
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().reason.find("out of memory"), std::string::npos);
+
+  status = pool->for_each(4, [](std::size_t, std::uint32_t) { throw 7; });
+  EXPECT_FALSE(status.ok());
+  EXPECT_FALSE(pool->failed());
+
+  std::atomic<int> ran{0};
+  EXPECT_TRUE(pool->for_each(50, [&](std::size_t, std::uint32_t) { ran.fetch_add(1); }).ok());
+  EXPECT_EQ(ran.load(), 50);
+}
+
+double process_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// A spinning pool of eight would burn up to eight seconds of processor time a second; a sleeping
+// one burns next to none.
+TEST(WorkerPool, IdleWorkersSleep) {
+  Result<WorkerPool> pool = WorkerPool::start(with_workers(8));
+  ASSERT_TRUE(pool.ok());
+  ASSERT_TRUE(pool->for_each(100, [](std::size_t, std::uint32_t) {}).ok());
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const double before = process_seconds();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_LT(process_seconds() - before, 0.03);
+}
+
+TEST(WorkerPool, RefusesNumbersOutOfRange) {
+  EXPECT_FALSE(WorkerPool::start(with_workers(65)).ok());
+  PoolOptions options;
+  options.spin_us = 2000;
+  EXPECT_FALSE(WorkerPool::start(options).ok());
+  options = with_workers(4);
+  options.pinned = true;
+  EXPECT_TRUE(WorkerPool::start(options).ok());
+}
+
+}  // namespace
+}  // namespace crashrank
