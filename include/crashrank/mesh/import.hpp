@@ -1,9 +1,10 @@
 #pragma once
 
+#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/mesh/quality.hpp"
+#include "crashrank/mesh/transform.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
-
-#include <Eigen/Core>
 
 #include <cstddef>
 #include <string>
@@ -11,44 +12,58 @@
 
 namespace crashrank {
 
-/// Which way a file's axis points, for files that do not follow x forward, z up.
-enum class Axis { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
-
-/// How file coordinates become body coordinates: rotate so that `forward` is +x and `up` is +z,
-/// scale, then subtract `origin_m` (in body axes, after scaling).
-struct ImportTransform {
-  double scale = 1.0;  ///< metres per file unit
-  Axis up = Axis::plus_z;
-  Axis forward = Axis::plus_x;
-  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
-};
-
 /// Bounds on what a stranger's file may cost.
 struct ImportLimits {
-  std::size_t file_bytes = std::size_t{512} << 20;
+  std::size_t file_bytes = std::size_t{512} << 20;    ///< of the mesh, and of each file it names
   std::size_t memory_bytes = std::size_t{900} << 20;  ///< address space of the importing process
-  double seconds = 4.0;                               ///< processor and wall time alike
+  double seconds = 4.0;               ///< processor time; wall time may be three times as long
+  double seconds_per_mebibyte = 0.5;  ///< added to `seconds` for the size of the file
   std::size_t triangles = 20'000'000;
   std::size_t vertices = 60'000'000;
+  std::size_t parts = 100'000;
+  std::size_t polygon_corners = 10'000;  ///< of one polygon: cutting it up is quadratic
 };
+
+/// Part names are valid UTF-8 and at most this long; longer ones are cut.
+inline constexpr std::size_t max_part_name_bytes = 256;
 
 struct ImportOptions {
   ImportTransform transform;
   ImportLimits limits;
-  std::string importer;  ///< path of the crashrank-import program; empty: found as documented
+  std::string importer;  ///< path of the crashrank-import program; empty: found as told below
 };
 
 /// A mesh with what had to be said about its file.
 struct ImportedMesh {
   TriangleMesh mesh;
+  MeshQuality quality;
   std::size_t dropped_triangles = 0;  ///< faces that named a vertex that is not there
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;  ///< the file's and the mesh's, one sentence each
 };
 
-/// Reads OBJ, STL, PLY, OFF, glTF/GLB, Collada, FBX, 3DS or AC3D. The parser runs in a process of
-/// its own with the limits above and cannot reach files outside the mesh's folder; what comes back
-/// is checked before it is believed. Blocks until that process has ended. Safe from any thread.
-/// Errors: not_found, bad_input, limit_exceeded; internal when the importer cannot be started.
-Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& options = {});
+/// Reads OBJ, STL, PLY, OFF, glTF/GLB, Collada (.dae), FBX, 3DS or AC3D (.ac), told by the file
+/// name's extension.
+///
+/// Axes stay as the file has them (Collada's up_axis is not applied: say `up`). Lengths are metres
+/// where the format knows its unit (Collada's unit, FBX's UnitScaleFactor, glTF), file units
+/// otherwise; then `transform` is applied. Node transforms are applied in double and rounded to
+/// float32 once; a mirroring node has its triangles turned over, so that outside stays outside.
+/// Triangles come in the order nodes depth first, the node's meshes, their faces; polygons are cut
+/// into triangles in place; points and lines are left out; degenerate and duplicate triangles keep
+/// their places. Vertices are those that triangles use, equal positions merged. Each mesh of a node
+/// is a part, named by node, else mesh, else material, else file; a name met again is told apart
+/// by its mesh or material where that helps ("body/glass") and by a number otherwise ("wheel.2").
+/// Animation, skinning and textures are not looked at.
+///
+/// The parser runs in a process of its own, with the limits above, and opens no file outside the
+/// mesh's folder; what comes back is checked before it is believed. That program, crashrank-import,
+/// is `options.importer`, else the environment's CRASHRANK_IMPORTER, else the one beside the
+/// running executable, else the installed one.
+///
+/// Blocks until that process has ended. Safe from any thread.
+/// Errors: usage (transform), not_found, bad_input, limit_exceeded; internal when the importer
+/// cannot be started.
+CRASHRANK_API Result<ImportedMesh> import_mesh(const std::string& path,
+                                               const ImportOptions& options = {});
 
 }  // namespace crashrank

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "crashrank/mesh/import.hpp"
+#include "mesh/child_process.hpp"
+
+namespace crashrank::detail {
+
+enum class Reply {
+  complete,    ///< `imported` holds a mesh whose indices, parts and numbers are in order
+  refused,     ///< `failure` says why the importer would not have the file
+  broken_off,  ///< the importer ended, or ran out of time, before it had answered
+};
+
+/// Reads the importer's answer and believes none of it unchecked: a parser that a file has taken
+/// over can write anything. Counts are held against the limits before memory is asked for.
+Reply read_reply(ChildProcess& child, const ImportLimits& limits, ImportedMesh& imported,
+                 Error& failure);
+
+}  // namespace crashrank::detail

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "crashrank/base/result.hpp"
+
+#include <cstddef>
+#include <string>
+
+namespace crashrank::importer {
+
+/// What the first look at a file's bytes tells.
+struct Content {
+  std::size_t skip = 0;  ///< bytes of a byte order mark, which some parsers stumble over
+};
+
+/// Refuses files whose bytes contradict their extension, archives (a small one can unpack to
+/// gigabytes), XML entities and units that are no length. Reads the descriptor by position.
+Result<Content> look_at(int descriptor, const std::string& extension);
+
+}  // namespace crashrank::importer

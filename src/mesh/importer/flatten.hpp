@@ -1,0 +1,22 @@
+#pragma once
+
+#include "crashrank/mesh/triangle_mesh.hpp"
+#include "mesh/importer/request.hpp"
+
+#include <cstdint>
+#include <string>
+
+struct aiScene;
+
+namespace crashrank::importer {
+
+/// Removes faces that name a vertex that is not there, and refuses polygons with too many corners.
+/// To be called before the parser's own triangulation, which trusts both. The number removed.
+Result<std::uint64_t> clear_bad_faces(aiScene& scene, const Request& request);
+
+/// Every triangle of every mesh of every node, depth first, in body coordinates. Recursion-free:
+/// the depth of the node tree is the file's to choose. `metres_per_unit` is the file's own unit.
+Result<TriangleMesh> flatten(const aiScene& scene, const Request& request, double metres_per_unit,
+                             const std::string& fallback_name);
+
+}  // namespace crashrank::importer

@@ -1,0 +1,149 @@
+#include "mesh/importer/parse.hpp"
+
+#include "mesh/importer/content.hpp"
+#include "mesh/importer/flatten.hpp"
+#include "mesh/importer/folder_io.hpp"
+#include "mesh/text.hpp"
+
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+namespace crashrank::importer {
+namespace {
+
+bool reads(const aiImporterDesc& description, const std::string& extension) {
+  std::istringstream words(description.mFileExtensions);
+  for (std::string word; words >> word;) {
+    if (word == extension) return true;
+  }
+  return false;
+}
+
+// A file whose extension's parser declines it would be offered to all the others, which nobody
+// asked for: only those of the extension stay. What is taken out is not destroyed, here nor there.
+void keep_parsers_of(Assimp::Importer& importer, const std::string& extension) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const aiImporterDesc* description = importer.GetImporterInfo(i);
+    if (description == nullptr || !reads(*description, extension)) {
+      importer.UnregisterLoader(importer.GetImporter(i));
+    }
+  }
+}
+
+void configure(Assimp::Importer& importer) {
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+#ifdef AI_CONFIG_IMPORT_FBX_IGNORE_UP_DIRECTION
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_IGNORE_UP_DIRECTION, true);
+#endif
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+}
+
+double number_in(const aiMetadata* metadata, const char* key, double otherwise) {
+  double value = otherwise;
+  float single = 0.0F;
+  int whole = 0;
+  if (metadata == nullptr || metadata->Get(key, value)) return value;
+  if (metadata->Get(key, single)) return static_cast<double>(single);
+  if (metadata->Get(key, whole)) return static_cast<double>(whole);
+  return otherwise;
+}
+
+// FBX states centimetres per unit, 1 where it says nothing; the parser reads it and leaves the
+// coordinates alone.
+Result<double> metres_per_unit(const aiScene& scene, const Request& request) {
+  if (request.extension != "fbx") return 1.0;
+  const double centimetres = number_in(scene.mMetaData, "UnitScaleFactor", 1.0);
+  if (!(centimetres > 0.0) || !std::isfinite(centimetres)) {
+    Error error = make_error(ErrorCode::bad_input, "the unit is not a positive length",
+                             "export the file again");
+    error.place = "UnitScaleFactor";
+    return error;
+  }
+  return centimetres / 100.0;
+}
+
+// The 3DS parser turns z up into y up at the root. Axes are the caller's to choose: turned back.
+void undo_axis_change(aiScene& scene, const Request& request) {
+  if (request.extension != "3ds" || scene.mRootNode == nullptr) return;
+  const aiMatrix4x4 back(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
+  scene.mRootNode->mTransformation = back * scene.mRootNode->mTransformation;
+}
+
+Error parser_error(const std::string& text, const FolderIo& files, const Request& request) {
+  if (text.find("bad_alloc") != std::string::npos || text.find("memory") != std::string::npos) {
+    return make_error(ErrorCode::limit_exceeded,
+                      "reading it takes more than " + std::to_string(request.memory_bytes >> 20) +
+                          " MiB of memory",
+                      "the file is damaged or too large");
+  }
+  Error error = make_error(ErrorCode::bad_input, text.empty() ? "the parser gave up" : text,
+                           "export the file again");
+  if (!files.refused().empty()) {
+    error.reason = files.refused().front();
+    error.remedy = "put every file that the mesh names into its folder";
+  }
+  return error;
+}
+
+std::string stem_of(const std::string& name) { return name.substr(0, name.find_last_of('.')); }
+
+}  // namespace
+
+Result<Parsed> parse(const Request& request) {
+  const Result<Content> content = look_at(STDIN_FILENO, request.extension);
+  if (!content) return content.error();
+
+  // Never destroyed: the process ends soon, and the destructor of a very deep node tree recurses.
+  Assimp::Importer& importer = *std::make_unique<Assimp::Importer>().release();
+  auto owned = std::make_unique<FolderIo>(request.path, request.extension, content->skip,
+                                          request.file_bytes);
+  FolderIo& files = *owned;
+  importer.SetIOHandler(owned.release());
+  keep_parsers_of(importer, request.extension);
+  configure(importer);
+  if (importer.ReadFile(files.mesh_name(), 0) == nullptr) {
+    return parser_error(importer.GetErrorString(), files, request);
+  }
+  // The importer hands its scene out as const, and post-processes it in place.
+  aiScene* scene = const_cast<aiScene*>(importer.GetScene());
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    return make_error(ErrorCode::bad_input, "the file holds no scene", "export the file again");
+  }
+  const Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
+  if (!dropped) return dropped.error();
+  if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr) {
+    return parser_error(importer.GetErrorString(), files, request);
+  }
+  undo_axis_change(*scene, request);
+  const Result<double> unit = metres_per_unit(*scene, request);
+  if (!unit) return unit.error();
+  Result<TriangleMesh> mesh =
+      flatten(*scene, request, *unit, detail::to_utf8(stem_of(files.mesh_name()), 200));
+  if (!mesh) return mesh.error();
+  if (mesh->triangles.empty()) {
+    return make_error(ErrorCode::bad_input, "the file holds no triangles",
+                      "export surfaces, not points or lines");
+  }
+
+  Parsed parsed{std::move(*mesh), *dropped, {}};
+  if (*dropped > 0) {
+    parsed.warnings.push_back(
+        std::to_string(*dropped) +
+        (*dropped == 1 ? " face names a vertex that is" : " faces name vertices that are") +
+        " not there and left out; triangles are counted without");
+  }
+  for (const std::string& file : files.refused()) parsed.warnings.push_back(file);
+  return parsed;
+}
+
+}  // namespace crashrank::importer

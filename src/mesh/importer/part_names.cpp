@@ -1,0 +1,78 @@
+#include "mesh/importer/part_names.hpp"
+
+#include "mesh/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace crashrank::importer {
+namespace {
+
+// "nodes[3]", "meshes[0]-1": how glTF's unnamed things are called.
+bool is_indexed(std::string_view name) {
+  for (const std::string_view prefix : {"nodes[", "meshes[", "materials["}) {
+    if (name.substr(0, prefix.size()) != prefix) continue;
+    name.remove_prefix(prefix.size());
+    return std::all_of(name.begin(), name.end(), [](char c) {
+      return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == ']' || c == '-';
+    });
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_generic(std::string_view name) {
+  constexpr std::array<std::string_view, 5> made_up{"DefaultMaterial", "defaultobject", "default",
+                                                    "RootNode", "ROOT"};
+  if (name.empty() || std::find(made_up.begin(), made_up.end(), name) != made_up.end()) {
+    return true;
+  }
+  // "<STL_BINARY>", "<OFFRoot>"
+  if (name.size() > 2 && name.front() == '<' && name.back() == '>' &&
+      std::all_of(name.begin() + 1, name.end() - 1, [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+      })) {
+    return true;
+  }
+  return name.substr(0, 17) == "$ColladaAutoName$" || is_indexed(name);
+}
+
+std::vector<std::string> name_parts(const std::vector<PartLabels>& labels,
+                                    const std::string& fallback, std::size_t limit) {
+  std::vector<std::string> names;
+  std::unordered_set<std::string> taken;
+  std::unordered_map<std::string, std::size_t> next_number;
+  const auto take = [&](const std::string& name) {
+    if (!taken.insert(name).second) return false;
+    names.push_back(name);
+    return true;
+  };
+  for (const PartLabels& label : labels) {
+    std::string base = fallback;
+    for (const std::string* name : {&label.node, &label.mesh, &label.material}) {
+      if (is_generic(*name)) continue;
+      base = *name;
+      break;
+    }
+    // Room for "." and a number.
+    base = detail::to_utf8(base, limit - 24);
+    if (take(base)) continue;
+    bool told_apart = false;
+    for (const std::string* name : {&label.mesh, &label.material}) {
+      if (is_generic(*name) || *name == base) continue;
+      const std::string longer = base + "/" + *name;
+      if (longer.size() > limit - 24 || detail::to_utf8(longer, limit) != longer) continue;
+      told_apart = take(longer);
+      if (told_apart) break;
+    }
+    std::size_t& number = next_number.try_emplace(base, 2).first->second;
+    while (!told_apart) told_apart = take(base + "." + std::to_string(number++));
+  }
+  return names;
+}
+
+}  // namespace crashrank::importer

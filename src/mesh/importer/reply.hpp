@@ -1,0 +1,17 @@
+#pragma once
+
+#include "crashrank/base/result.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace crashrank::importer {
+
+/// Both write the one answer to standard output; false when nobody reads it.
+bool send(const TriangleMesh& mesh, std::uint64_t dropped_triangles,
+          const std::vector<std::string>& warnings);
+bool send(const Error& error);
+
+}  // namespace crashrank::importer

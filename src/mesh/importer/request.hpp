@@ -1,0 +1,29 @@
+#pragma once
+
+#include "crashrank/mesh/transform.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace crashrank::importer {
+
+/// What the library asks of this program, from its command line: KEY=VALUE words.
+struct Request {
+  std::string path;
+  std::string extension;  ///< lower case, without the dot
+  double seconds = 0.0;
+  std::size_t memory_bytes = 0;
+  std::size_t file_bytes = 0;
+  std::size_t triangles = 0;
+  std::size_t vertices = 0;
+  std::size_t parts = 0;
+  std::size_t polygon_corners = 0;
+  std::size_t name_bytes = 0;
+  ImportTransform transform;
+};
+
+/// Errors: usage, naming the word that is missing or wrong.
+Result<Request> parse_request(const std::vector<std::string>& words);
+
+}  // namespace crashrank::importer
