@@ -8,8 +8,8 @@
 namespace crashrank::detail {
 namespace {
 
-constexpr double sample_length_m = 0.1;
-constexpr double max_samples = 32.0;
+constexpr double sample_length_m = 0.25;
+constexpr double max_samples = 16.0;
 
 Box bounds_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
   Box box;
@@ -111,11 +111,6 @@ void finish(const TriangleMesh& mesh, TriangleSet& set, const Pose& pose, BodyDa
 
 }  // namespace
 
-const std::vector<std::uint32_t>& TriangleSet::sorted() {
-  std::sort(members_.begin(), members_.end());
-  return members_;
-}
-
 void sum_up(const TriangleMesh& mesh, BodyDamage& damage) {
   damage.area_m2 = 0.0;
   damage.parts.clear();
@@ -174,6 +169,12 @@ void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
       scratch.other.add(static_cast<std::uint32_t>(pair.b));
     }
   }
+  const Pose b_in_a_first = relative(ego_first, other_first);
+  const Pose b_in_a_last = relative(path.ego_at(1.0), path.other_at(1.0));
+  work.paths += add_passed(scene.ego, inverse(b_in_a_first), inverse(b_in_a_last), other,
+                           scratch.ego, scratch.passed);
+  work.paths +=
+      add_passed(other, b_in_a_first, b_in_a_last, scene.ego, scratch.other, scratch.passed);
   finish(ego_model.mesh, scratch.ego, ego_first, contact.ego);
   finish(other_model.mesh, scratch.other, other_first, contact.other);
   contact.crush_s = path.seconds();

@@ -32,8 +32,8 @@ struct RankOptions {
 
 /// What a crash does to one body.
 struct BodyDamage {
-  /// Triangles that meet the other body, in mesh order, rising. A body that lies inside the other
-  /// at the start counts whole.
+  /// Triangles that meet the other body during the crush, in mesh order, rising. A body that lies
+  /// inside the other at the start counts whole.
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> parts;  ///< indices of the mesh's parts that those belong to, rising
   double area_m2 = 0.0;              ///< of those triangles
@@ -103,6 +103,7 @@ struct RankWork {
   ImpactWork impact;                 ///< looking for first contacts
   std::uint64_t damage_queries = 0;  ///< poses at which intersecting triangles were listed
   CollideWork damage;
+  std::uint64_t paths = 0;  ///< corners whose way through the other body was followed
 
   RankWork& operator+=(const RankWork& other) {
     box_tests += other.box_tests;
@@ -110,6 +111,7 @@ struct RankWork {
     impact += other.impact;
     damage_queries += other.damage_queries;
     damage += other.damage;
+    paths += other.paths;
     return *this;
   }
 };
@@ -134,8 +136,10 @@ struct RankResult {
 /// For every candidate the ego and the actors follow their motions until the horizon. First contact
 /// is found without stepping over any (time_of_impact); a body inside another at the start is a
 /// contact at time 0. Then the bodies move on by the scenario's crush, as if nothing held them, and
-/// every triangle that meets the other body on the way is damaged: looked at every 0.1 m of the way
-/// (at most 32 times), so that a pole cannot pass through unseen.
+/// every triangle that meets the other body on the way is damaged: those that intersect it at one
+/// of the poses looked at, every 0.25 m of the way (at most 16), and those that it passed through,
+/// a corner's way crossing its surface. So a pole leaves a furrow, and a front that is wholly
+/// inside a wall counts.
 ///
 /// Scores add up over the contacts: `polygons` counts damaged triangles of the ego and of all hit,
 /// `area` adds their areas, `closing-energy` the contacts' energies. Order: lower score; then what
