@@ -2,51 +2,55 @@
 
 #include "crashrank/base/view.hpp"
 #include "crashrank/tree/build_records.hpp"
+#include "crashrank/tree/lanes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace crashrank::detail {
 
-/// A place to cut: records whose bin on the axis is at most `bin` go left.
-struct BinnedCut {
+/// A cut that was found: where, what it leaves on both sides, and triangles times size summed.
+struct Cut {
   int axis = -1;  ///< -1: none found
   int bin = 0;
   std::uint32_t left_count = 0;
-  Box left;
-  Box right;
+  float cost = std::numeric_limits<float>::infinity();
+  LaneBox left;
+  LaneBox right;
 };
 
-/// Cuts at the bin border of least `rule.cost`, tried on all three axes, first found among equals.
-/// Records fall into equal bins by the middle of their boxes. Nothing is found where all middles
-/// coincide or the box is too long for a float. O(n + bins).
+/// Cuts a set of records at the border of two of `bins` equal bins where the rule's cost is least,
+/// tried on all three axes, the first of equals. Records fall into bins by the middle of their
+/// boxes. No cut is found where all middles coincide, or where the box is too long or too short for
+/// a float. O(n + bins).
 template <class Rule> class BinnedSplitter {
 public:
-  static constexpr int max_bins = 32;
+  static constexpr int bins = 16;
 
-  BinnedCut find(View<const BuildRecord> records, const Box& box, const Rule& rule, int bins) {
-    BinnedCut best;
-    float best_cost = std::numeric_limits<float>::infinity();
-    measure(records, bins);
-    fill(records);
+  Cut find(View<const BuildRecord> records, const Rule& rule) {
+    Cut best;
+    if (!place_bins(records)) return best;
+    fill_bins(records);
     for (int axis = 0; axis < 3; ++axis) {
-      if (scale_[axis] > 0.0F) sweep(axis, records.size(), box, rule, bins, best, best_cost);
+      if (scale_[axis] > 0.0F) sweep(axis, static_cast<std::uint32_t>(records.size()), rule, best);
     }
     return best;
   }
 
-  /// Moves the left records before the right ones, keeping the order on both sides.
-  void partition(View<BuildRecord> records, const BinnedCut& cut,
-                 std::vector<BuildRecord>& scratch) const {
+  /// Moves the left records before the right ones and keeps the order on both sides. Every record
+  /// is written to both places and the index of the wrong one stays: no branch to be guessed.
+  void partition(View<BuildRecord> records, const Cut& cut, View<BuildRecord> scratch) const {
     std::size_t left = 0;
     std::size_t right = 0;
+    const float origin = origin_[cut.axis];
+    const float scale = scale_[cut.axis];
     for (std::size_t i = 0; i < records.size(); ++i) {
       const BuildRecord record = records[i];
-      const bool goes_left = bin_of(record, cut.axis) <= cut.bin;
+      const float place = ((record.min[cut.axis] + record.max[cut.axis]) - origin) * scale;
+      const bool goes_left = static_cast<int>(place) <= cut.bin;
       records[left] = record;
       scratch[right] = record;
       left += goes_left ? 1U : 0U;
@@ -56,72 +60,70 @@ public:
   }
 
 private:
-  int bin_of(const BuildRecord& record, int axis) const {
-    return std::min(static_cast<int>((middle(record, axis) - origin_[axis]) * scale_[axis]), last_);
-  }
-
-  void measure(View<const BuildRecord> records, int bins) {
+  /// Returns false where no axis can be divided.
+  bool place_bins(View<const BuildRecord> records) {
     LaneBox middles;
     for (const BuildRecord& record : records) {
-      const Lanes m = 0.5F * low(record) + 0.5F * high(record);
+      const Lanes m = middle(lanes(record));
       middles.grow({m, m});
     }
-    last_ = bins - 1;
+    bool divisible = false;
     for (int axis = 0; axis < 3; ++axis) {
       const float length = middles.max[axis] - middles.min[axis];
-      const float scale = static_cast<float>(bins) / length;
+      // A little less than bins / length, so that the last middle rounds into the last bin.
+      const float scale = static_cast<float>(bins) * 0.999999F / length;
       const bool usable = length > 0.0F && std::isfinite(length) && std::isfinite(scale);
-      origin_[axis] = middles.min[axis];
+      // An axis that cannot be divided sends finite middles to bin 0; an overflowed one would not.
+      if (!std::isfinite(middles.min[axis]) || !std::isfinite(middles.max[axis])) return false;
+      origin_[axis] = usable ? middles.min[axis] : 0.0F;
       scale_[axis] = usable ? scale : 0.0F;
+      divisible = divisible || usable;
     }
+    return divisible;
   }
 
-  void fill(View<const BuildRecord> records) {
+  void fill_bins(View<const BuildRecord> records) {
     for (int axis = 0; axis < 3; ++axis) {
-      std::fill_n(counts_[axis], last_ + 1, 0U);
-      std::fill_n(boxes_[axis], last_ + 1, LaneBox{});
+      std::fill_n(counts_[axis], bins, 0U);
+      std::fill_n(boxes_[axis], bins, LaneBox{});
     }
+    const Lanes origin = origin_;
+    const Lanes scale = scale_;
     for (const BuildRecord& record : records) {
-      const LaneBox box{low(record), high(record)};
+      const LaneBox box = lanes(record);
+      const IntLanes bin = __builtin_convertvector((middle(box) - origin) * scale, IntLanes);
       for (int axis = 0; axis < 3; ++axis) {
-        if (!(scale_[axis] > 0.0F)) continue;
-        const auto bin = static_cast<std::size_t>(bin_of(record, axis));
-        ++counts_[axis][bin];
-        boxes_[axis][bin].grow(box);
+        ++counts_[axis][bin[axis]];
+        boxes_[axis][bin[axis]].grow(box);
       }
     }
   }
 
-  void sweep(int axis, std::size_t count, const Box& box, const Rule& rule, int bins,
-             BinnedCut& best, float& best_cost) const {
-    const auto last = static_cast<std::size_t>(bins) - 1;
-    LaneBox right[max_bins];
-    right[last] = boxes_[axis][last];
-    for (std::size_t b = last; b-- > 0;) {
-      right[b] = boxes_[axis][b];
+  void sweep(int axis, std::uint32_t count, const Rule& rule, Cut& best) const {
+    const LaneBox* boxes = boxes_[axis];
+    LaneBox right[bins];
+    right[bins - 1] = boxes[bins - 1];
+    for (int b = bins - 1; b-- > 0;) {
+      right[b] = boxes[b];
       right[b].grow(right[b + 1]);
     }
     LaneBox left;
     std::uint32_t left_count = 0;
-    for (std::size_t b = 0; b < last; ++b) {
-      left_count += counts_[axis][b];
-      left.grow(boxes_[axis][b]);
+    for (int b = 0; b + 1 < bins; ++b) {
       if (counts_[axis][b] == 0) continue;
-      const auto right_count = static_cast<std::uint32_t>(count) - left_count;
-      if (right_count == 0) break;
-      const float cost = rule.cost(axis, box, left, left_count, right[b + 1], right_count);
-      if (cost < best_cost) {
-        best_cost = cost;
-        best = {axis, static_cast<int>(b), left_count, left.box(), right[b + 1].box()};
-      }
+      left_count += counts_[axis][b];
+      if (left_count == count) break;
+      left.grow(boxes[b]);
+      const float cost = static_cast<float>(left_count) * rule.size(left) +
+                         static_cast<float>(count - left_count) * rule.size(right[b + 1]);
+      if (cost < best.cost) best = {axis, b, left_count, cost, left, right[b + 1]};
     }
   }
 
-  LaneBox boxes_[3][max_bins];
-  std::uint32_t counts_[3][max_bins];
-  float origin_[3];
-  float scale_[3];
-  int last_;
+  LaneBox boxes_[3][bins];
+  std::uint32_t counts_[3][bins];
+  Lanes origin_ = all_lanes(0.0F);
+  Lanes scale_ = all_lanes(0.0F);
 };
 
 }  // namespace crashrank::detail

@@ -2,11 +2,10 @@
 
 #include "crashrank/base/result.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/binned_split.hpp"
 #include "crashrank/tree/build_records.hpp"
 #include "crashrank/tree/gaussian_frame.hpp"
+#include "crashrank/tree/greedy_build.hpp"
 #include "crashrank/tree/literal_split.hpp"
-#include "crashrank/tree/median_split.hpp"
 #include "crashrank/tree/split_cost.hpp"
 #include "crashrank/tree/tree_writer.hpp"
 
@@ -22,57 +21,14 @@ struct BuildOptions {
   SplitRule rule = SplitRule::min_relative_segment;
   BoxFrame frame = BoxFrame::world;
   std::uint32_t leaf_size = 4;  ///< most triangles a leaf may hold, 1 to 255; `paper` means 1
+  /// Split no set that fits into a leaf. Otherwise min_relative_segment and sah make smaller leaves
+  /// where that is expected to save tests: fewer triangle pairs tested for more nodes.
+  bool fill_leaves = false;
 };
 
 namespace detail {
 
-/// Beyond this depth every rule but the literal one splits at the median, so that no mesh makes a
-/// tree deeper than this plus 31 levels.
-inline constexpr std::uint32_t balanced_depth = 64;
-
 inline constexpr std::uint32_t max_leaf_size = 255;
-
-template <class Rule>
-void build_binned(TreeWriter& writer, std::vector<BuildRecord>& records, const Rule& rule,
-                  std::uint32_t leaf_size) {
-  constexpr int bins = 16;
-  BinnedSplitter<Rule> splitter;
-  std::vector<BuildRecord> scratch(records.size());
-  OpenNode open{};
-  while (writer.next(open)) {
-    if (open.count <= leaf_size) {
-      writer.leaf(open);
-      continue;
-    }
-    const View<BuildRecord> all(records.data() + open.first, open.count);
-    const Box box = writer.box(open);
-    BinnedCut cut;
-    if (open.depth < balanced_depth) cut = splitter.find(all, box, rule, bins);
-    if (cut.axis >= 0) {
-      splitter.partition(all, cut, scratch);
-      writer.split(open, cut.left_count, cut.left, cut.right);
-    } else {
-      const std::size_t half = median_split(all, longest_axis(box));
-      writer.split(open, static_cast<std::uint32_t>(half), bounds({all.data(), half}),
-                   bounds({all.data() + half, all.size() - half}));
-    }
-  }
-}
-
-inline void build_median(TreeWriter& writer, std::vector<BuildRecord>& records,
-                         std::uint32_t leaf_size) {
-  OpenNode open{};
-  while (writer.next(open)) {
-    if (open.count <= leaf_size) {
-      writer.leaf(open);
-      continue;
-    }
-    const View<BuildRecord> all(records.data() + open.first, open.count);
-    const std::size_t half = median_split(all, longest_axis(writer.box(open)));
-    writer.split(open, static_cast<std::uint32_t>(half), bounds({all.data(), half}),
-                 bounds({all.data() + half, all.size() - half}));
-  }
-}
 
 }  // namespace detail
 
@@ -105,16 +61,20 @@ inline Result<AabbTree> build_tree(const TriangleMesh& mesh, const BuildOptions&
 
   const auto count = static_cast<std::uint32_t>(records.size());
   detail::TreeWriter writer(tree.nodes);
-  writer.open_root(detail::bounds(records), 0, count, 0);
+  writer.open_root(detail::to_box(detail::bounds(records)), 0, count, 0);
+  const detail::LeafLimits leaves{options.leaf_size, options.fill_leaves};
+  std::vector<detail::BuildRecord> scratch;
   switch (options.rule) {
     case SplitRule::min_relative_segment:
-      detail::build_binned(writer, records, detail::RelativeSegmentCost{}, options.leaf_size);
+      scratch.resize(records.size());
+      detail::build_greedily<detail::RelativeSegmentRule>(writer, records, scratch, leaves);
       break;
     case SplitRule::sah:
-      detail::build_binned(writer, records, detail::SurfaceAreaCost{}, options.leaf_size);
+      scratch.resize(records.size());
+      detail::build_greedily<detail::SurfaceAreaRule>(writer, records, scratch, leaves);
       break;
     case SplitRule::median:
-      detail::build_median(writer, records, options.leaf_size);
+      detail::build_by_median(writer, records, options.leaf_size);
       break;
     case SplitRule::paper:
       detail::LiteralBuilder(records).build(writer, records, detail::literal_work_limit);

@@ -3,6 +3,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
+#include "crashrank/tree/lanes.hpp"
 #include "crashrank/tree/projection.hpp"
 
 #include <Eigen/Core>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,44 +21,33 @@ namespace crashrank::detail {
 
 /// What the splitting of one triangle needs: its box along the tree's axes and its index. 32 bytes,
 /// moved as a whole, so that every pass over a node reads memory in order.
-struct BuildRecord {
+struct alignas(16) BuildRecord {
   float min[3];
   std::uint32_t index;
   float max[3];
   std::uint32_t unused;
 };
 
-/// Four lanes for three axes; the fourth is never looked at.
-using Lanes = Eigen::Array4f;
-
-/// Box of a set of records in lanes.
-struct LaneBox {
-  Lanes min = Lanes::Constant(std::numeric_limits<float>::infinity());
-  Lanes max = Lanes::Constant(-std::numeric_limits<float>::infinity());
-
-  void grow(const LaneBox& other) {
-    min = min.min(other.min);
-    max = max.max(other.max);
-  }
-  Box box() const { return {min.head<3>(), max.head<3>()}; }
-};
-
-inline Lanes low(const BuildRecord& record) {
-  return {record.min[0], record.min[1], record.min[2], 0};
-}
-inline Lanes high(const BuildRecord& record) {
-  return {record.max[0], record.max[1], record.max[2], 0};
-}
-
-/// Centre of a record's box on one axis. Halved before the sum: finite for every finite box.
-inline float middle(const BuildRecord& record, int axis) {
-  return 0.5F * record.min[axis] + 0.5F * record.max[axis];
-}
-
-inline Box bounds(View<const BuildRecord> records) {
+/// The box of a record; the fourth lane holds what lies beside it, as whatever float it makes.
+inline LaneBox lanes(const BuildRecord& record) {
   LaneBox box;
-  for (const BuildRecord& record : records) box.grow({low(record), high(record)});
-  return box.box();
+  std::memcpy(&box.min, record.min, sizeof box.min);
+  std::memcpy(&box.max, record.max, sizeof box.max);
+  return box;
+}
+
+/// Twice the centre of a record's box; the fourth lane is zero, because what lies beside the box
+/// would be a denormal number, which some processors multiply slowly.
+inline Lanes middle(const LaneBox& record_box) {
+  Lanes sum = record_box.min + record_box.max;
+  sum[3] = 0.0F;
+  return sum;
+}
+
+inline LaneBox bounds(View<const BuildRecord> records) {
+  LaneBox box;
+  for (const BuildRecord& record : records) box.grow(lanes(record));
+  return box;
 }
 
 /// Refuses meshes no tree can be built over.

@@ -157,8 +157,8 @@ private:
       if (open.count == 1) return inner.leaf(open);
       const View<BuildRecord> all(records.data() + open.first, open.count);
       const std::size_t half = median_split(all, longest_axis(inner.box(open)));
-      inner.split(open, static_cast<std::uint32_t>(half), bounds({all.data(), half}),
-                  bounds({all.data() + half, all.size() - half}));
+      inner.split(open, static_cast<std::uint32_t>(half), to_box(bounds({all.data(), half})),
+                  to_box(bounds({all.data() + half, all.size() - half})));
     });
   }
 

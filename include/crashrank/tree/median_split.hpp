@@ -15,8 +15,8 @@ inline std::size_t median_split(View<BuildRecord> records, int axis) {
   const std::size_t half = records.size() / 2;
   std::nth_element(records.begin(), records.begin() + half, records.end(),
                    [axis](const BuildRecord& a, const BuildRecord& b) {
-                     const float ma = middle(a, axis);
-                     const float mb = middle(b, axis);
+                     const float ma = a.min[axis] + a.max[axis];
+                     const float mb = b.min[axis] + b.max[axis];
                      return ma != mb ? ma < mb : a.index < b.index;
                    });
   return half;

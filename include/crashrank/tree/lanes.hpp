@@ -1,0 +1,38 @@
+#pragma once
+
+#include "crashrank/base/box.hpp"
+
+#include <limits>
+
+namespace crashrank::detail {
+
+/// Four floats worked on at once, three of them axes; the fourth is never looked at. The compilers'
+/// own vectors: one instruction where the processor has it, the same values where it has not.
+using Lanes __attribute__((vector_size(16))) = float;
+using IntLanes __attribute__((vector_size(16))) = int;
+
+inline Lanes all_lanes(float value) { return Lanes{value, value, value, value}; }
+inline Lanes lesser(Lanes a, Lanes b) { return a < b ? a : b; }
+inline Lanes greater(Lanes a, Lanes b) { return a > b ? a : b; }
+
+/// Box in lanes. The default is empty: growing it by a box gives that box.
+struct LaneBox {
+  Lanes min = all_lanes(std::numeric_limits<float>::infinity());
+  Lanes max = all_lanes(-std::numeric_limits<float>::infinity());
+
+  void grow(const LaneBox& other) {
+    min = lesser(min, other.min);
+    max = greater(max, other.max);
+  }
+};
+
+inline LaneBox to_lanes(const Box& box) {
+  return {Lanes{box.min[0], box.min[1], box.min[2], 0.0F},
+          Lanes{box.max[0], box.max[1], box.max[2], 0.0F}};
+}
+
+inline Box to_box(const LaneBox& box) {
+  return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+}
+
+}  // namespace crashrank::detail
