@@ -17,8 +17,8 @@ public:
   View(std::vector<value_type>& items) noexcept : data_(items.data()), size_(items.size()) {}
   template <class U = T, class = std::enable_if_t<std::is_const_v<U>>>
   View(const std::vector<value_type>& items) noexcept : data_(items.data()), size_(items.size()) {}
-  template <class U = T, class = std::enable_if_t<std::is_const_v<U>>>
-  constexpr View(View<value_type> items) noexcept : data_(items.data()), size_(items.size()) {}
+  template <class U, class = std::enable_if_t<std::is_same_v<const U, T>>>
+  constexpr View(View<U> items) noexcept : data_(items.data()), size_(items.size()) {}
 
   constexpr T* data() const noexcept { return data_; }
   constexpr std::size_t size() const noexcept { return size_; }

@@ -50,11 +50,12 @@ public:
     for (std::size_t i = 0; i < records.size(); ++i) {
       const BuildRecord record = records[i];
       const float place = ((record.min[cut.axis] + record.max[cut.axis]) - origin) * scale;
-      const bool goes_left = static_cast<int>(place) <= cut.bin;
+      const auto beyond = static_cast<std::uint32_t>(cut.bin - static_cast<int>(place));
+      const std::size_t goes_right = beyond >> 31U;  // the sign
       records[left] = record;
       scratch[right] = record;
-      left += goes_left ? 1U : 0U;
-      right += goes_left ? 0U : 1U;
+      left += 1 - goes_right;
+      right += goes_right;
     }
     std::copy_n(scratch.begin(), right, records.begin() + left);
   }

@@ -60,6 +60,7 @@ inline Result<AabbTree> build_tree(const TriangleMesh& mesh, const BuildOptions&
   }
 
   const auto count = static_cast<std::uint32_t>(records.size());
+  tree.nodes.reserve(count);
   detail::TreeWriter writer(tree.nodes);
   writer.open_root(detail::to_box(detail::bounds(records)), 0, count, 0);
   const detail::LeafLimits leaves{options.leaf_size, options.fill_leaves};

@@ -36,13 +36,8 @@ inline LaneBox lanes(const BuildRecord& record) {
   return box;
 }
 
-/// Twice the centre of a record's box; the fourth lane is zero, because what lies beside the box
-/// would be a denormal number, which some processors multiply slowly.
-inline Lanes middle(const LaneBox& record_box) {
-  Lanes sum = record_box.min + record_box.max;
-  sum[3] = 0.0F;
-  return sum;
-}
+/// Twice the centre of a record's box.
+inline Lanes middle(const LaneBox& record_box) { return three(record_box.min + record_box.max); }
 
 inline LaneBox bounds(View<const BuildRecord> records) {
   LaneBox box;

@@ -13,7 +13,7 @@ public:
   explicit SurfaceAreaRule(const LaneBox& /*whole*/) {}
 
   float size(const LaneBox& half) const {
-    const Lanes e = half.max - half.min;
+    const Lanes e = half.extent();
     return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
   }
 };
@@ -28,13 +28,13 @@ public:
 class RelativeSegmentRule {
 public:
   explicit RelativeSegmentRule(const LaneBox& whole) {
-    const Lanes e = whole.max - whole.min;
+    const Lanes e = whole.extent();
     per_mean_ = 3.0F / (e[0] + e[1] + e[2]);
   }
 
   float size(const LaneBox& half) const {
     constexpr float probe = 0.25F;
-    const Lanes s = (half.max - half.min) * all_lanes(per_mean_) + all_lanes(probe);
+    const Lanes s = half.extent() * all_lanes(per_mean_) + all_lanes(probe);
     return s[0] * s[1] * s[2];
   }
 
