@@ -1,0 +1,117 @@
+#include "catalogue.hpp"
+
+#include "car.hpp"
+#include "human.hpp"
+#include "motorcycle.hpp"
+#include "roadside.hpp"
+#include "truck.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace generate {
+namespace {
+
+double thousandths(double value) { return std::floor(value * 1000.0 + 0.5) / 1000.0; }
+
+bool stands_out(const std::string& part) { return part.rfind("mirror", 0) == 0; }
+
+}  // namespace
+
+const std::vector<Entry>& catalogue() {
+  static const std::vector<Entry> entries = {
+      {"hatch", "Compact five-door hatchback", "car", 10000, 0.112,
+       [](double edge) { return build_car(hatch_design(), edge); }, 2.55, 1200.0, 1650.0,
+       Vec3(1.53, 0.0, 0.54), "centre of the rear axle on the ground",
+       "Size and mass of the European supermini class: 4.0-4.15 m long, 1,080-1,200 kg empty, a "
+       "driver of 75 kg added. Yaw inertia: mass times the square of 0.29 lengths, the ratio "
+       "published for a mid-size saloon of 1,621 kg and 3,167 kg m2."},
+      {"sedan", "Mid-size four-door saloon", "car", 60000, 0.039,
+       [](double edge) { return build_car(sedan_design(), edge); }, 2.80, 1680.0, 3280.0,
+       Vec3(1.66, 0.0, 0.55), "centre of the rear axle on the ground",
+       "Size and mass of the mid-size class: 4.85-4.90 m long, 1,550-1,650 kg empty, a driver of "
+       "75 kg added. Yaw inertia: as for the hatch, 3,167 kg m2 at 1,621 kg scaled by mass."},
+      {"truck", "Two-axle rigid lorry with box body", "truck", 16000, 0.17, build_truck, 5.50,
+       14000.0, 106000.0, Vec3(2.30, 0.0, 1.45), "centre of the rear axle on the ground",
+       "Distribution lorry of the 18 t class, some two thirds laden; width 2.55 m and the rear "
+       "under-run bar's clearance under 0.55 m are the legal limits in Europe. Yaw inertia: an "
+       "even block of that length and width."},
+      {"motorcycle", "Roadster motorcycle with rider", "motorcycle", 9000, 0.055, build_motorcycle,
+       1.42, 285.0, 58.0, Vec3(0.66, 0.0, 0.72), "centre of the rear axle on the ground",
+       "Middle-weight roadster, 205 kg ready to ride, and a rider of 80 kg with clothing. Yaw "
+       "inertia: radius of gyration of 0.45 m."},
+      {"pedestrian", "Adult of 1.75 m, walking", "pedestrian", 4000, 0.036, build_pedestrian, 0.0,
+       75.0, 1.4, Vec3(0.03, 0.0, 0.97), "on the ground under the pelvis",
+       "Median adult: 1.75 m, 75 kg, centre of mass at 55 % of the height, 1.4 kg m2 about the "
+       "upright axis."},
+      {"jersey_barrier", "New Jersey concrete barrier, one element of 4 m", "barrier", 1600, 0.125,
+       build_jersey_barrier, 0.0, 2420.0, 3300.0, Vec3(0.0, 0.0, 0.31),
+       "on the ground in the middle, the barrier along x",
+       "The classic section: 610 mm wide at the foot, 813 mm high, faces of 55 and 84 degrees; "
+       "0.253 m2 of concrete at 2,400 kg/m3."},
+      {"pole", "Rigid pole of 254 mm diameter", "pole", 1600, 0.09, build_pole, 0.0, 700.0, 6.0,
+       Vec3(0.0, 0.0, 3.0), "on the ground on the pole's axis",
+       "254 mm is the diameter of the rigid pole of side impact tests; 6 m of concrete column."},
+      {"wall", "Brick wall, 10 m by 2.5 m", "building", 1600, 0.28, build_wall, 0.0, 11250.0,
+       93800.0, Vec3(0.125, 0.0, 1.25), "on the ground in the middle of the face towards -x",
+       "A one-brick wall of 0.25 m at 1,800 kg/m3."},
+  };
+  return entries;
+}
+
+Model build_sized(const Entry& entry, std::size_t triangles) {
+  const double wanted = static_cast<double>(triangles);
+  const auto off = [&](const Model& model) {
+    return std::abs(static_cast<double>(model.triangle_count()) / wanted - 1.0);
+  };
+  double edge = entry.start_edge * std::sqrt(static_cast<double>(entry.triangles) / wanted);
+  Model best = entry.build(edge);
+  Model last = best;
+  for (int round = 0; round < 6 && off(best) >= 0.01; ++round) {
+    edge *= std::sqrt(static_cast<double>(last.triangle_count()) / wanted);
+    last = entry.build(edge);
+    if (off(last) < off(best)) best = last;
+  }
+  return best;
+}
+
+std::string about(const Entry& entry) {
+  return entry.title +
+         ", made by crashrank-generate. Apache-2.0.\n# Metres; x forward, y left, z up; origin: " +
+         entry.origin + ".";
+}
+
+std::string to_json(const Entry& entry, const Model& model) {
+  Vec3 low = Vec3::Constant(1e9);
+  Vec3 high = -low;
+  double half_width = 0.0;
+  for (const NamedMesh& part : model.parts) {
+    for (const Vec3& v : part.mesh.vertices) {
+      low = low.cwiseMin(v);
+      high = high.cwiseMax(v);
+      if (!stands_out(part.name)) half_width = std::max(half_width, std::abs(v.y()));
+    }
+  }
+  nlohmann::ordered_json json;
+  json["name"] = entry.name;
+  json["file"] = entry.name + ".obj";
+  json["title"] = entry.title;
+  json["kind"] = entry.kind;
+  json["triangles"] = model.triangle_count();
+  json["parts"] = model.parts.size();
+  json["length_m"] = thousandths(high.x() - low.x());
+  json["width_m"] = thousandths(2.0 * half_width);
+  json["width_over_mirrors_m"] = thousandths(high.y() - low.y());
+  json["height_m"] = thousandths(high.z() - low.z());
+  if (entry.wheelbase_m > 0.0) json["wheelbase_m"] = entry.wheelbase_m;
+  json["mass_kg"] = entry.mass_kg;
+  json["izz_kgm2"] = entry.izz_kgm2;
+  json["center_of_mass_m"] = {entry.center_of_mass_m.x(), entry.center_of_mass_m.y(),
+                              entry.center_of_mass_m.z()};
+  json["origin"] = entry.origin;
+  json["facts"] = entry.facts;
+  return json.dump(2);
+}
+
+}  // namespace generate

@@ -1,0 +1,100 @@
+#include "catalogue.hpp"
+#include "obj.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace {
+
+using generate::Entry;
+using generate::Model;
+using generate::NamedMesh;
+
+std::string contents(const std::string& name) {
+  std::ifstream file(std::string(CRASHRANK_MODELS) + "/" + name, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+const Entry& entry_named(const std::string& name) {
+  for (const Entry& entry : generate::catalogue()) {
+    if (entry.name == name) return entry;
+  }
+  ADD_FAILURE() << "no model named " << name;
+  return generate::catalogue().front();
+}
+
+class Models : public testing::TestWithParam<std::string> {};
+
+TEST_P(Models, CheckedInFileIsWhatTheGeneratorWrites) {
+  const Entry& entry = entry_named(GetParam());
+  const Model model = build_sized(entry, entry.triangles);
+  EXPECT_TRUE(contents(entry.name + ".obj") == to_obj(model, about(entry)))
+      << "run `cmake --build DIR --target data` and look at what changed";
+  const auto table = nlohmann::ordered_json::parse(contents("models.json"));
+  const auto expected = nlohmann::ordered_json::parse(to_json(entry, model));
+  const auto& rows = table.at("models");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), expected), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Models,
+                         testing::Values("hatch", "sedan", "truck", "motorcycle", "pedestrian",
+                                         "jersey_barrier", "pole", "wall"),
+                         [](const auto& tested) { return tested.param; });
+
+TEST(Catalogue, EveryModelIsTested) { EXPECT_EQ(generate::catalogue().size(), 8U); }
+
+TEST(Catalogue, CarsAreOfTheSizeOfRealOnesAndSymmetric) {
+  for (const char* const name : {"hatch", "sedan"}) {
+    const Entry& entry = entry_named(name);
+    const Model model = build_sized(entry, 8000);
+    const auto json = nlohmann::json::parse(to_json(entry, model));
+    EXPECT_NEAR(json.at("length_m").get<double>(), entry.wheelbase_m + 1.8, 0.3) << name;
+    EXPECT_NEAR(json.at("width_m").get<double>(), 1.8, 0.08) << name;
+    EXPECT_NEAR(json.at("height_m").get<double>(), 1.47, 0.04) << name;
+    const auto part = [&](const std::string& wanted) -> const NamedMesh& {
+      const auto found = std::find_if(model.parts.begin(), model.parts.end(),
+                                      [&](const NamedMesh& p) { return p.name == wanted; });
+      EXPECT_NE(found, model.parts.end()) << wanted;
+      return *found;
+    };
+    for (const char* const pair :
+         {"door_front", "door_rear", "fender", "wheel_front", "headlamp", "window_front"}) {
+      const generate::Mesh& left = part(std::string(pair) + "_left").mesh;
+      const generate::Mesh& right = part(std::string(pair) + "_right").mesh;
+      ASSERT_EQ(left.vertices.size(), right.vertices.size()) << pair;
+      for (std::size_t i = 0; i < left.vertices.size(); ++i) {
+        EXPECT_EQ(left.vertices[i].y(), -right.vertices[i].y());
+        EXPECT_EQ(left.vertices[i].x(), right.vertices[i].x());
+        EXPECT_GT(left.vertices[i].y(), 0.0);
+      }
+    }
+    for (const char* const one : {"hood", "roof", "windshield", "front_bumper", "rear_bumper"}) {
+      EXPECT_FALSE(part(one).mesh.triangles.empty());
+    }
+  }
+}
+
+TEST(Catalogue, SameShapeAtFourResolutions) {
+  const Entry& entry = entry_named("hatch");
+  double last_length = 0.0;
+  for (const int wanted : {8000, 16000, 32000, 64000}) {
+    const Model model = build_sized(entry, static_cast<std::size_t>(wanted));
+    const double count = static_cast<double>(model.triangle_count());
+    EXPECT_NEAR(count, wanted, 0.03 * wanted);
+    const auto json = nlohmann::json::parse(to_json(entry, model));
+    const double length = json.at("length_m").get<double>();
+    if (last_length > 0.0) {
+      EXPECT_NEAR(length, last_length, 0.02);
+    }
+    last_length = length;
+  }
+}
+
+}  // namespace
