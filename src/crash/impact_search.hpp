@@ -1,0 +1,108 @@
+#pragma once
+
+#include "crash/relative_motion.hpp"
+
+#include "crashrank/collide/box_test.hpp"
+#include "crashrank/collide/triangle_distance.hpp"
+#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/tree/aabb_tree.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// A state at one of the times that box pairs are looked at, with what boxes need of it.
+struct Knot {
+  bool ready = false;
+  RelativeState state;
+  BoxTransform to;
+  double shrink_b = 1.0;
+  Eigen::Vector3d v;  ///< velocities of the state along the axes of A's boxes
+  Eigen::Vector3d omega_a;
+  Eigen::Vector3d omega_b;
+};
+
+/// Two slots that meet at a time.
+struct Meeting {
+  double time = std::numeric_limits<double>::infinity();
+  std::uint32_t slot_a = 0;
+  std::uint32_t slot_b = 0;
+  TriangleGap gap;  ///< in A's frame at that time
+};
+
+/// When two surfaces count as met, and what has to be proved of all times before.
+struct Thresholds {
+  double stop_m = 0.0;   ///< met when this close
+  double prove_m = 0.0;  ///< proved apart by more than this; below `stop_m`
+};
+
+/// Buffers of a search, kept between searches.
+struct SearchMemory {
+  struct Entry {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    double free_until = 0.0;
+  };
+  std::vector<Entry> stack;
+  std::vector<double> times;
+  std::vector<Knot> knots;
+};
+
+/// Finds the first time in [from, until] at which two moving surfaces are close. One object serves
+/// any number of searches over parts of the stretch of time it was made for.
+class ImpactSearch {
+public:
+  ImpactSearch(const AabbTree& a, const Motion& motion_a, const AabbTree& b, const Motion& motion_b,
+               double from, double until, std::uint64_t max_steps, SearchMemory& memory);
+
+  /// The first meeting in [from, until], `time` infinite when there is none. `known` is a meeting
+  /// that the caller has already: nothing later is looked for. When the steps run out, `exhausted`
+  /// is set and nothing meets before `proved_until`.
+  Meeting first(double from, const Thresholds& thresholds, const Meeting& known = {});
+
+  /// The first meeting of one pair of slots in [from, before); gives up once the pair is seen
+  /// further apart than `give_up_m`.
+  Meeting follow(std::uint32_t slot_a, std::uint32_t slot_b, double from, double before,
+                 const Thresholds& thresholds, double give_up_m);
+
+  RelativeState state_at(double t);
+
+  bool exhausted() const noexcept { return exhausted_; }
+  double proved_until() const noexcept { return proved_until_; }
+  const ImpactWork& work() const noexcept { return work_; }
+
+private:
+  using Entry = SearchMemory::Entry;
+
+  void place_knots(double from);
+  std::size_t knot_index(double t) const;
+  const Knot& knot(std::size_t index);
+  double open_until(const Node& na, const Node& nb, const Knot& k, double limit) const;
+  Entry pair(std::uint32_t a, std::uint32_t b, double free_until);
+  void leaves(const Node& na, const Node& nb, double free_until);
+  double limit() const noexcept;
+  bool spend(std::uint64_t& counter);
+
+  const AabbTree& a_;
+  const Motion& motion_a_;
+  const AabbTree& b_;
+  const Motion& motion_b_;
+  Radii radii_;
+  double until_;
+  std::uint64_t steps_left_;
+  SearchMemory& memory_;
+  Thresholds thresholds_;
+  Meeting best_;
+  RelativeState last_;  ///< the state asked for last: leaves ask for one time often
+  bool last_ready_ = false;
+  bool exhausted_ = false;
+  double proved_until_ = 0.0;
+  ImpactWork work_;
+};
+
+}  // namespace crashrank::detail
