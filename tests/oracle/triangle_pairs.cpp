@@ -75,6 +75,11 @@ LatticePair coplanar(Random& random) {
     const auto axis = static_cast<std::size_t>(random.integer(0, 2));
     u[axis] = 0;
     v[axis] = 0;
+  } else if (random.chance(0.3)) {  // a plane along an axis: edges that share two coordinates
+    const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+    u = {0, 0, 0};
+    u[axis] = random.integer(1, r);
+    v[axis] = 0;
   }
   const std::int64_t grid = random.integer(2, 12);
   LatticePair pair;
@@ -181,19 +186,27 @@ TrianglePair scaled(Random& random, const LatticePair& pair) {
 // Turns every corner with the same rounded arithmetic: equal corners stay equal, planes and lines
 // come out right up to rounding.
 void turn(Random& random, TrianglePair& pair) {
-  const double yaw = random.real(-3.2, 3.2);
-  const double pitch = random.real(-1.6, 1.6);
-  const double cy = std::cos(yaw);
-  const double sy = std::sin(yaw);
-  const double cp = std::cos(pitch);
-  const double sp = std::sin(pitch);
+  const auto turn_in = [](Point& p, std::size_t i, std::size_t j, double angle) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const double first = c * p[i] - s * p[j];
+    p[j] = s * p[i] + c * p[j];
+    p[i] = first;
+  };
+  const bool about_one_axis = random.chance(0.5);
+  const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+  const std::size_t next = (axis + 1) % 3;
+  const std::size_t last = (axis + 2) % 3;
+  const double first_angle = random.real(-3.2, 3.2);
+  const double second_angle = random.real(-3.2, 3.2);
   const double scale = std::max(size(pair.a), size(pair.b));
   const Point shift{random.real(-scale, scale), random.real(-scale, scale),
                     random.real(-scale, scale)};
   for (Triangle* t : {&pair.a, &pair.b}) {
     for (Point& p : *t) {
-      const Point q{cy * p[0] - sy * p[1], sy * p[0] + cy * p[1], p[2]};
-      p = {cp * q[0] + sp * q[2] + shift[0], q[1] + shift[1], cp * q[2] - sp * q[0] + shift[2]};
+      turn_in(p, next, last, first_angle);
+      if (!about_one_axis) turn_in(p, axis, next, second_angle);
+      for (std::size_t k = 0; k < 3; ++k) p[k] += shift[k];
     }
   }
 }
@@ -291,6 +304,26 @@ TrianglePair rounded_touch(Random& random) {
   return pair;
 }
 
+// An edge of A runs along a coordinate axis and B lies in A's plane as double arithmetic finds it:
+// most terms of an orientation vanish, and the error bound has nothing to hide behind.
+TrianglePair along_axis(Random& random) {
+  const double reach = any_size(random);
+  TrianglePair pair;
+  pair.a = triangle_near(random, point_near(random, reach), reach);
+  const auto axis = static_cast<std::size_t>(random.integer(0, 2));
+  pair.a[1] = pair.a[0];
+  pair.a[1][axis] += random.real(-reach, reach);
+  for (Point& p : pair.b) {
+    const double u = random.real(-0.5, 1.5);
+    const double v = random.real(-0.5, 1.5);
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = pair.a[0][k] + u * (pair.a[1][k] - pair.a[0][k]) + v * (pair.a[2][k] - pair.a[0][k]);
+    }
+  }
+  if (random.chance(0.3)) pair.b[0] = triangle_near(random, pair.b[0], reach)[0];
+  return pair;
+}
+
 TrianglePair mixed_sizes(Random& random) {
   TrianglePair pair;
   const double large = any_size(random);
@@ -331,6 +364,8 @@ TrianglePair make(Random& random, Family family) {
       return on_lattice(random, sliver(random));
     case Family::zero_area:
       return on_lattice(random, zero_area(random));
+    case Family::along_axis:
+      return along_axis(random);
     case Family::mixed_sizes:
       return mixed_sizes(random);
   }
@@ -350,8 +385,9 @@ void shuffle(Random& random, TrianglePair& pair) {
 
 const char* name(Family family) {
   static constexpr std::array<const char*, family_count> names{
-      "random",    "coplanar",     "contained",     "shared-vertex", "shared-edge", "vertex-face",
-      "edge-edge", "ulp-touching", "rounded-touch", "sliver",        "zero-area",   "mixed-sizes"};
+      "random",      "coplanar",   "contained",    "shared-vertex", "shared-edge",
+      "vertex-face", "edge-edge",  "ulp-touching", "rounded-touch", "sliver",
+      "zero-area",   "along-axis", "mixed-sizes"};
   return names[static_cast<std::size_t>(family)];
 }
 

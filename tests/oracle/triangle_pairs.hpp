@@ -22,9 +22,10 @@ enum class Family {
   rounded_touch,   ///< contact computed in double, so right up to rounding only
   sliver,          ///< very long and thin
   zero_area,       ///< segments and points, often placed on the other triangle
+  along_axis,      ///< almost coplanar, with an edge along a coordinate axis
   mixed_sizes,     ///< 1e-6 m against up to 1e6 m
 };
-inline constexpr std::size_t family_count = 12;
+inline constexpr std::size_t family_count = 13;
 
 const char* name(Family family);
 
