@@ -37,6 +37,13 @@ Box common(const Box& a, const Box& b) {
   return box.empty() ? Box{} : box;
 }
 
+Box wider(const Box& box, float by) {
+  Box result = box;
+  result.min.array() -= by;
+  result.max.array() += by;
+  return result;
+}
+
 // Where along the crush the bodies are, from first contact (0) to the end of it (1).
 class CrushPath {
 public:
@@ -156,7 +163,9 @@ void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
             ego_is_inside ? scratch.ego : scratch.other);
   }
   const double samples = std::clamp(std::ceil(path.length_m() / sample_length_m), 1.0, max_samples);
-  for (double k = 0.0; k <= samples; ++k) {
+  // Bodies that were apart until now have met with the pair above alone.
+  const double first_sample = contact.state == ImpactState::contact ? 1.0 : 0.0;
+  for (double k = first_sample; k <= samples; ++k) {
     const Pose b_in_a = relative(path.ego_at(k / samples), path.other_at(k / samples));
     const CollideResult result =
         collide(ego_model.tree, other_model.tree, b_in_a, scratch.pairs, scratch.collide);
@@ -184,9 +193,10 @@ void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
   const Box ego_box = bounds_of(ego_model.mesh, contact.ego.triangles);
   const Box other_box = bounds_of(other_model.mesh, contact.other.triangles);
   if (ego_box.empty() || other_box.empty()) return;
+  const auto reach = static_cast<float>(contact.gap_m) + 1e-5F;
   for (const Pose& b_in_a : scratch.met) {
-    contact.ego.region.grow(common(ego_box, carried(b_in_a, other_box)));
-    contact.other.region.grow(common(other_box, carried(inverse(b_in_a), ego_box)));
+    contact.ego.region.grow(common(ego_box, wider(carried(b_in_a, other_box), reach)));
+    contact.other.region.grow(common(other_box, wider(carried(inverse(b_in_a), ego_box), reach)));
   }
 }
 

@@ -1,0 +1,342 @@
+#include "crashrank/rank/rank.hpp"
+
+#include "rank/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using scenes::box_mesh;
+using scenes::of;
+using scenes::Scene;
+
+using Names = std::vector<std::string>;
+
+// A 4 × 2 × 1.5 m car at the origin, driving at 20 m/s, and a wall 47.5 m ahead of its front.
+Scene car_and_wall(std::optional<double> wall_kg = std::nullopt) {
+  Scene scene;
+  scene.scenario.ego.model = scene.add_model("car", box_mesh({2, 1, 0.75}), BodyKind::car, 1500.0);
+  scene.scenario.ego.speed_mps = 20.0;
+  const std::size_t wall =
+      scene.add_model("wall", box_mesh({0.5F, 10, 3}), BodyKind::barrier, wall_kg);
+  scene.add_actor("wall", wall, 50.0, 0.0);
+  return scene;
+}
+
+// Contact is told when the surfaces are a tenth of a millimetre apart.
+constexpr double tolerance_m = 1e-4;
+
+TEST(Rank, ABoxMeetsAWallAfterDistanceOverSpeed) {
+  Scene scene = car_and_wall();
+  scene.add_candidate("keep going", 0.0);
+  scene.add_candidate("brake", -3.0);
+  scene.add_candidate("stop", -8.0);
+  const RankResult result = scene.ranked();
+
+  const CandidateResult& keep = of(result, "keep going");
+  ASSERT_EQ(keep.contacts.size(), 1U);
+  const Contact& contact = keep.contacts[0];
+  EXPECT_EQ(contact.actor, 0U);
+  EXPECT_EQ(contact.state, ImpactState::contact);
+  EXPECT_LE(contact.time_of_impact_s, 47.5 / 20.0);
+  EXPECT_GE(contact.time_of_impact_s, (47.5 - 2 * tolerance_m) / 20.0);
+  EXPECT_LE(contact.gap_m, tolerance_m);
+  EXPECT_NEAR(contact.closing_speed_mps, 20.0, 1e-9);
+  EXPECT_NEAR(contact.normal_speed_mps, 20.0, 1e-3);
+  EXPECT_NEAR(contact.normal.x(), 1.0, 1e-6);
+  EXPECT_NEAR(contact.point_m.x(), 49.5, tolerance_m);
+  EXPECT_NEAR(contact.closing_energy_j, 0.5 * 1500.0 * 400.0, 1e-3);
+  EXPECT_NEAR(contact.crush_s, 0.05, 1e-12);
+  EXPECT_NEAR(contact.crush_m, 1.0, 1e-9);
+  EXPECT_NEAR(contact.ego.pose.translation.x(), 47.5, 2 * tolerance_m);
+
+  const double braked = std::sqrt(400.0 - 2.0 * 3.0 * 47.5);
+  const CandidateResult& brake = of(result, "brake");
+  ASSERT_EQ(brake.contacts.size(), 1U);
+  EXPECT_NEAR(brake.contacts[0].time_of_impact_s, (20.0 - braked) / 3.0, 1e-4);
+  EXPECT_NEAR(brake.contacts[0].closing_speed_mps, braked, 1e-3);
+
+  // 20² / (2·8) = 25 m are enough to stop.
+  const CandidateResult& stop = of(result, "stop");
+  EXPECT_FALSE(stop.collides);
+  EXPECT_EQ(stop.score, 0.0);
+  EXPECT_EQ(&stop, &result.ranking.front());
+}
+
+TEST(Rank, ClosingEnergyUsesTheReducedMass) {
+  for (const double other_kg : {75.0, 1500.0, 40000.0}) {
+    Scene scene = car_and_wall(other_kg);
+    scene.scenario.actors[0].pose = pose_from_angles({50.0, 0.0, 0.0}, M_PI, 0.0, 0.0);
+    scene.scenario.actors[0].speed_mps = 10.0;
+    scene.add_candidate("keep going", 0.0);
+    const RankResult result = scene.ranked(Measure::closing_energy);
+    const double reduced = 1500.0 * other_kg / (1500.0 + other_kg);
+    ASSERT_TRUE(result.ranking[0].score.has_value());
+    EXPECT_NEAR(*result.ranking[0].score, 0.5 * reduced * 900.0, 1e-6 * reduced * 900.0);
+    EXPECT_NEAR(result.ranking[0].contacts[0].time_of_impact_s, 47.5 / 30.0, 1e-5);
+  }
+}
+
+TEST(Rank, DamageIsWhatTheCrushReaches) {
+  Scene scene = car_and_wall();
+  scene.scenario.crush.depth_m = 0.3;
+  scene.add_candidate("keep going", 0.0);
+  const RankResult result = scene.ranked(Measure::area);
+  ASSERT_EQ(result.ranking[0].contacts.size(), 1U);
+  const Contact& contact = result.ranking[0].contacts[0];
+  const Model& car = scene.models[0];
+  const Model& wall = scene.models[1];
+  // The front is inside the wall, the four sides reach into it, the rear does not.
+  EXPECT_EQ(scenes::part_names(car, contact.ego),
+            (Names{"front", "right", "left", "bottom", "top"}));
+  EXPECT_EQ(contact.ego.triangles.size(), 10U);
+  EXPECT_NEAR(contact.ego.area_m2, 2 * 1.5 + 2 * (4 * 1.5) + 2 * (4 * 2), 1e-6);
+  // The car meets the wall's near side alone, 0.3 m deep.
+  EXPECT_EQ(scenes::part_names(wall, contact.other), (Names{"rear"}));
+  EXPECT_EQ(contact.crush_s, 0.0);
+  EXPECT_NEAR(contact.crush_m, 0.3, 1e-9);
+  ASSERT_TRUE(result.ranking[0].score.has_value());
+  EXPECT_NEAR(*result.ranking[0].score, contact.ego.area_m2 + contact.other.area_m2, 1e-9);
+  // Where they meet: the car's front 0.3 m, the wall's middle 2 × 1.5 m.
+  EXPECT_NEAR(contact.ego.region.min.x(), 1.7, 1e-3);
+  EXPECT_NEAR(contact.ego.region.max.x(), 2.0, 1e-3);
+  EXPECT_NEAR(contact.other.region.extent().y(), 2.0, 1e-3);
+  EXPECT_NEAR(contact.other.region.extent().z(), 1.5, 1e-3);
+}
+
+TEST(Rank, DeeperCrushNeverMeansLessDamage) {
+  double before = 0.0;
+  for (const double depth : {0.0, 0.05, 0.2, 0.6, 1.5, 3.0}) {
+    Scene scene = car_and_wall();
+    scene.models.clear();
+    scene.models.push_back(*make_model(box_mesh({2, 1, 0.75}, 12)));
+    scene.models.push_back(*make_model(box_mesh({0.5F, 10, 3}, 20)));
+    scene.scenario.crush.depth_m = depth;
+    scene.add_candidate("keep going", 0.0);
+    const RankResult result = scene.ranked(Measure::area);
+    ASSERT_TRUE(result.ranking[0].score.has_value());
+    EXPECT_GT(*result.ranking[0].score, 0.0) << depth;
+    EXPECT_GE(*result.ranking[0].score, before) << depth;
+    before = *result.ranking[0].score;
+  }
+}
+
+// A pole that passes far into the car between first contact and the end of the crush leaves a
+// furrow: all of the car's front edge to the pole's last place, not the last place alone.
+TEST(Rank, AThinBodyLeavesAFurrow) {
+  Scene scene;
+  scene.scenario.ego.model =
+      scene.add_model("car", box_mesh({2, 1, 0.75}, 40), BodyKind::car, 1500.0);
+  scene.scenario.ego.speed_mps = 30.0;
+  const std::size_t pole = scene.add_model("pole", box_mesh({0.05F, 0.05F, 3}), BodyKind::pole);
+  scene.add_actor("pole", pole, 20.0, 0.3);
+  scene.add_candidate("keep going", 0.0);
+  const RankResult result = scene.ranked();
+  const Contact& contact = result.ranking[0].contacts.at(0);
+  const TriangleMesh& mesh = scene.models[0].mesh;
+  const auto top_damaged = [&](double x) {
+    return std::any_of(contact.ego.triangles.begin(), contact.ego.triangles.end(),
+                       [&](std::uint32_t index) {
+                         Box box;
+                         for (const auto v : mesh.triangles[index]) box.grow(mesh.vertices[v]);
+                         return box.min.z() > 0.74F && box.min.x() <= x && x <= box.max.x() &&
+                                std::abs(box.center().y() - 0.3F) < 0.1F;
+                       });
+  };
+  for (double x = 1.95; x > 0.6; x -= 0.1) EXPECT_TRUE(top_damaged(x)) << x;
+  EXPECT_FALSE(top_damaged(0.2));
+}
+
+TEST(Rank, ABodyInsideAnotherIsAContactAtTimeZero) {
+  Scene scene;
+  scene.scenario.ego.model = scene.add_model("car", box_mesh({2, 1, 0.75}), BodyKind::car, 1500.0);
+  scene.scenario.ego.speed_mps = 5.0;
+  const std::size_t hall = scene.add_model("hall", box_mesh({60, 60, 9}), BodyKind::building);
+  const std::size_t ball =
+      scene.add_model("bag", box_mesh({0.2F, 0.2F, 0.2F}), BodyKind::pedestrian, 10.0);
+  scene.add_candidate("keep going", 0.0);
+
+  scene.add_actor("hall", hall, 0.0, 0.0);
+  RankResult result = scene.ranked();
+  ASSERT_EQ(result.ranking[0].contacts.size(), 1U);
+  EXPECT_EQ(result.ranking[0].contacts[0].state, ImpactState::contained);
+  EXPECT_EQ(result.ranking[0].contacts[0].time_of_impact_s, 0.0);
+  EXPECT_EQ(result.ranking[0].contacts[0].ego.triangles.size(), 12U);
+  EXPECT_TRUE(result.ranking[0].contacts[0].other.triangles.empty());
+  EXPECT_EQ(result.ranking[0].score, 12.0);
+
+  scene.scenario.actors.clear();
+  scene.add_actor("bag", ball, 0.5, 0.0);
+  result = scene.ranked();
+  ASSERT_EQ(result.ranking[0].contacts.size(), 1U);
+  EXPECT_EQ(result.ranking[0].contacts[0].state, ImpactState::contained);
+  EXPECT_EQ(result.ranking[0].contacts[0].other.triangles.size(), 12U);
+  EXPECT_NEAR(result.ranking[0].contacts[0].closing_speed_mps, 5.0, 1e-12);
+}
+
+TEST(Rank, BodiesThatOverlapAtTheStartCollideAtTimeZero) {
+  Scene scene = car_and_wall();
+  scene.scenario.actors[0].pose.translation.x() = 2.2;
+  scene.add_candidate("keep going", 0.0);
+  scene.add_candidate("back out", -8.0);
+  const RankResult result = scene.ranked();
+  for (const CandidateResult& candidate : result.ranking) {
+    ASSERT_EQ(candidate.contacts.size(), 1U);
+    EXPECT_EQ(candidate.contacts[0].state, ImpactState::overlapping);
+    EXPECT_EQ(candidate.contacts[0].time_of_impact_s, 0.0);
+    EXPECT_GT(*candidate.score, 0.0);
+  }
+}
+
+TEST(Rank, WhatHitsNothingSaysSoAndRanksFirst) {
+  Scene scene = car_and_wall();
+  scene.scenario.horizon_s = 3.0;
+  scene.add_candidate("hit", 0.0);
+  scene.add_candidate("stop", -9.0);
+  scene.add_candidate("stop gently", -5.0);
+  const RankResult result = scene.ranked();
+  ASSERT_EQ(result.ranking.size(), 3U);
+  // Equal in every respect: the order of the candidates decides.
+  EXPECT_EQ(result.candidates[result.ranking[0].candidate].name, "stop");
+  EXPECT_EQ(result.candidates[result.ranking[1].candidate].name, "stop gently");
+  EXPECT_EQ(result.candidates[result.ranking[2].candidate].name, "hit");
+  for (int i = 0; i < 2; ++i) {
+    const CandidateResult& clear = result.ranking[static_cast<std::size_t>(i)];
+    EXPECT_FALSE(clear.collides);
+    EXPECT_TRUE(clear.contacts.empty());
+    EXPECT_EQ(clear.score, 0.0);
+    EXPECT_EQ(clear.score_interval.highest, 0.0);
+    EXPECT_TRUE(clear.ego.triangles.empty());
+  }
+  EXPECT_TRUE(result.complete);
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(result.in_race, std::vector<std::size_t>{1U});
+}
+
+TEST(Rank, AScenarioWithoutActorsHarmsNobody) {
+  Scene scene = car_and_wall();
+  scene.scenario.actors.clear();
+  scene.scenario.grid = CandidateGrid{};
+  const RankResult result = scene.ranked();
+  EXPECT_EQ(result.ranking.size(), 225U);
+  for (const CandidateResult& candidate : result.ranking) EXPECT_FALSE(candidate.collides);
+  EXPECT_EQ(result.work.body_pairs, 0U);
+}
+
+TEST(Rank, TheHorizonEndsTheSearch) {
+  Scene scene = car_and_wall();
+  scene.add_candidate("keep going", 0.0);
+  scene.scenario.horizon_s = 2.3;
+  EXPECT_FALSE(scene.ranked().ranking[0].collides);
+  scene.scenario.horizon_s = 2.4;
+  EXPECT_TRUE(scene.ranked().ranking[0].collides);
+}
+
+TEST(Rank, TiesGoToTheLaterContactThenToTheSlower) {
+  // The same damage from equal depths into equal walls, at other times and speeds.
+  Scene scene = car_and_wall();
+  scene.scenario.crush.depth_m = 0.2;
+  scene.add_candidate("as it is", 0.0);
+  scene.add_candidate("later", -2.0);
+  scene.add_candidate("sooner", 2.0);
+  const RankResult result = scene.ranked();
+  EXPECT_EQ(result.ranking[0].score, result.ranking[2].score);
+  EXPECT_EQ(result.candidates[result.ranking[0].candidate].name, "later");
+  EXPECT_EQ(result.candidates[result.ranking[1].candidate].name, "as it is");
+  EXPECT_EQ(result.candidates[result.ranking[2].candidate].name, "sooner");
+}
+
+TEST(Rank, SeveralBodiesHitAtOnceAllCount) {
+  Scene scene;
+  scene.scenario.ego.model = scene.add_model("car", box_mesh({2, 1, 0.75}), BodyKind::car, 1500.0);
+  scene.scenario.ego.speed_mps = 20.0;
+  const std::size_t block =
+      scene.add_model("block", box_mesh({0.3F, 0.3F, 0.5F}), BodyKind::pedestrian, 75.0);
+  scene.add_candidate("keep going", 0.0);
+  scene.add_actor("behind", block, 40.0, 0.0);
+  scene.add_actor("second", block, 20.5, 0.6);
+  scene.add_actor("first", block, 20.0, -0.6);
+  const RankResult result = scene.ranked(Measure::closing_energy);
+  const CandidateResult& keep = result.ranking[0];
+  ASSERT_EQ(keep.contacts.size(), 2U);
+  EXPECT_EQ(keep.contacts[0].actor, 2U);
+  EXPECT_EQ(keep.contacts[1].actor, 1U);
+  EXPECT_NEAR(keep.contacts[1].time_of_impact_s - keep.contacts[0].time_of_impact_s, 0.025, 1e-5);
+  const double one = 0.5 * (1500.0 * 75.0 / 1575.0) * 400.0;
+  EXPECT_NEAR(*keep.score, 2.0 * one, 1e-6 * one);
+  // The car's triangles are counted once however many bodies they meet.
+  std::vector<std::uint32_t> both = keep.contacts[0].ego.triangles;
+  both.insert(both.end(), keep.contacts[1].ego.triangles.begin(),
+              keep.contacts[1].ego.triangles.end());
+  std::sort(both.begin(), both.end());
+  both.erase(std::unique(both.begin(), both.end()), both.end());
+  EXPECT_EQ(keep.ego.triangles, both);
+}
+
+TEST(Rank, MassesAreGivenOrGuessed) {
+  Scene scene = car_and_wall();
+  scene.scenario.models[0].mass_kg.reset();
+  scene.add_candidate("keep going", 0.0);
+  const RankResult result = scene.ranked();
+  EXPECT_TRUE(result.ego.mass_guessed);
+  EXPECT_EQ(result.ego.mass_kg, guess_mass_kg(BodyKind::car, {4.0, 2.0, 1.5}));
+  EXPECT_TRUE(std::isinf(result.actors.at(0).mass_kg));
+}
+
+TEST(Rank, TroubleIsAnErrorThatNamesItsPlace) {
+  Scene scene = car_and_wall();
+  scene.add_candidate("keep going", 0.0);
+  scene.scenario.models[0].kind = BodyKind::pole;
+  scene.scenario.models[0].mass_kg.reset();
+  const Result<RankResult> immovable = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(immovable.ok());
+  EXPECT_EQ(immovable.error().place, "models.car.mass_kg");
+  EXPECT_EQ(immovable.error().code, ErrorCode::bad_input);
+
+  const std::vector<Model> none;
+  EXPECT_EQ(rank(scene.scenario, none).error().code, ErrorCode::usage);
+
+  std::vector<Model> hollow(2);
+  const Result<RankResult> empty = rank(scene.scenario, hollow);
+  ASSERT_FALSE(empty.ok());
+  EXPECT_EQ(empty.error().place, "models.car");
+
+  scene.scenario.actors[0].model = 7;
+  EXPECT_EQ(rank(scene.scenario, scene.models).error().code, ErrorCode::bad_input);
+}
+
+TEST(Rank, AQuestionLeftUndecidedIsToldAsAnInterval) {
+  Scene scene = car_and_wall();
+  scene.models[0] = *make_model(box_mesh({2, 1, 0.75}, 12));
+  scene.add_candidate("keep going", 0.0);
+  scene.add_candidate("stop", -9.0);
+  for (const Measure measure : {Measure::polygons, Measure::area, Measure::closing_energy}) {
+    const RankResult full = scene.ranked(measure);
+    RankOptions options;
+    options.measure = measure;
+    options.impact.max_steps = 1;
+    const RankResult cut = scene.ranked(options);
+    EXPECT_FALSE(cut.complete);
+    for (const CandidateResult& candidate : cut.ranking) {
+      const std::string& name = cut.candidates[candidate.candidate].name;
+      const double score = *of(full, name).score;
+      EXPECT_LE(candidate.score_interval.lowest, score) << name;
+      EXPECT_GE(candidate.score_interval.highest, score) << name;
+      EXPECT_TRUE(std::isfinite(candidate.score_interval.highest));
+      EXPECT_EQ(candidate.score.value_or(score), score);
+    }
+    // Whoever is first in the full answer is still in the race.
+    const std::size_t first = full.ranking[0].candidate;
+    EXPECT_NE(std::find(cut.in_race.begin(), cut.in_race.end(), first), cut.in_race.end());
+  }
+}
+
+}  // namespace
+}  // namespace crashrank
