@@ -44,6 +44,21 @@ struct CollideWorkspace {
   }
 };
 
+/// Pairs below one node of each tree, appended to `pairs`; work added to `work`. The workspace has
+/// to be prepared. As `collide` otherwise.
+inline void collide_below(const AabbTree& a, std::uint32_t a_node, const AabbTree& b,
+                          std::uint32_t b_node, const Pose& b_in_a, const BoxTransform& to,
+                          std::vector<Pair>& pairs, CollideWorkspace& workspace,
+                          const CollideOptions& options, CollideWork& work) {
+  traverse(a, b, to, {a_node, b_node}, workspace.stack, work,
+           [&](const Node& leaf_a, const Node& leaf_b) {
+             return collide_leaves(a, leaf_a, b, leaf_b, b_in_a, work, [&](Pair pair) {
+               pairs.push_back(pair);
+               return !options.any;
+             });
+           });
+}
+
 /// All pairs of triangles of A and B that share a point, or with `options.any` the first one met,
 /// in no particular order. B stands at `b_in_a` in A's frame and its vertices are where `carry`
 /// puts them; on those coordinates the answer is exact: no pair is missed or invented.
@@ -59,14 +74,8 @@ inline CollideResult collide(const AabbTree& a, const AabbTree& b, const Pose& b
   workspace.prepare(a.depth, b.depth);
   pairs.clear();
   CollideResult result;
-  const BoxTransform to = box_transform(a, b, b_in_a);
-  traverse(a, b, to, {0, 0}, workspace.stack, result.work,
-           [&](const Node& leaf_a, const Node& leaf_b) {
-             return collide_leaves(a, leaf_a, b, leaf_b, b_in_a, result.work, [&](Pair pair) {
-               pairs.push_back(pair);
-               return !options.any;
-             });
-           });
+  collide_below(a, 0, b, 0, b_in_a, box_transform(a, b, b_in_a), pairs, workspace, options,
+                result.work);
   result.pairs = pairs.size();
   result.intersecting = !pairs.empty();
   return result;

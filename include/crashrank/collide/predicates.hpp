@@ -101,6 +101,11 @@ inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Ei
                        detail::underflow_floor * (abs_bx + abs_by + abs_bz + 1.0);
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
+  // Equal coordinates make an exact 0 without integers: bodies on level ground share heights.
+  if ((bx == 0.0 && cx == 0.0 && dx == 0.0) || (by == 0.0 && cy == 0.0 && dy == 0.0) ||
+      (bz == 0.0 && cz == 0.0 && dz == 0.0)) {
+    return 0;
+  }
   ++exact_calls;
   return detail::orient3d_exact(a, b, c, d);
 }

@@ -2,23 +2,26 @@
 
 #include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/tree/build.hpp"
+#include "crashrank/tree/wide_tree.hpp"
 
 #include <utility>
 
 namespace crashrank {
 
-/// A body ready for collision: its surface and the tree over it. Prepared once, read by any number
+/// A body ready for collision: its surface and the trees over it. Prepared once, read by any number
 /// of threads.
 struct Model {
   TriangleMesh mesh;
   AabbTree tree;
+  WideTree wide = {};  ///< what the vector engine reads; empty where only the scalar one can serve
 };
 
-/// Builds the tree of a mesh. Errors as `build_tree`.
+/// Builds the trees of a mesh. Errors as `build_tree`.
 inline Result<Model> make_model(TriangleMesh mesh, const BuildOptions& options = {}) {
   Result<AabbTree> tree = build_tree(mesh, options);
   if (!tree) return tree.error();
-  return Model{std::move(mesh), std::move(*tree)};
+  WideTree wide = widen(*tree);
+  return Model{std::move(mesh), std::move(*tree), std::move(wide)};
 }
 
 }  // namespace crashrank

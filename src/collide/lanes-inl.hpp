@@ -1,0 +1,198 @@
+// Eight float lanes on any vector unit of four or eight lanes. Included once per target.
+#if defined(CRASHRANK_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CRASHRANK_LANES_INL
+#undef CRASHRANK_LANES_INL
+#else
+#define CRASHRANK_LANES_INL
+#endif
+
+#include "collide/lane_lists.hpp"
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace crashrank::detail::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using FloatTag = hn::CappedTag<float, 8>;
+using IntTag = hn::RebindToSigned<FloatTag>;
+inline constexpr std::size_t tag_lanes = hn::MaxLanes(FloatTag());
+inline constexpr std::size_t vectors = 8 / tag_lanes;
+
+struct M8 {
+  hn::Mask<FloatTag> m[vectors];
+};
+struct F8 {
+  hn::Vec<FloatTag> v[vectors];
+};
+
+#define CRASHRANK_EACH for (std::size_t k = 0; k < vectors; ++k)
+
+HWY_INLINE F8 load(const float* p) {
+  F8 r;
+  CRASHRANK_EACH r.v[k] = hn::Load(FloatTag(), p + k * tag_lanes);
+  return r;
+}
+HWY_INLINE void store(F8 x, float* p) {
+  CRASHRANK_EACH hn::Store(x.v[k], FloatTag(), p + k * tag_lanes);
+}
+HWY_INLINE F8 all(float x) {
+  F8 r;
+  CRASHRANK_EACH r.v[k] = hn::Set(FloatTag(), x);
+  return r;
+}
+HWY_INLINE F8 operator+(F8 a, F8 b) {
+  CRASHRANK_EACH a.v[k] = hn::Add(a.v[k], b.v[k]);
+  return a;
+}
+HWY_INLINE F8 operator-(F8 a, F8 b) {
+  CRASHRANK_EACH a.v[k] = hn::Sub(a.v[k], b.v[k]);
+  return a;
+}
+HWY_INLINE F8 operator*(F8 a, F8 b) {
+  CRASHRANK_EACH a.v[k] = hn::Mul(a.v[k], b.v[k]);
+  return a;
+}
+/// a·b + c, fused where the target can: every bound in this folder holds either way.
+HWY_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
+  CRASHRANK_EACH a.v[k] = hn::MulAdd(a.v[k], b.v[k], c.v[k]);
+  return a;
+}
+/// a·b − c
+HWY_INLINE F8 mul_sub(F8 a, F8 b, F8 c) {
+  CRASHRANK_EACH a.v[k] = hn::MulSub(a.v[k], b.v[k], c.v[k]);
+  return a;
+}
+HWY_INLINE F8 minimum(F8 a, F8 b) {
+  CRASHRANK_EACH a.v[k] = hn::Min(a.v[k], b.v[k]);
+  return a;
+}
+HWY_INLINE F8 maximum(F8 a, F8 b) {
+  CRASHRANK_EACH a.v[k] = hn::Max(a.v[k], b.v[k]);
+  return a;
+}
+HWY_INLINE F8 absolute(F8 a) {
+  CRASHRANK_EACH a.v[k] = hn::Abs(a.v[k]);
+  return a;
+}
+HWY_INLINE M8 less(F8 a, F8 b) {
+  M8 r;
+  CRASHRANK_EACH r.m[k] = hn::Lt(a.v[k], b.v[k]);
+  return r;
+}
+HWY_INLINE M8 at_most(F8 a, F8 b) {
+  M8 r;
+  CRASHRANK_EACH r.m[k] = hn::Le(a.v[k], b.v[k]);
+  return r;
+}
+HWY_INLINE M8 both(M8 a, M8 b) {
+  CRASHRANK_EACH a.m[k] = hn::And(a.m[k], b.m[k]);
+  return a;
+}
+HWY_INLINE M8 either(M8 a, M8 b) {
+  CRASHRANK_EACH a.m[k] = hn::Or(a.m[k], b.m[k]);
+  return a;
+}
+HWY_INLINE M8 differ(M8 a, M8 b) {
+  CRASHRANK_EACH a.m[k] = hn::Xor(a.m[k], b.m[k]);
+  return a;
+}
+/// yes where the mask is set, no elsewhere
+HWY_INLINE F8 select(M8 mask, F8 yes, F8 no) {
+  CRASHRANK_EACH no.v[k] = hn::IfThenElse(mask.m[k], yes.v[k], no.v[k]);
+  return no;
+}
+HWY_INLINE F8 negate_where(M8 mask, F8 a) {
+  CRASHRANK_EACH a.v[k] = hn::IfThenElse(mask.m[k], hn::Neg(a.v[k]), a.v[k]);
+  return a;
+}
+HWY_INLINE std::uint32_t bits(M8 mask) {
+  std::uint32_t out = 0;
+  CRASHRANK_EACH {
+    std::uint8_t byte[8] = {};
+    hn::StoreMaskBits(FloatTag(), mask.m[k], byte);
+    out |= static_cast<std::uint32_t>(byte[0]) << (k * tag_lanes);
+  }
+  return out;
+}
+
+/// Reads table[lane[i]] for eight numbers i; the lane numbers are loaded once for many tables.
+struct Picker {
+#if HWY_TARGET <= HWY_AVX2
+  hn::Indices256<float> index;
+  HWY_INLINE explicit Picker(const std::int32_t* lanes)
+      : index(hn::IndicesFromVec(FloatTag(), hn::Load(IntTag(), lanes))) {}
+  HWY_INLINE F8 operator()(const float* table) const {
+    return {{hn::TableLookupLanes(hn::Load(FloatTag(), table), index)}};
+  }
+#else
+  const std::int32_t* lanes;
+  HWY_INLINE explicit Picker(const std::int32_t* lanes_in) : lanes(lanes_in) {}
+  HWY_INLINE F8 operator()(const float* table) const {
+    alignas(32) float out[8];
+    for (std::size_t i = 0; i < 8; ++i) out[i] = table[lanes[i]];
+    return load(out);
+  }
+#endif
+};
+
+/// Writes the set bits of a byte as eight numbers, lowest first, then zeros.
+HWY_INLINE void append_lanes(std::uint32_t byte, std::int32_t* out) {
+  using ByteTag = hn::Rebind<std::uint8_t, IntTag>;
+  const std::uint8_t* list = lane_lists.of[byte].data();
+  CRASHRANK_EACH {
+    hn::StoreU(hn::PromoteTo(IntTag(), hn::Load(ByteTag(), list + k * tag_lanes)), IntTag(),
+               out + k * tag_lanes);
+  }
+}
+HWY_INLINE void append_same(std::int32_t value, std::int32_t* out) {
+  CRASHRANK_EACH hn::StoreU(hn::Set(IntTag(), value), IntTag(), out + k * tag_lanes);
+}
+
+/// Three coordinates of eight points or directions; in memory three rows of eight.
+struct V8 {
+  F8 x, y, z;
+};
+HWY_INLINE V8 operator+(V8 a, V8 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE V8 operator-(V8 a, V8 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE F8 dot(V8 a, V8 b) { return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z)); }
+HWY_INLINE V8 cross(V8 a, V8 b) {
+  return {mul_sub(a.y, b.z, a.z * b.y), mul_sub(a.z, b.x, a.x * b.z), mul_sub(a.x, b.y, a.y * b.x)};
+}
+HWY_INLINE V8 minimum(V8 a, V8 b) {
+  return {minimum(a.x, b.x), minimum(a.y, b.y), minimum(a.z, b.z)};
+}
+HWY_INLINE V8 maximum(V8 a, V8 b) {
+  return {maximum(a.x, b.x), maximum(a.y, b.y), maximum(a.z, b.z)};
+}
+HWY_INLINE V8 select(M8 mask, V8 yes, V8 no) {
+  return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
+}
+HWY_INLINE V8 absolute(V8 a) { return {absolute(a.x), absolute(a.y), absolute(a.z)}; }
+HWY_INLINE F8 sum_abs(V8 a) { return absolute(a.x) + absolute(a.y) + absolute(a.z); }
+HWY_INLINE F8 max_abs(V8 a) {
+  return maximum(absolute(a.x), maximum(absolute(a.y), absolute(a.z)));
+}
+HWY_INLINE V8 all3(const float* p) { return {all(p[0]), all(p[1]), all(p[2])}; }
+HWY_INLINE V8 load3(const float* rows) { return {load(rows), load(rows + 8), load(rows + 16)}; }
+HWY_INLINE void store3(V8 v, float* rows) {
+  store(v.x, rows);
+  store(v.y, rows + 8);
+  store(v.z, rows + 16);
+}
+HWY_INLINE V8 pick3(const Picker& pick, const float* rows) {
+  return {pick(rows), pick(rows + 8), pick(rows + 16)};
+}
+/// One entry of three rows in all lanes.
+HWY_INLINE V8 spread3(const float* rows, std::size_t lane) {
+  return {all(rows[lane]), all(rows[8 + lane]), all(rows[16 + lane])};
+}
+
+#undef CRASHRANK_EACH
+
+}  // namespace crashrank::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

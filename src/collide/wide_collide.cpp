@@ -1,0 +1,101 @@
+#include "crashrank/collide/wide_collide.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "collide/wide_collide.cpp"
+#include <hwy/foreach_target.h>
+// The per-target code comes after foreach_target.
+#include "collide/box_kernel-inl.hpp"
+#include "collide/triangle_kernel-inl.hpp"
+
+#if HWY_ONCE
+
+#include "collide/wide_query.hpp"
+
+#include <cmath>
+
+namespace crashrank {
+namespace detail {
+
+HWY_EXPORT(wide_traverse);
+
+/// Margins of the float box test. Let S = |t|₁ + 3·(largest coordinates of A's and B's root box).
+/// With u = 2^-24, a transformed centre is a sum of four terms, none above S in magnitude, from
+/// factors rounded once: off by at most 7·u·S. A transformed half extent: 5·u·S. Their difference
+/// and sum with the other box's: 3·u·S. The double-precision margins of `box_transform` cover the
+/// rest. 32·u·S = 2^-19·S is used.
+WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, double size,
+                     const Pose& pose, bool any) {
+  WideQuery query{};
+  const Eigen::Vector3d back = detail::rotate(to.rotation.transpose(), to.translation);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const auto k = static_cast<std::size_t>(3 * i + j);
+      query.rotation[k] = static_cast<float>(to.rotation(i, j));
+      query.abs_rotation[k] = std::abs(query.rotation[k]);
+      query.body_rotation[k] = static_cast<float>(pose.rotation(i, j));
+    }
+    query.a_from_b[i] = static_cast<float>(to.translation[i]);
+    query.b_from_a[i] = static_cast<float>(-back[i]);
+  }
+  query.margin_a = round_up(0x1p-19 * size + to.margin_a);
+  query.margin_b = round_up(0x1p-19 * size + to.margin_b);
+  query.pose = &pose;
+  // `carry` rounds four times in double; each sum stays below `size`.
+  query.carry_error = round_up(0x1p-50 * size);
+  query.body_boxes = a.tree.axes_are_world && b.tree.axes_are_world;
+  query.a_nodes = a.wide.nodes.data();
+  query.b_nodes = b.wide.nodes.data();
+  query.a_clusters = a.wide.clusters.data();
+  query.b_clusters = b.wide.clusters.data();
+  query.any = any;
+  return query;
+}
+
+}  // namespace detail
+
+CollideResult collide(const Model& a, std::uint32_t a_node, const Model& b, std::uint32_t b_node,
+                      const Pose& b_in_a, std::vector<Pair>& pairs, ModelWorkspace& workspace,
+                      const CollideOptions& options) {
+  pairs.clear();
+  CollideResult result;
+  const BoxTransform to = box_transform(a.tree, b.tree, b_in_a);
+  const Box& a_box = a.tree.nodes[a_node].box;
+  const Box& b_box = b.tree.nodes[b_node].box;
+  result.work.bv_tests = 1;
+  if (!boxes_may_touch(a_box, b_box, to)) return result;
+  workspace.prepare(a, b);
+  const double size =
+      to.translation.cwiseAbs().sum() + 3.0 * (detail::largest_coordinate(a.tree.nodes[0].box) +
+                                               detail::largest_coordinate(b.tree.nodes[0].box));
+  const bool wide = !a.wide.empty() && !b.wide.empty() && size < detail::max_wide_size &&
+                    a.wide.lanes_of[a_node].lanes != 0 && b.wide.lanes_of[b_node].lanes != 0;
+  if (wide) {
+    const detail::WideQuery query = detail::make_query(a, b, to, size, b_in_a, options.any);
+    const WideLanes& from_a = a.wide.lanes_of[a_node];
+    const WideLanes& from_b = b.wide.lanes_of[b_node];
+    detail::WideSink sink{&pairs, workspace.wide.data(), workspace.wide.size(), result.work};
+    HWY_DYNAMIC_DISPATCH(detail::wide_traverse)
+    (query, WideTask{from_a.node, from_b.node, from_a.lanes, from_b.lanes}, sink);
+    result.work = sink.work;
+  } else {
+    collide_below(a.tree, a_node, b.tree, b_node, b_in_a, to, pairs, workspace.scalar, options,
+                  result.work);
+  }
+  result.pairs = pairs.size();
+  result.intersecting = !pairs.empty();
+  return result;
+}
+
+CollideResult collide(const Model& a, const Model& b, const Pose& b_in_a, std::vector<Pair>& pairs,
+                      ModelWorkspace& workspace, const CollideOptions& options) {
+  return collide(a, 0, b, 0, b_in_a, pairs, workspace, options);
+}
+
+const char* vector_unit() noexcept {
+  // The best of the targets that were compiled in and that this processor has: the lowest bit.
+  const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(usable & (~usable + 1));
+}
+
+}  // namespace crashrank
+#endif
