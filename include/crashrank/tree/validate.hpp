@@ -141,6 +141,9 @@ inline Status validate(const AabbTree& tree, const TriangleMesh& mesh) {
   if (next_node != tree.nodes.size()) {
     return detail::broken_node(next_node, "no node leads to it");
   }
+  if (tree.depth != measure_depth(tree.nodes)) {
+    return detail::broken_tree("depth", "it is not that of the deepest leaf");
+  }
   if (next_slot != tree.order.size()) {
     return detail::broken_tree("slot " + std::to_string(next_slot), "no leaf holds it");
   }
