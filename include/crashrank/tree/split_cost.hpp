@@ -21,9 +21,9 @@ public:
 /// The paper's sum of relative segments, carried from one axis to three and weighted. A half's
 /// relative segment on an axis is the length of its projection over the length of the node's,
 /// taken as the mean over the axes, so that axes weigh by their lengths. A cube of relative edge
-/// 1/4 at a random place near the node meets the half's box with a chance proportional to the
-/// product, over the axes, of relative segment + 1/4 (the volume of their Minkowski sum); each half
-/// counts by its share of the triangles. On an axis the cut leaves alone, the halves' segments
+/// 5/16 at a random place near the node meets the half's box with a chance proportional to the
+/// product, over the axes, of relative segment + 5/16 (the volume of their Minkowski sum); each
+/// half counts by its share of the triangles. On an axis the cut leaves alone, the halves' segments
 /// shrink as well, which the sum over the split axis alone does not see.
 class RelativeSegmentRule {
 public:
@@ -33,7 +33,7 @@ public:
   }
 
   float size(const LaneBox& half) const {
-    constexpr float probe = 0.25F;
+    constexpr float probe = 0.3125F;
     const Lanes s = half.extent() * all_lanes(per_mean_) + all_lanes(probe);
     return s[0] * s[1] * s[2];
   }
