@@ -1,3 +1,7 @@
+// Four vector units span what matters: SSE2, SSE4, AVX2, AVX-512. Those between only cost build
+// time.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+
 #include "crashrank/collide/wide_collide.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,3 +1,6 @@
+// The vector units that the library is built for.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+
 #include "crashrank/collide/wide_collide.hpp"
 
 #include "crashrank/collide/pair_hash.hpp"
