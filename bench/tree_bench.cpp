@@ -64,7 +64,7 @@ NamedMesh car_like(std::size_t triangles) {
   const auto power = [](double x) { return std::copysign(std::pow(std::abs(x), 0.4), x); };
   const double body = 0.8 * static_cast<double>(triangles) / 2.0;
   const auto side = static_cast<std::uint32_t>(std::sqrt(body));
-  add_surface(result.mesh, side, side, [&](double u, double v) {
+  add_surface(result.mesh, side, side, [&](double u, double v) -> Eigen::Vector3f {
     const double polar = pi * u * u;
     const double turn = 2.0 * pi * v;
     return Eigen::Vector3d(2.3 * power(std::cos(polar)),
@@ -75,7 +75,7 @@ NamedMesh car_like(std::size_t triangles) {
   const auto wheel = static_cast<std::uint32_t>(std::sqrt(body / 16.0));
   for (const double x : {-1.3, 1.4}) {
     for (const double y : {-0.85, 0.85}) {
-      add_surface(result.mesh, wheel, wheel, [&](double u, double v) {
+      add_surface(result.mesh, wheel, wheel, [&](double u, double v) -> Eigen::Vector3f {
         const double ring = 0.25 + 0.08 * std::cos(2.0 * pi * v);
         return Eigen::Vector3d(x + ring * std::cos(2.0 * pi * u), y + 0.1 * std::sin(2.0 * pi * v),
                                0.33 + ring * std::sin(2.0 * pi * u))
