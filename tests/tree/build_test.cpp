@@ -180,8 +180,10 @@ TEST(Build, ReinsertionKeepsTheTreeValidAndMakesBoxesSmaller) {
       ASSERT_TRUE(status.ok()) << status.error().message();
       ASSERT_EQ(after->nodes.size(), before->nodes.size());
       ASSERT_LE(inner_surface(*after), inner_surface(*before) * (1 + 1e-6));
-      if (n == 600 && options.rule == SplitRule::median) {
-        ASSERT_LT(inner_surface(*after), 0.98 * inner_surface(*before));
+      if (n == 600) {
+        // The literal rule leaves much to be mended, the others a little.
+        const double most = options.rule == SplitRule::paper ? 0.8 : 0.999;
+        ASSERT_LT(inner_surface(*after), most * inner_surface(*before));
       }
     }
   }
