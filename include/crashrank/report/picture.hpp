@@ -1,0 +1,58 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/pose.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/base/view.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+
+/// Rows from the top, pixels from the left, three bytes sRGB each.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// A body in a picture.
+struct PictureBody {
+  const TriangleMesh* mesh = nullptr;  ///< not null
+  Pose pose;                           ///< body to world
+  View<const std::uint32_t> damaged;   ///< triangles drawn in the colour of damage
+};
+
+struct PictureOptions {
+  int width_px = 1200;
+  int height_px = 750;
+  /// Where the camera stands, seen from the middle of the scene, in world axes: degrees
+  /// counter-clockwise from +x, and degrees above the ground.
+  double azimuth_deg = 40.0;
+  double elevation_deg = 22.0;
+  double field_of_view_deg = 28.0;  ///< across the picture's width
+  bool edges = true;                ///< draw the triangles' edges where they are large enough
+};
+
+/// Draws the bodies in perspective on a light ground, shaded, with damaged triangles in red: the
+/// still picture that figure 1 of Wiseman & Grinberg 2016 is. Parts whose names speak of glass,
+/// tyres or lamps get colours of such; the first body's paint is blue, the others' sand. The same
+/// input draws the same picture on one machine; colours may differ by a step between machines.
+/// Cost: a second or two for 1200 x 750 and 100,000 triangles; memory about 100 bytes a pixel.
+/// Errors: usage for no triangle, a width or height outside 16 to 4096, angles that are not finite,
+/// a field of view outside 1 to 120 or an elevation outside -89 to 89 degrees.
+CRASHRANK_API Result<Image> draw_picture(View<const PictureBody> bodies,
+                                         const PictureOptions& options = {});
+
+/// Where a body's damage lies: the mean direction of its damaged triangles, seen from the body's
+/// middle, as an azimuth in world axes; 0 without damage. A camera 30 to 60 degrees beside it
+/// shows the damage and the body's length.
+CRASHRANK_API double azimuth_of_damage_deg(const PictureBody& body);
+
+/// The image as a PNG file's bytes. Errors: internal when libpng fails.
+CRASHRANK_API Result<std::string> png(const Image& image);
+
+}  // namespace crashrank

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/view.hpp"
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/scenario.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <cstddef>
+#include <string>
+
+namespace crashrank {
+
+// A ranking told to programs and to people. Both take what `rank` was given and what it answered.
+
+/// One JSON document, keys in a fixed order, numbers in the shortest form that reads back to the
+/// same bits; what is infinite or not known is null. Every candidate is listed, best first. In a
+/// candidate's entry `other` and the time and speed beside it are those of its first contact, the
+/// damage of `ego` and `other` that of all its contacts together; each contact tells its own.
+/// Units stand in the keys; angles are degrees.
+CRASHRANK_API std::string ranking_json(const Scenario& scenario, View<const Model> models,
+                                       const RankResult& result);
+
+struct RankingTextOptions {
+  std::size_t top = 0;   ///< most candidates shown, 0 for all
+  bool colours = false;  ///< ANSI codes for the titles
+};
+
+/// A table, best candidate first, and a line about what is not in it. Names are escaped for a
+/// terminal.
+CRASHRANK_API std::string ranking_text(const Scenario& scenario, View<const Model> models,
+                                       const RankResult& result,
+                                       const RankingTextOptions& options = {});
+
+}  // namespace crashrank

@@ -1,0 +1,23 @@
+#include "crashrank/report/picture.hpp"
+
+#include <png.h>
+
+namespace crashrank {
+
+Result<std::string> png(const Image& image) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(header), '\0');
+  png_alloc_size_t size = bytes.size();
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) ==
+      0) {
+    return make_error(ErrorCode::internal, std::string("cannot encode a PNG: ") + header.message);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace crashrank

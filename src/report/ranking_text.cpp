@@ -1,0 +1,91 @@
+#include "crashrank/report/escape.hpp"
+#include "crashrank/report/ranking.hpp"
+#include "crashrank/report/table.hpp"
+#include "report/damage_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crashrank {
+namespace {
+
+using detail::DamageSummary;
+
+/// The first few names, and how many more there are.
+std::string shortened(const std::vector<std::string>& names) {
+  constexpr std::size_t shown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(shown, names.size()); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  if (names.size() > shown) text += fmt::format(" +{}", names.size() - shown);
+  return text;
+}
+
+std::string score_text(const CandidateResult& ranked) {
+  if (ranked.score) return fmt::format("{:.5g}", *ranked.score);
+  return fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
+                     ranked.score_interval.highest);
+}
+
+std::vector<std::string> cells(const Scenario& scenario, View<const Model> models,
+                               const RankResult& result, std::size_t place) {
+  const CandidateResult& ranked = result.ranking[place];
+  std::vector<std::string> row{std::to_string(place + 1), result.candidates[ranked.candidate].name,
+                               score_text(ranked)};
+  if (ranked.contacts.empty()) {
+    row.emplace_back(ranked.grazes.empty() ? "nothing" : "nothing (grazes)");
+    return row;
+  }
+  const Contact& first = ranked.contacts.front();
+  std::string hit = scenario.actors[first.actor].name;
+  if (ranked.contacts.size() > 1) hit += fmt::format(" +{}", ranked.contacts.size() - 1);
+  const DamageSummary ego = detail::summary_of(ranked.ego, models[scenario.ego.model].mesh);
+  const DamageSummary other = detail::summary_of_others(scenario, models, ranked);
+  row.push_back(hit);
+  row.push_back(fmt::format("{:.3f}", first.time_of_impact_s));
+  row.push_back(fmt::format("{:.1f}", first.closing_speed_mps));
+  row.push_back(fmt::format("{} + {}", ego.triangles, other.triangles));
+  row.push_back(fmt::format("{:.2f} + {:.2f}", ego.area_m2, other.area_m2));
+  row.push_back(shortened(ego.parts));
+  return row;
+}
+
+}  // namespace
+
+std::string ranking_text(const Scenario& scenario, View<const Model> models,
+                         const RankResult& result, const RankingTextOptions& options) {
+  const std::size_t all = result.ranking.size();
+  const std::size_t shown = options.top == 0 ? all : std::min(options.top, all);
+  Table table(
+      {{"rank", true},
+       {"candidate"},
+       {std::string(measure_name(result.measure)) + " [" + measure_unit(result.measure) + "]",
+        true},
+       {"hits"},
+       {"after s", true},
+       {"closing m/s", true},
+       {"triangles", true},
+       {"area m2", true},
+       {"ego's parts"}});
+  for (std::size_t place = 0; place < shown; ++place) {
+    table.add_row(cells(scenario, models, result, place));
+  }
+  std::string text = fmt::format("{}: {} candidates, {} others on the road\n\n",
+                                 escape_terminal(scenario.name), all, scenario.actors.size());
+  text += table.text(options.colours);
+  if (shown < all) {
+    text += fmt::format("... and {} more, up to {} {}\n", all - shown,
+                        score_text(result.ranking.back()), measure_unit(result.measure));
+  }
+  const auto free = static_cast<std::size_t>(
+      std::count_if(result.ranking.begin(), result.ranking.end(),
+                    [](const CandidateResult& ranked) { return !ranked.collides; }));
+  text += fmt::format("\n{} of {} touch nothing. Damage is ego + others. Ranked in {:.1f} ms{}.\n",
+                      free, all, result.elapsed_s * 1e3,
+                      result.complete ? "" : "; the answer is partial");
+  return text;
+}
+
+}  // namespace crashrank
