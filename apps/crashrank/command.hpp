@@ -12,5 +12,6 @@ using Action = std::function<int()>;
 // Each adds its subcommand, and sets `action` when the command line names it.
 void add_inspect(CLI::App& app, Action& action);
 void add_collide(CLI::App& app, Action& action);
+void add_rank(CLI::App& app, Action& action);
 
 }  // namespace crashrank::cli

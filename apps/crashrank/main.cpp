@@ -17,7 +17,8 @@ partial answer.
 
 Examples:
   crashrank inspect car.obj --json
-  crashrank collide car.obj truck.glb --pose 4.2,0.3,0,180,0,0)";
+  crashrank collide car.obj truck.glb --pose 4.2,0.3,0,180,0,0
+  crashrank rank scenario.json --damage out)";
 
 /// The first line of what the parser has to say, and where to read on.
 int usage(const CLI::App& app, const CLI::ParseError& problem) {
@@ -37,6 +38,7 @@ int run(int argc, char** argv) {
   Action action;
   add_inspect(app, action);
   add_collide(app, action);
+  add_rank(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

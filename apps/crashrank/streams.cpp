@@ -2,6 +2,7 @@
 
 #include "console.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -103,11 +104,14 @@ Result<StandardInputFile> StandardInputFile::receive(std::size_t limit,
 
 void OutputFile::Close::operator()(std::FILE* file) const { std::fclose(file); }
 
-Result<OutputFile> OutputFile::open(const std::string& path) {
+Result<OutputFile> OutputFile::open(const std::string& path, bool follow_links) {
   OutputFile out;
   out.path_ = path;
   if (is_standard(path)) return out;
-  out.file_.reset(std::fopen(path.c_str(), "wb"));
+  const int links = follow_links ? 0 : O_NOFOLLOW;
+  const int descriptor =
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | links, 0666);
+  if (descriptor >= 0) out.file_.reset(fdopen(descriptor, "wb"));
   if (!out.file_) {
     return file_error(ErrorCode::not_found, path, std::string("cannot write: ") + strerror(errno));
   }

@@ -32,7 +32,9 @@ private:
 /// A text file being written, or standard output for "-".
 class OutputFile {
 public:
-  static Result<OutputFile> open(const std::string& path);
+  /// Errors: not_found. With `follow_links` unset a symbolic link is refused: who opens a file in a
+  /// folder wants it to be in that folder.
+  static Result<OutputFile> open(const std::string& path, bool follow_links = true);
 
   void write(const std::string& text);
   /// Says whether everything arrived; nothing may be written after.

@@ -1,0 +1,138 @@
+#include "command.hpp"
+#include "console.hpp"
+#include "damage_folder.hpp"
+#include "mesh_arguments.hpp"
+#include "streams.hpp"
+#include "tree_arguments.hpp"
+
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/scenario.hpp"
+#include "crashrank/report/ranking.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crashrank::cli {
+namespace {
+
+struct Options {
+  std::string scenario;
+  std::string measure;
+  std::string damage_folder;
+  std::size_t damage_top = 5;
+  std::size_t top = 20;
+  unsigned workers = 1;
+  bool json = false;
+  TreeArguments tree;
+  std::vector<std::string> allowed_folders;
+};
+
+Result<Scenario> read_scenario(const Options& options) {
+  ScenarioPaths paths;
+  paths.allowed_folders = options.allowed_folders;
+  if (!is_standard(options.scenario)) return load_scenario_file(options.scenario, paths);
+  const Result<std::string> text = read_text("-", scenario_limits::file_bytes);
+  if (!text) return text.error();
+  return load_scenario(*text, "standard input", paths);
+}
+
+Result<std::vector<Model>> load_models(const Scenario& scenario, const BuildOptions& build) {
+  std::vector<Model> models;
+  Progress progress("reading meshes", scenario.models.size());
+  for (const ScenarioModel& wanted : scenario.models) {
+    ImportOptions how;
+    how.transform = wanted.transform;
+    Result<ImportedMesh> imported = import_mesh(wanted.path, how);
+    if (!imported) return imported.error();
+    for (const std::string& warning : imported->warnings) warn(wanted.path, warning);
+    Result<Model> model = make_model(std::move(imported->mesh), build);
+    if (!model) {
+      Error error = model.error();
+      if (error.file.empty()) error.file = wanted.path;
+      return error;
+    }
+    models.push_back(std::move(*model));
+    progress.update(models.size());
+  }
+  return models;
+}
+
+int run(const Options& options) {
+  RankOptions how;
+  how.workers = options.workers;
+  if (!options.measure.empty()) {
+    const Result<Measure> measure = measure_from_name(options.measure);
+    if (!measure) return fail(measure.error());
+    how.measure = *measure;
+  }
+  const Result<BuildOptions> build = options.tree.build_options();
+  if (!build) return fail(build.error());
+  const Result<Scenario> scenario = read_scenario(options);
+  if (!scenario) return fail(scenario.error());
+  const Result<std::vector<Model>> models = load_models(*scenario, *build);
+  if (!models) return fail(models.error());
+  const Result<RankResult> ranked = rank(*scenario, *models, how);
+  if (!ranked) {
+    Error error = ranked.error();
+    if (error.file.empty()) error.file = options.scenario;
+    return fail(error);
+  }
+  if (!options.damage_folder.empty()) {
+    const Status written =
+        write_damage(options.damage_folder, options.damage_top, *scenario, *models, *ranked);
+    if (!written) return fail(written.error());
+  }
+  if (options.json) {
+    print(ranking_json(*scenario, *models, *ranked));
+  } else {
+    RankingTextOptions text;
+    text.top = options.top;
+    text.colours = colours_wanted();
+    print(ranking_text(*scenario, *models, *ranked, text));
+  }
+  return ranked->complete ? exit_done : exit_budget;
+}
+
+constexpr const char* epilogue =
+    R"(Least harmful first. The scenario's format is data/scenario.schema.json. Meshes have to lie in the
+scenario's folder or below, or below a folder above it that holds a file named crashrank.root.
+
+Examples:
+  crashrank rank scenario.json
+  crashrank rank scenario.json --measure closing-energy --json --damage out)";
+
+}  // namespace
+
+void add_rank(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("rank", "Rank the crashes that a scenario leaves, least harmful first");
+  command->add_option("SCENARIO", options->scenario, "Scenario file; - is standard input")
+      ->required();
+  command->add_option("--measure", options->measure,
+                      "What is compared: polygons, area or closing-energy (default: as the "
+                      "scenario says)");
+  command->add_flag("--json", options->json, "Answer in JSON, every candidate");
+  command->add_option("--top", options->top, "Candidates in the table, 0 for all (default 20)");
+  command
+      ->add_option("--workers", options->workers,
+                   "Threads that share the candidates; the answer is the same (default 1)")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--damage", options->damage_folder,
+                      "Folder for GLB, PLY and PNG of the bodies with their damage in red");
+  command->add_option("--damage-top", options->damage_top,
+                      "Colliding candidates written there, best first, 0 for all (default 5)");
+  command
+      ->add_option("--allow", options->allowed_folders,
+                   "Another folder that meshes may be read from; may be repeated")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  options->tree.add_to(*command);
+  command->footer(epilogue);
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace crashrank::cli

@@ -1,0 +1,121 @@
+#include "cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using cli_test::Json;
+using cli_test::Outcome;
+using cli_test::Workplace;
+
+TEST(Inspect, JsonHasTheContractsShape) {
+  const Workplace place;
+  place.write("box.obj", cli_test::box_obj("body", -1, -0.9, 0.2, 3, 0.9, 1.5));
+  const Outcome run = place.crashrank({"inspect", "box.obj", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json files = run.json().at("files");
+  ASSERT_EQ(files.size(), 1U);
+  const Json& file = files[0];
+  EXPECT_EQ(file.at("file"), "box.obj");
+  EXPECT_EQ(file.at("triangles"), 12);
+  EXPECT_EQ(file.at("vertices"), 8);
+  ASSERT_EQ(file.at("parts").size(), 1U);
+  EXPECT_EQ(file.at("parts")[0].at("name"), "body");
+  EXPECT_EQ(file.at("parts")[0].at("triangles"), 12);
+  const std::vector<double> extent = file.at("extent_m");
+  ASSERT_EQ(extent.size(), 3U);
+  EXPECT_NEAR(extent[0], 4.0, 1e-6);
+  EXPECT_NEAR(extent[1], 1.8, 1e-6);
+  EXPECT_NEAR(extent[2], 1.3, 1e-6);
+  EXPECT_EQ(file.at("degenerate_triangles"), 0);
+  EXPECT_EQ(file.at("non_finite_vertices"), 0);
+  EXPECT_EQ(file.at("watertight"), true);
+  EXPECT_TRUE(file.at("warnings").is_array());
+}
+
+TEST(Inspect, TheMeshOptionsTurnAndScale) {
+  const Workplace place;
+  // y up, -z forward, millimetres: 4 m long, 1.8 m wide, 1.3 m high.
+  place.write("box.obj", cli_test::box_obj("body", 0, 0, -4000, 1800, 1300, 0));
+  const Outcome run = place.crashrank(
+      {"inspect", "box.obj", "--json", "--scale", "0.001", "--up", "+y", "--forward", "-z"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::vector<double> extent = run.json()["files"][0]["extent_m"];
+  EXPECT_NEAR(extent[0], 4.0, 1e-6);
+  EXPECT_NEAR(extent[1], 1.8, 1e-6);
+  EXPECT_NEAR(extent[2], 1.3, 1e-6);
+}
+
+TEST(Inspect, SizesNoRoadUserHasAreWarnedAbout) {
+  const Workplace place;
+  place.write("huge.obj", cli_test::box_obj("body", 0, 0, 0, 4000, 1800, 1300));
+  const Outcome run = place.crashrank({"inspect", "huge.obj", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_FALSE(run.json()["files"][0]["warnings"].empty());
+}
+
+TEST(Inspect, StandardInputIsReadWhenItsFormatIsSaid) {
+  const Workplace place;
+  const std::string obj = cli_test::box_obj("body", 0, 0, 0, 1, 1, 1);
+  const Outcome run = place.crashrank({"inspect", "-", "--format", "obj", "--json"}, obj);
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.json()["files"][0]["file"], "-");
+  EXPECT_EQ(run.json()["files"][0]["triangles"], 12);
+}
+
+TEST(Inspect, OneBadFileDoesNotHideTheOthers) {
+  const Workplace place;
+  place.write("good.obj", cli_test::box_obj("body", 0, 0, 0, 1, 1, 1));
+  place.write("bad.obj", "v 0 0 0\n");
+  const Outcome run = place.crashrank({"inspect", "missing.obj", "good.obj", "bad.obj", "--json"});
+  EXPECT_EQ(run.code, 3);
+  ASSERT_EQ(run.json()["files"].size(), 1U);
+  EXPECT_EQ(run.json()["files"][0]["file"], "good.obj");
+  EXPECT_NE(run.err.find("missing.obj"), std::string::npos);
+  EXPECT_NE(run.err.find("bad.obj"), std::string::npos);
+}
+
+TEST(Inspect, EveryBadInputIsExitThreeAndOneLineThatNamesIt) {
+  const Workplace place;
+  place.write("empty.obj", "");
+  place.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  place.write("garbage.stl", std::string(400, '\xa5'));
+  place.write("cut.glb", std::string("glTF\x02\0\0\0\xff\0\0\0", 12));
+  place.write("huge.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n");
+  place.write("unknown.xyz", "nothing known");
+  for (const std::string& file :
+       std::vector<std::string>{"empty.obj", "points.obj", "garbage.stl", "cut.glb", "huge.obj",
+                                "unknown.xyz", "missing.obj", "."}) {
+    SCOPED_TRACE(file);
+    const Outcome run = place.crashrank({"inspect", file});
+    EXPECT_EQ(run.code, 3) << run.err;
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+    EXPECT_NE(run.err.find(file), std::string::npos) << run.err;
+  }
+}
+
+TEST(Inspect, HostileNamesReachTheTerminalEscaped) {
+  const Workplace place;
+  std::string obj = cli_test::box_obj("door\x1b[31m<b>\"quoted\",\xff", 0, 0, 0, 1, 1, 1);
+  place.write("evil.obj", obj);
+  place.write("name\x1b[2J.obj", obj);
+  const Outcome text = place.crashrank({"inspect", "evil.obj"});
+  ASSERT_EQ(text.code, 0) << text.err;
+  EXPECT_EQ(text.out.find('\x1b'), std::string::npos);
+  EXPECT_NE(text.out.find("<b>"), std::string::npos);
+  const Outcome json = place.crashrank({"inspect", "evil.obj", "--json"});
+  ASSERT_EQ(json.code, 0) << json.err;
+  EXPECT_EQ(json.out.find('\x1b'), std::string::npos);
+  const std::string name = json.json()["files"][0]["parts"][0]["name"];
+  EXPECT_NE(name.find("<b>\"quoted\","), std::string::npos);
+  const Outcome file = place.crashrank({"inspect", "name\x1b[2J.obj"});
+  EXPECT_EQ(file.out.find('\x1b'), std::string::npos);
+  const Outcome missing = place.crashrank({"inspect", "miss\x1b[2J\n.obj"});
+  EXPECT_EQ(missing.code, 3);
+  EXPECT_TRUE(cli_test::is_one_message(missing.err)) << missing.err;
+}
+
+}  // namespace

@@ -1,0 +1,223 @@
+#include "cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace {
+
+using cli_test::Json;
+using cli_test::Outcome;
+using cli_test::Workplace;
+
+Json ranked(const Workplace& place, std::vector<std::string> more = {}) {
+  std::vector<std::string> arguments{"rank", "scenario.json", "--json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome run = place.crashrank(arguments);
+  EXPECT_EQ(run.code, 0) << run.err;
+  return run.json();
+}
+
+const Json& entry(const Json& answer, const std::string& candidate) {
+  for (const Json& one : answer.at("ranking")) {
+    if (one.at("candidate") == candidate) return one;
+  }
+  throw std::runtime_error("no candidate " + candidate);
+}
+
+TEST(Rank, JsonHasTheContractsShape) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Json answer = ranked(place);
+  EXPECT_EQ(answer.at("scenario"), "box ahead");
+  EXPECT_EQ(answer.at("measure"), "polygons");
+  EXPECT_EQ(answer.at("complete"), true);
+  EXPECT_EQ(answer.at("proved"), true);
+  EXPECT_TRUE(answer.at("in_race").is_array());
+  EXPECT_GT(answer.at("elapsed_s").get<double>(), 0.0);
+  ASSERT_EQ(answer.at("ranking").size(), 3U);
+  double last = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Json& one = answer["ranking"][i];
+    EXPECT_EQ(one.at("rank"), i + 1);
+    EXPECT_TRUE(one.at("candidate").is_string());
+    EXPECT_GE(one.at("score").get<double>(), last);
+    last = one["score"];
+    const std::vector<double> interval = one.at("score_interval");
+    ASSERT_EQ(interval.size(), 2U);
+    EXPECT_EQ(interval[0], one["score"]);
+    EXPECT_EQ(interval[1], one["score"]);
+    EXPECT_TRUE(one.at("collides").is_boolean());
+    EXPECT_EQ(one.at("contacts").empty(), !one["collides"].get<bool>());
+    for (const char* key : {"damaged_triangles", "damaged_area_m2"}) {
+      EXPECT_TRUE(one.at(key).at("ego").is_number()) << key;
+      EXPECT_TRUE(one.at(key).at("other").is_number()) << key;
+    }
+    EXPECT_TRUE(one.at("damaged_parts").at("ego").is_array());
+    EXPECT_TRUE(one.at("damaged_parts").at("other").is_array());
+    for (const char* key : {"other", "time_of_impact_s", "closing_speed_mps"}) {
+      EXPECT_EQ(one.at(key).is_null(), !one["collides"].get<bool>()) << key;
+    }
+  }
+}
+
+// 7 m between the faces, 10 m/s: contact after 0.7 s. Braking at 7.5 m/s2 stops within 6.67 m.
+TEST(Rank, WhatIsHitWhenAndHowFast) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Json answer = ranked(place);
+  EXPECT_EQ(answer["ranking"][0]["candidate"], "brake");
+  EXPECT_EQ(answer["ranking"][0]["score"], 0.0);
+  EXPECT_EQ(answer["ranking"][0]["collides"], false);
+  const Json& straight = entry(answer, "straight");
+  EXPECT_EQ(straight["collides"], true);
+  EXPECT_EQ(straight["other"], "stone");
+  EXPECT_NEAR(straight["time_of_impact_s"].get<double>(), 0.7, 2e-5);  // 0.1 mm at 10 m/s
+  EXPECT_NEAR(straight["closing_speed_mps"].get<double>(), 10.0, 1e-9);
+  EXPECT_EQ(straight["damaged_parts"]["ego"], Json::array({"body"}));
+  EXPECT_EQ(straight["damaged_parts"]["other"], Json::array({"stone"}));
+  EXPECT_EQ(straight["contacts"][0]["other"], "stone");
+  EXPECT_EQ(straight["contacts"][0]["time_of_impact_s"], straight["time_of_impact_s"]);
+  EXPECT_EQ(straight["score"].get<double>(),
+            straight["damaged_triangles"]["ego"].get<double>() +
+                straight["damaged_triangles"]["other"].get<double>());
+}
+
+TEST(Rank, TheMeasureCanBeChosen) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Json area = ranked(place, {"--measure", "area"});
+  EXPECT_EQ(area["measure"], "area");
+  const Json& straight = entry(area, "straight");
+  EXPECT_NEAR(straight["score"].get<double>(),
+              straight["damaged_area_m2"]["ego"].get<double>() +
+                  straight["damaged_area_m2"]["other"].get<double>(),
+              1e-9);
+  // Half of 1500 kg at 10 m/s against what does not move.
+  const Json energy = ranked(place, {"--measure", "closing-energy"});
+  EXPECT_NEAR(entry(energy, "straight")["score"].get<double>(), 75000.0, 1e-6);
+}
+
+TEST(Rank, WorkersDoNotChangeTheAnswer) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  Json one = ranked(place);
+  Json three = ranked(place, {"--workers", "3"});
+  one.erase("elapsed_s");
+  three.erase("elapsed_s");
+  EXPECT_EQ(one, three);
+}
+
+TEST(Rank, TheTableNamesEveryCandidateOrSaysHowManyAreMissing) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Outcome all = place.crashrank({"rank", "scenario.json"});
+  ASSERT_EQ(all.code, 0) << all.err;
+  for (const char* word : {"brake", "straight", "swerve", "stone", "0.700"}) {
+    EXPECT_NE(all.out.find(word), std::string::npos) << word << "\n" << all.out;
+  }
+  const Outcome one = place.crashrank({"rank", "scenario.json", "--top", "1"});
+  EXPECT_NE(one.out.find("and 2 more"), std::string::npos) << one.out;
+}
+
+TEST(Rank, AScenarioComesThroughStandardInput) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Outcome run = place.crashrank({"rank", "-", "--json"}, place.read("scenario.json"));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.json()["ranking"].size(), 3U);
+}
+
+TEST(Rank, DamageIsWrittenInFormatsThatAreReadBack) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Json answer = ranked(place, {"--damage", "out"});
+  const std::vector<std::string> files = place.list("out");
+  const std::string rank = std::to_string(entry(answer, "straight")["rank"].get<int>());
+  const std::string stem = "00" + rank + "-straight";
+  for (const std::string& file : {stem + "-ego.glb", stem + "-ego.ply", stem + "-1-stone.glb",
+                                  stem + "-1-stone.ply", stem + ".png", stem + "-ego.png"}) {
+    EXPECT_NE(std::find(files.begin(), files.end(), file), files.end()) << file;
+  }
+  for (const std::string& file : files) EXPECT_EQ(file.find("brake"), std::string::npos) << file;
+
+  // assimp reads both back: the same triangles; the GLB's axes are glTF's.
+  const Outcome ply = place.crashrank({"inspect", "out/" + stem + "-ego.ply", "--json"});
+  ASSERT_EQ(ply.code, 0) << ply.err;
+  const Outcome glb = place.crashrank(
+      {"inspect", "out/" + stem + "-ego.glb", "--json", "--up", "+y", "--forward", "+z"});
+  ASSERT_EQ(glb.code, 0) << glb.err;
+  for (const Outcome& run : {ply, glb}) {
+    const Json file = run.json()["files"][0];
+    EXPECT_EQ(file["triangles"], 12);
+    const std::vector<double> extent = file["extent_m"];
+    EXPECT_NEAR(extent[0], 4.0, 1e-5);
+    EXPECT_NEAR(extent[1], 1.8, 1e-5);
+    EXPECT_NEAR(extent[2], 1.3, 1e-5);
+  }
+  EXPECT_EQ(place.read("out/" + stem + ".png").substr(1, 3), "PNG");
+}
+
+TEST(Rank, NothingIsWrittenOutsideTheDamageFolder) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  std::string scenario = place.read("scenario.json");
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"\"straight\"", "\"../../straight\""},
+           {"\"stone\", \"model\"", "\"/../stone\", \"model\""}}) {
+    const std::size_t at = scenario.find(from);
+    ASSERT_NE(at, std::string::npos);
+    scenario.replace(at, from.size(), to);
+  }
+  place.write("scenario.json", scenario);
+  place.shell("mkdir out");
+  const std::vector<std::string> before = place.list(".");
+  ranked(place, {"--damage", "out"});
+  EXPECT_EQ(place.list("."), before);
+  EXPECT_GE(place.list("out").size(), 6U);
+}
+
+TEST(Rank, ALinkInTheDamageFolderIsNotFollowed) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Json answer = ranked(place);
+  const std::string rank = std::to_string(entry(answer, "straight")["rank"].get<int>());
+  place.write("precious", "kept");
+  place.shell("mkdir out && ln -s ../precious out/00" + rank + "-straight-ego.glb");
+  const Outcome run = place.crashrank({"rank", "scenario.json", "--damage", "out"});
+  EXPECT_EQ(run.code, 3);
+  EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+  EXPECT_EQ(place.read("precious"), "kept");
+}
+
+TEST(Rank, EveryBadScenarioIsExitThreeAndOneLineThatNamesIt) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const std::string good = place.read("scenario.json");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return text;
+  };
+  for (const std::string& text : std::vector<std::string>{
+           "", "{", "[]", "{\"scenario_version\": 1}",
+           with("\"speed_mps\": 10", "\"speed_mps\": 1e9"), with("\"horizon_s\"", "\"horizon\""),
+           with("ego.obj", "gone.obj"), with("ego.obj", "../../../etc/passwd"),
+           with("\"model\": \"block\"", "\"model\": \"b\"")}) {
+    SCOPED_TRACE(text.substr(0, 200));
+    place.write("bad.json", text);
+    const Outcome run = place.crashrank({"rank", "bad.json", "--json"});
+    EXPECT_EQ(run.code, 3) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+    const bool named = run.err.find("bad.json") != std::string::npos ||
+                       run.err.find("gone.obj") != std::string::npos;
+    EXPECT_TRUE(named) << run.err;
+  }
+  EXPECT_EQ(place.crashrank({"rank", "gone.json"}).code, 3);
+  EXPECT_EQ(place.crashrank({"rank", "."}).code, 3);
+}
+
+}  // namespace

@@ -1,0 +1,78 @@
+#include "cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using cli_test::Outcome;
+using cli_test::Workplace;
+
+TEST(Usage, HelpAndVersionAreData) {
+  const Workplace place;
+  const Outcome version = place.crashrank({"--version"});
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out, "crashrank " CRASHRANK_VERSION "\n");
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"--help"}, {"inspect", "--help"}, {"collide", "--help"}, {"rank", "--help"}}) {
+    const Outcome help = place.crashrank(arguments);
+    EXPECT_EQ(help.code, 0);
+    EXPECT_EQ(help.err, "");
+    EXPECT_NE(help.out.find("Example"), std::string::npos) << help.out;
+  }
+}
+
+TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
+  const Workplace place;
+  place.write("a.obj", cli_test::box_obj("a", 0, 0, 0, 1, 1, 1));
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {},
+           {"fly"},
+           {"inspect"},
+           {"inspect", "a.obj", "--nonsense"},
+           {"inspect", "a.obj", "--scale", "0"},
+           {"inspect", "a.obj", "--scale", "-1"},
+           {"inspect", "a.obj", "--scale", "nan"},
+           {"inspect", "a.obj", "--scale", "big"},
+           {"inspect", "a.obj", "--up", "sideways"},
+           {"inspect", "a.obj", "--up", "+x"},
+           {"inspect", "a.obj", "--origin", "1,2"},
+           {"inspect", "a.obj", "--origin", "1,2,inf"},
+           {"inspect", "-", "-", "--format", "obj"},
+           {"inspect", "-"},
+           {"collide", "a.obj"},
+           {"collide", "a.obj", "a.obj", "--pose", "1,2,3"},
+           {"collide", "a.obj", "a.obj", "--pose", "1,2,3,4,5,six"},
+           {"collide", "a.obj", "a.obj", "--pose", "nan,0,0,0,0,0"},
+           {"collide", "a.obj", "a.obj", "--repeat", "0"},
+           {"collide", "a.obj", "a.obj", "--split", "guess"},
+           {"collide", "a.obj", "a.obj", "--frame", "moving"},
+           {"collide", "a.obj", "a.obj", "--json", "--pairs", "-"},
+           {"collide", "-", "a.obj", "--poses", "-", "--format", "obj"},
+           {"rank"},
+           {"rank", "s.json", "--measure", "beauty"},
+           {"rank", "s.json", "--workers", "0"},
+       }) {
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    const Outcome run = place.crashrank(arguments);
+    EXPECT_EQ(run.code, 2) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+  }
+}
+
+TEST(Usage, LostOutputIsNotSuccess) {
+  const Workplace place;
+  place.write("a.obj", cli_test::box_obj("a", 0, 0, 0, 1, 1, 1));
+  const std::string program = CRASHRANK_PROGRAM;
+  const Outcome run = place.shell("'" + program + "' inspect a.obj >/dev/full");
+  EXPECT_EQ(run.code, 1);
+  EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+  const Outcome pairs = place.crashrank({"collide", "a.obj", "a.obj", "--pairs", "/dev/full"});
+  EXPECT_EQ(pairs.code, 1);
+  EXPECT_NE(pairs.err.find("/dev/full"), std::string::npos) << pairs.err;
+}
+
+}  // namespace
