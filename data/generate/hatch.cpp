@@ -28,7 +28,17 @@ std::vector<Panel> hatch_panels(double wheelbase) {
     }
     side("", Outline(circle), 0.5, 0.0, false);
   }
-  side("underbody", polygon({{-2, -1}, {5, -1}, {5, 0.235}, {-2, 0.235}}), -far, 0.0, false);
+  // The floor; the lower lips of the bumpers stay with the bumpers.
+  side("underbody",
+       polygon({{-2, -1},
+                {5, -1},
+                {5, 0.185},
+                {3.00, 0.185},
+                {2.90, 0.235},
+                {-0.30, 0.235},
+                {-0.40, 0.205},
+                {-2, 0.205}}),
+       -far, 0.0, false);
   front("windshield",
         rounded_polygon({{across, 0.965}, {0.68, 1.0}, {0.525, 1.36}, {across, 1.385}}), 1.40, 3.0,
         false);
@@ -89,8 +99,8 @@ std::vector<Panel> hatch_panels(double wheelbase) {
                         {0.43, 0.52},
                         {0.45, 0.285}}),
        0.42, 0.0, true);
-  side("sill", polygon({{0.30, 0.1}, {2.30, 0.1}, {2.30, 0.285}, {0.30, 0.285}}), 0.42, 0.0, true);
-  side("fender", polygon({{2.05, 0.1}, {4.0, 0.1}, {4.0, 0.94}, {2.05, 0.975}}), 0.35, 0.0, true);
+  side("sill", polygon({{0.30, 0.1}, {2.30, 0.1}, {2.30, 0.32}, {0.30, 0.32}}), 0.42, 0.0, true);
+  side("fender", polygon({{1.95, 0.1}, {4.0, 0.1}, {4.0, 0.94}, {1.95, 0.975}}), 0.35, 0.0, true);
   side("quarter_panel", polygon({{-2, 0.1}, {1.1, 0.1}, {1.1, 1.0}, {-2, 1.09}}), 0.35, 0.0, true);
   side("pillars", polygon({{-2, 0.9}, {4, 0.9}, {4, 2}, {-2, 2}}), 0.30, 0.9, true);
   return panels;

@@ -2,6 +2,7 @@
 
 #include "field.hpp"
 #include "surface.hpp"
+#include "tidy.hpp"
 
 #include <limits>
 #include <map>
@@ -95,31 +96,35 @@ Model build_person(const Posture& posture, const std::string& prefix, double edg
     return distance;
   };
   const Vec3 reach(1.1, 0.9, 1.3);
-  const Mesh skin = extract_surface(body, posture.pelvis - reach, posture.pelvis + reach, edge);
-  std::vector<Mesh> parts(pieces.size());
-  std::vector<std::map<int, int>> place(pieces.size());
+  Mesh skin = extract_surface(body, posture.pelvis - reach, posture.pelvis + reach, edge);
+  const auto corner = [&](const std::array<int, 3>& t, std::size_t k) -> const Vec3& {
+    return skin.vertices[static_cast<std::size_t>(t[k])];
+  };
+  std::vector<int> owner;
   for (const std::array<int, 3>& t : skin.triangles) {
-    const auto corner = [&](std::size_t k) {
-      return skin.vertices[static_cast<std::size_t>(t[k])];
-    };
-    const Vec3 middle = (corner(0) + corner(1) + corner(2)) / 3.0;
-    std::size_t owner = 0;
+    const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0;
     double least = std::numeric_limits<double>::infinity();
+    owner.push_back(0);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const double distance = pieces[i].field(middle);
-      if (distance < least) {
-        least = distance;
-        owner = i;
-      }
+      if (distance >= least) continue;
+      least = distance;
+      owner.back() = static_cast<int>(i);
     }
+  }
+  tidy(&skin, &owner, 0.2 * edge);
+  std::vector<Mesh> parts(pieces.size());
+  std::vector<std::map<int, int>> place(pieces.size());
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    const auto piece = static_cast<std::size_t>(owner[t]);
     std::array<int, 3> renumbered{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto [entry, fresh] =
-          place[owner].emplace(t[k], static_cast<int>(parts[owner].vertices.size()));
-      if (fresh) parts[owner].vertices.push_back(corner(k));
+      const auto [entry, fresh] = place[piece].emplace(
+          skin.triangles[t][k], static_cast<int>(parts[piece].vertices.size()));
+      if (fresh) parts[piece].vertices.push_back(corner(skin.triangles[t], k));
       renumbered[k] = entry->second;
     }
-    parts[owner].triangles.push_back(renumbered);
+    parts[piece].triangles.push_back(renumbered);
   }
   Model model;
   for (std::size_t i = 0; i < pieces.size(); ++i) model.add(prefix + pieces[i].name, parts[i]);

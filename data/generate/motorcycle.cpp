@@ -123,7 +123,7 @@ Model build_motorcycle(double edge) {
   Model model;
   add_running_gear(edge, &model);
   add_body(edge, &model);
-  for (const NamedMesh& part : build_person(rider_posture(), "rider_", edge).parts) {
+  for (const NamedMesh& part : build_person(rider_posture(), "rider_", 0.7 * edge).parts) {
     model.add(part.name, part.mesh);
   }
   return model;

@@ -1,6 +1,7 @@
 #include "seam.hpp"
 
 #include "surface.hpp"
+#include "tidy.hpp"
 
 #include <algorithm>
 #include <map>
@@ -194,12 +195,17 @@ void add_panels(Model* model, const Field& body, const Mesh& skin, const std::ve
         &mesh, body, [&](const Vec3& p) { return panel.distance(p); },
         [&](const Vec3& p) { return panel.in_reach(p, 2.0 * edge); }, edge, &fixed);
   }
-  std::vector<std::vector<std::array<int, 3>>> groups(panels.size() + 1);
+  std::vector<int> label;
   for (const std::array<int, 3>& t : mesh.triangles) {
     const Vec3 p = middle_of(t);
     std::size_t k = 0;
     while (k < panels.size() && panels[k].distance(p) >= 0.0) ++k;
-    groups[k].push_back(t);
+    label.push_back(static_cast<int>(k));
+  }
+  tidy(&mesh, &label, 0.2 * edge);
+  std::vector<std::vector<std::array<int, 3>>> groups(panels.size() + 1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    groups[static_cast<std::size_t>(label[t])].push_back(mesh.triangles[t]);
   }
   for (std::size_t k = 0; k <= panels.size(); ++k) {
     const std::string& name = k < panels.size() ? panels[k].name : rest;

@@ -28,7 +28,17 @@ std::vector<Panel> sedan_panels(double wheelbase) {
     }
     side("", Outline(circle), 0.5, 0.0, false);
   }
-  side("underbody", polygon({{-2, -1}, {5, -1}, {5, 0.23}, {-2, 0.23}}), -far, 0.0, false);
+  // The floor; the lower lips of the bumpers stay with the bumpers.
+  side("underbody",
+       polygon({{-2, -1},
+                {5, -1},
+                {5, 0.178},
+                {3.25, 0.178},
+                {3.15, 0.23},
+                {-0.30, 0.23},
+                {-0.40, 0.205},
+                {-2, 0.205}}),
+       -far, 0.0, false);
   front("windshield",
         rounded_polygon({{across, 0.955}, {0.70, 0.985}, {0.545, 1.345}, {across, 1.375}}), 1.50,
         3.4, false);
@@ -94,7 +104,7 @@ std::vector<Panel> sedan_panels(double wheelbase) {
                         {0.44, 0.52},
                         {0.46, 0.29}}),
        0.42, 0.0, true);
-  side("sill", polygon({{0.30, 0.1}, {2.55, 0.1}, {2.55, 0.29}, {0.30, 0.29}}), 0.42, 0.0, true);
+  side("sill", polygon({{0.30, 0.1}, {2.55, 0.1}, {2.55, 0.36}, {0.30, 0.36}}), 0.42, 0.0, true);
   side("fender", polygon({{2.30, 0.1}, {4.4, 0.1}, {4.4, 0.93}, {2.30, 0.965}}), 0.35, 0.0, true);
   side("quarter_panel", polygon({{-2, 0.1}, {1.1, 0.1}, {1.1, 0.99}, {-0.5, 1.08}, {-2, 1.1}}),
        0.35, 0.0, true);

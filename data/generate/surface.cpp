@@ -96,7 +96,9 @@ Quads find_quads(const Field& field, const Grid& grid) {
         for (int z = 0; z < block_nodes; ++z) {
           for (int y = 0; y < block_nodes; ++y) {
             for (int x = 0; x < block_nodes; ++x) {
-              values[at(x, y, z)] = field(grid.node(x0 + x, y0 + y, z0 + z));
+              const double value = field(grid.node(x0 + x, y0 + y, z0 + z));
+              // A node all but on the surface counts as inside: no hair-thin bridges.
+              values[at(x, y, z)] = std::abs(value) < 0.06 * grid.edge ? -0.06 * grid.edge : value;
             }
           }
         }

@@ -3,6 +3,7 @@
 #include "mesh.hpp"
 #include "solids.hpp"
 #include "surface.hpp"
+#include "tidy.hpp"
 #include "wheel.hpp"
 
 #include <gtest/gtest.h>
@@ -140,12 +141,36 @@ TEST(Car, BodyIsOneClosedSurfaceThatConverges) {
     const Vec3 low(-1.3, -1.05, 0.05);
     const Vec3 high(design.wheelbase + 1.2, 1.05, 1.65);
     const Mesh coarse = generate::extract_surface(body, low, high, 0.10);
-    const Mesh fine = generate::extract_surface(body, low, high, 0.04);
+    const Mesh fine = generate::extract_surface(body, low, high, 0.06);
     EXPECT_TRUE(closed_and_oriented(coarse));
     EXPECT_TRUE(closed_and_oriented(fine));
     EXPECT_GT(volume(fine), 6.0);
     EXPECT_NEAR(volume(coarse), volume(fine), 0.02 * volume(fine));
   }
+}
+
+TEST(Tidy, TakesNeedlesOutAndKeepsShapeAndSeams) {
+  // A unit square in two labelled halves, each a fan with a needle and a short edge in it.
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0},   {1, 0, 0},      {1, 1, 0},      {0, 1, 0},       {0.5, 0, 0},
+                   {0.5, 1, 0}, {0.25, 0.5, 0}, {0.26, 0.5, 0}, {0.75, 0.001, 0}};
+  mesh.triangles = {{0, 4, 6}, {4, 7, 6}, {4, 5, 7}, {5, 6, 7}, {5, 3, 6},
+                    {3, 0, 6}, {4, 1, 8}, {1, 2, 8}, {2, 5, 8}, {5, 4, 8}};
+  std::vector<int> label = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1};
+  generate::tidy(&mesh, &label, 0.05);
+  ASSERT_EQ(mesh.triangles.size(), label.size());
+  EXPECT_LT(mesh.triangles.size(), 10U);
+  double area[2] = {0.0, 0.0};
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto corner = [&](std::size_t k) {
+      return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
+    };
+    const double twice = (corner(1) - corner(0)).cross(corner(2) - corner(0)).z();
+    EXPECT_GT(twice, 0.0);
+    area[label[t]] += 0.5 * twice;
+  }
+  EXPECT_NEAR(area[0], 0.5, 1e-12);
+  EXPECT_NEAR(area[1], 0.5, 1e-12);
 }
 
 }  // namespace
