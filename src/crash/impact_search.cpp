@@ -24,22 +24,6 @@ double radius_of(const AabbTree& tree) {
   return far.norm() * (1.0 + 1e-9);
 }
 
-struct CentredBox {
-  Vector3d center;
-  Vector3d half;
-};
-
-CentredBox centred(const Box& box) {
-  const Vector3d low = box.min.cast<double>();
-  const Vector3d high = box.max.cast<double>();
-  return {0.5 * (high + low), 0.5 * (high - low)};
-}
-
-/// Largest value of m·x over a box.
-double most(const Vector3d& m, const CentredBox& box) {
-  return m.dot(box.center) + m.cwiseAbs().dot(box.half);
-}
-
 /// Axis-aligned bounds of a triangle.
 struct Span {
   Vector3d low;
@@ -161,6 +145,8 @@ const Knot& ImpactSearch::knot(std::size_t index) {
       k.omega_a = hand * rotate(back, k.omega_a);
       k.omega_b = hand * rotate(back, k.omega_b);
     }
+    k.spin_a = k.omega_a.norm();
+    k.spin_b = k.omega_b.norm();
   }
   return k;
 }
@@ -177,24 +163,37 @@ bool ImpactSearch::spend(std::uint64_t& counter) {
   return true;
 }
 
-/// Until when two boxes are proved apart by what is known of them at a knot.
-double ImpactSearch::open_until(const Node& na, const Node& nb, const Knot& k, double limit) const {
+/// Until when two boxes are proved apart by what is known of them at a knot. No point of a box
+/// moves against its middle faster than the spin times half the box's diagonal, for which the sum
+/// of the half extents stands.
+double ImpactSearch::open_until(const Node& na, const Node& nb, const Knot& k, double limit,
+                                double& guess) const {
   const RelativeState& s = k.state;
-  const BoxGap gap = box_gap(na.box, nb.box, k.to);
-  const double less = thresholds_.prove_m + s.margin;
-  const double enough = limit - s.time;
   const CentredBox box_a = centred(na.box);
   const CentredBox box_b = centred(nb.box);
-  const auto closing = [&](const Vector3d& n) {
-    const Vector3d turn_b = rotate(k.to.rotation.transpose(), n.cross(k.omega_b));
-    return n.dot(k.v) + most(n.cross(k.omega_a), box_a) + most(-turn_b, box_b);
-  };
-  double seconds = longest(gap.along_a, less, s.acceleration, enough, closing);
+  const Vector3d arm_b = rotate(k.to.rotation, box_b.center);
+  const Vector3d apart = arm_b + k.to.translation - box_a.center;
+  const BoxGap gap = box_gap(box_a, box_b, apart, k.to);
+  const double less = thresholds_.prove_m + s.margin;
+  const double enough = limit - s.time;
+  const Vector3d v = k.v + k.omega_a.cross(box_a.center) - k.omega_b.cross(arm_b);
+  const double spread = k.spin_a * box_a.half.sum() + k.spin_b * box_b.half.sum();
+  double seconds = longest(gap.along_a, less, s.acceleration, enough,
+                           [&](const Vector3d& n) { return n.dot(v) + spread; });
   if (seconds < enough) {
-    const Vector3d along_b = gap.along_b * k.shrink_b;
-    seconds = std::max(
-        seconds, longest(along_b, less, s.acceleration, enough,
-                         [&](const Vector3d& n) { return closing(rotate(k.to.rotation, n)); }));
+    const Vector3d v_b = rotate(k.to.rotation.transpose(), v);
+    seconds = std::max(seconds, longest(gap.along_b * k.shrink_b, less, s.acceleration, enough,
+                                        [&](const Vector3d& n) { return n.dot(v_b) + spread; }));
+  }
+  // How far along their closing velocity the boxes are from overlapping, or into it: not a bound,
+  // but it tells which of two pairs meets sooner where both overlap.
+  const double speed = v.norm();
+  guess = s.time;
+  if (speed > 0.0) {
+    const Vector3d n = v / speed;
+    const double reach = n.cwiseAbs().dot(box_a.half) +
+                         rotate(k.to.rotation.transpose(), n).cwiseAbs().dot(box_b.half);
+    guess += (n.dot(apart) - reach) / speed;
   }
   return std::min(s.time + seconds, s.horizon);
 }
@@ -205,9 +204,10 @@ ImpactSearch::Entry ImpactSearch::pair(std::uint32_t a, std::uint32_t b, double 
   const Node& na = a_.nodes[a];
   const Node& nb = b_.nodes[b];
   std::size_t index = knot_index(free_until);
+  double guess = free_until;
   for (;;) {
     if (!spend(work_.bv_tests)) break;
-    const double open = open_until(na, nb, knot(index), limit());
+    const double open = open_until(na, nb, knot(index), limit(), guess);
     if (open <= free_until) break;
     free_until = open;
     if (free_until >= limit()) break;
@@ -215,7 +215,7 @@ ImpactSearch::Entry ImpactSearch::pair(std::uint32_t a, std::uint32_t b, double 
     if (next == index) break;
     index = next;
   }
-  return {a, b, free_until};
+  return {a, b, free_until, guess};
 }
 
 Meeting ImpactSearch::follow(std::uint32_t slot_a, std::uint32_t slot_b, double from, double before,
@@ -257,20 +257,40 @@ Meeting ImpactSearch::follow(std::uint32_t slot_a, std::uint32_t slot_b, double 
   return meeting;
 }
 
-void ImpactSearch::leaves(const Node& na, const Node& nb, double free_until) {
-  const Knot& k = knot(knot_index(free_until));
+/// The same of two triangles, along the axes of A's body and along their own normals.
+double ImpactSearch::open_until(const TriangleD& ta, const TriangleD& tb, const Knot& k,
+                                double limit) const {
   const RelativeState& s = k.state;
   const double less = thresholds_.prove_m + s.margin;
+  const double enough = limit - s.time;
+  const Span a = span_of(ta);
+  const Span b = span_of(tb);
+  const Vector3d v = s.v + s.omega_a.cross(0.5 * (a.low + a.high)) -
+                     s.omega_b.cross(0.5 * (b.low + b.high) - s.b_in_a.translation);
+  const double spread =
+      0.5 * (k.spin_a * (a.high - a.low).sum() + k.spin_b * (b.high - b.low).sum());
+  const auto closing = [&](const Vector3d& n) { return n.dot(v) + spread; };
+  double seconds = longest(gap_between(a, b), less, s.acceleration, enough, closing);
+  for (const TriangleD* t : {&ta, &tb}) {
+    if (seconds >= enough) break;
+    const Vector3d normal = (t->corner[1] - t->corner[0]).cross(t->corner[2] - t->corner[0]);
+    const double length = normal.norm();
+    if (!(length > 0.0)) continue;
+    Vector3d n = normal / length;
+    if (n.dot(tb.corner[0] - ta.corner[0]) < 0.0) n = -n;
+    const double gap = gap_along(n, ta, tb, t->corner[0]);
+    if (gap > less) seconds = std::max(seconds, open_for(gap - less, closing(n), s.acceleration));
+  }
+  return std::min(s.time + seconds, s.horizon);
+}
+
+void ImpactSearch::leaves(const Node& na, const Node& nb, double free_until) {
+  const Knot& k = knot(knot_index(free_until));
   for (std::uint32_t j = nb.first; j < nb.first + nb.count; ++j) {
-    const TriangleD tb = carry(s.b_in_a, b_.triangles[j]);
-    const Span span_b = span_of(tb);
+    const TriangleD tb = carry(k.state.b_in_a, b_.triangles[j]);
     for (std::uint32_t i = na.first; i < na.first + na.count; ++i) {
-      const TriangleD ta = to_double(a_.triangles[i]);
-      double open = free_until;
-      const double seconds =
-          longest(gap_between(span_of(ta), span_b), less, s.acceleration, limit() - s.time,
-                  [&](const Vector3d& n) { return closing_speed(n, ta, tb, s); });
-      open = std::max(open, std::min(s.time + seconds, s.horizon));
+      const double open =
+          std::max(free_until, open_until(to_double(a_.triangles[i]), tb, k, limit()));
       if (open >= limit()) continue;
       const Meeting meeting =
           follow(i, j, open, limit(), thresholds_, std::numeric_limits<double>::infinity());
@@ -303,7 +323,10 @@ Meeting ImpactSearch::first(double from, const Thresholds& thresholds, const Mee
         const double t = entry.free_until;
         Entry sooner = split_a ? pair(na.first, entry.b, t) : pair(entry.a, nb.first, t);
         Entry later = split_a ? pair(na.first + 1, entry.b, t) : pair(entry.a, nb.first + 1, t);
-        if (later.free_until < sooner.free_until) std::swap(sooner, later);
+        if (later.free_until < sooner.free_until ||
+            (later.free_until == sooner.free_until && later.guess < sooner.guess)) {
+          std::swap(sooner, later);
+        }
         if (later.free_until < limit()) stack[waiting++] = later;
         entry = sooner;
         continue;

@@ -25,6 +25,8 @@ struct Knot {
   Eigen::Vector3d v;  ///< velocities of the state along the axes of A's boxes
   Eigen::Vector3d omega_a;
   Eigen::Vector3d omega_b;
+  double spin_a = 0.0;  ///< their lengths
+  double spin_b = 0.0;
 };
 
 /// Two slots that meet at a time.
@@ -47,6 +49,7 @@ struct SearchMemory {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     double free_until = 0.0;
+    double guess = 0.0;  ///< when they may meet: for the order of the search only
   };
   std::vector<Entry> stack;
   std::vector<double> times;
@@ -82,7 +85,9 @@ private:
   void place_knots(double from);
   std::size_t knot_index(double t) const;
   const Knot& knot(std::size_t index);
-  double open_until(const Node& na, const Node& nb, const Knot& k, double limit) const;
+  double open_until(const Node& na, const Node& nb, const Knot& k, double limit,
+                    double& guess) const;
+  double open_until(const TriangleD& ta, const TriangleD& tb, const Knot& k, double limit) const;
   Entry pair(std::uint32_t a, std::uint32_t b, double free_until);
   void leaves(const Node& na, const Node& nb, double free_until);
   double limit() const noexcept;

@@ -68,24 +68,41 @@ inline double positive_gap(double apart, double reach) {
   return gap > 0.0 ? std::copysign(gap, apart) : 0.0;
 }
 
-inline BoxGap box_gap(const Box& a, const Box& b, const BoxTransform& to) {
-  const Eigen::Vector3d a_half = 0.5 * (a.max.cast<double>() - a.min.cast<double>());
-  const Eigen::Vector3d b_half = 0.5 * (b.max.cast<double>() - b.min.cast<double>());
-  const Eigen::Vector3d b_center = 0.5 * (b.max.cast<double>() + b.min.cast<double>());
-  const Eigen::Vector3d a_center = 0.5 * (a.max.cast<double>() + a.min.cast<double>());
+/// A box by its middle and half its extent.
+struct CentredBox {
+  Eigen::Vector3d center;
+  Eigen::Vector3d half;
+};
+
+inline CentredBox centred(const Box& box) {
+  const Eigen::Vector3d low = box.min.cast<double>();
+  const Eigen::Vector3d high = box.max.cast<double>();
+  return {0.5 * (high + low), 0.5 * (high - low)};
+}
+
+/// `apart`: from A's middle to B's, along A's axes.
+inline BoxGap box_gap(const CentredBox& a, const CentredBox& b, const Eigen::Vector3d& apart,
+                      const BoxTransform& to) {
   const Eigen::Matrix3d& r = to.rotation;
   const Eigen::Matrix3d& s = to.abs_rotation;
-  const Eigen::Vector3d apart = detail::rotate(r, b_center) + to.translation - a_center;
   BoxGap gap;
   for (int i = 0; i < 3; ++i) {
-    gap.along_a[i] =
-        positive_gap(apart[i], a_half[i] + (s(i, 0) * b_half[0] + s(i, 1) * b_half[1]) +
-                                   (s(i, 2) * b_half[2] + to.margin_a));
+    const double reach_a = a.half[i] + (s(i, 0) * b.half[0] + s(i, 1) * b.half[1]) +
+                           (s(i, 2) * b.half[2] + to.margin_a);
+    gap.along_a[i] = positive_gap(apart[i], reach_a);
     const double b_apart = (r(0, i) * apart[0] + r(1, i) * apart[1]) + r(2, i) * apart[2];
-    gap.along_b[i] = positive_gap(b_apart, b_half[i] + (s(0, i) * a_half[0] + s(1, i) * a_half[1]) +
-                                               (s(2, i) * a_half[2] + to.margin_b));
+    const double reach_b = b.half[i] + (s(0, i) * a.half[0] + s(1, i) * a.half[1]) +
+                           (s(2, i) * a.half[2] + to.margin_b);
+    gap.along_b[i] = positive_gap(b_apart, reach_b);
   }
   return gap;
+}
+
+inline BoxGap box_gap(const Box& a, const Box& b, const BoxTransform& to) {
+  const CentredBox box_a = centred(a);
+  const CentredBox box_b = centred(b);
+  const Eigen::Vector3d at = rotate(to.rotation, box_b.center) + to.translation;
+  return box_gap(box_a, box_b, at - box_a.center, to);
 }
 
 /// Factor that makes a length measured along B's axes a lower bound in A's frame when the pose is
