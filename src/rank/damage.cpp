@@ -8,8 +8,8 @@
 namespace crashrank::detail {
 namespace {
 
-constexpr double sample_length_m = 0.25;
-constexpr double max_samples = 16.0;
+constexpr double sample_length_m = 0.5;
+constexpr double max_samples = 8.0;
 
 Box bounds_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
   Box box;
@@ -63,13 +63,21 @@ public:
       return;
     }
     seconds_ = scene.crush.time_s;
-    const double until = contact.time_of_impact_s + seconds_;
-    length_m_ = ego_.reach(scene.ego.radius_m, contact.time_of_impact_s, until) +
-                other_.reach(scene.actors[contact.actor].radius_m, contact.time_of_impact_s, until);
+    const Pose before = relative(other_start_, ego_start_);
+    const Pose after = relative(other_at(1.0), ego_at(1.0));
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
+                                 (corner & 4) != 0 ? 1.0 : -1.0);
+      const Eigen::Vector3d point = scene.ego.center_m + scene.ego.half_axes_m * sign;
+      const Eigen::Vector3d way = after.rotation * point + after.translation -
+                                  (before.rotation * point + before.translation);
+      length_m_ = std::max(length_m_, way.norm());
+    }
   }
 
   double seconds() const { return seconds_; }
-  /// No two points of the bodies move further against each other.
+  /// How far the corners of the ego's box get in the frame of the other, the one that gets
+  /// furthest.
   double length_m() const { return length_m_; }
 
   Pose ego_at(double share) const {

@@ -137,7 +137,7 @@ struct RankResult {
 /// is found without stepping over any (time_of_impact); a body inside another at the start is a
 /// contact at time 0. Then the bodies move on by the scenario's crush, as if nothing held them, and
 /// every triangle that meets the other body on the way is damaged: those that intersect it at one
-/// of the poses looked at, every 0.25 m of the way (at most 16), and those that it passed through,
+/// of the poses looked at, every 0.5 m of the way (at most 8), and those that it passed through,
 /// a corner's way crossing its surface. So a pole leaves a furrow, and a front that is wholly
 /// inside a wall counts.
 ///
