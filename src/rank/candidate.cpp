@@ -1,5 +1,7 @@
 #include "crashrank/rank/candidate.hpp"
 
+#include "rank/guard.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -165,9 +167,7 @@ std::string free_name(std::set<std::string>& taken, const std::string& wish) {
   return name;
 }
 
-}  // namespace
-
-Result<std::vector<Candidate>> make_candidates(const Scenario& scenario, double ego_length_m) {
+Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_length_m) {
   const double wheelbase = wheelbase_m(scenario, ego_length_m);
   std::vector<Candidate> candidates;
   std::set<std::string> names;
@@ -197,14 +197,22 @@ Result<std::vector<Candidate>> make_candidates(const Scenario& scenario, double 
   return candidates;
 }
 
+}  // namespace
+
+Result<std::vector<Candidate>> make_candidates(const Scenario& scenario, double ego_length_m) {
+  return detail::guarded([&] { return make_all(scenario, ego_length_m); });
+}
+
 Result<Motion> make_motion(const ScenarioActor& actor) {
-  if (!actor.poses.empty()) return timed_motion(actor.poses, "actors." + actor.name);
-  TurnMotion turn;
-  turn.start = actor.pose;
-  turn.speed_mps = actor.speed_mps;
-  turn.yaw_rate_radps = actor.yaw_rate_radps;
-  turn.acceleration_mps2 = actor.acceleration_mps2;
-  return Motion(turn);
+  return detail::guarded([&]() -> Result<Motion> {
+    if (!actor.poses.empty()) return timed_motion(actor.poses, "actors." + actor.name);
+    TurnMotion turn;
+    turn.start = actor.pose;
+    turn.speed_mps = actor.speed_mps;
+    turn.yaw_rate_radps = actor.yaw_rate_radps;
+    turn.acceleration_mps2 = actor.acceleration_mps2;
+    return Motion(turn);
+  });
 }
 
 }  // namespace crashrank

@@ -1,6 +1,8 @@
 #include "crashrank/rank/rank.hpp"
 
 #include "rank/evaluate.hpp"
+#include "rank/guard.hpp"
+#include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
 #include "rank/workers.hpp"
 
@@ -13,13 +15,10 @@
 namespace crashrank {
 namespace {
 
-Error out_of_memory() {
-  return make_error(ErrorCode::internal, "there is not enough memory to rank this scenario",
-                    "rank fewer candidates or coarser meshes");
-}
-
 Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> models,
                                  const RankOptions& options) {
+  const Status sound = detail::check_scenario(scenario);
+  if (!sound) return sound.error();
   RankResult result;
   const Result<detail::Scene> scene = detail::make_scene(scenario, models, options, result);
   if (!scene) return scene.error();
@@ -40,11 +39,11 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
     try {
       result.ranking[i] = detail::evaluate(*scene, result.candidates[i], scratch[worker], work[i]);
       result.ranking[i].candidate = i;
-    } catch (const std::exception&) {
+    } catch (const std::bad_alloc&) {
       failed[i] = 1;
     }
   });
-  if (std::find(failed.begin(), failed.end(), 1) != failed.end()) return out_of_memory();
+  if (std::find(failed.begin(), failed.end(), 1) != failed.end()) throw std::bad_alloc();
   result.work = scene->work;
   for (const RankWork& spent : work) result.work += spent;
   detail::put_in_order(result);
@@ -56,18 +55,13 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
 Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
                         const RankOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  try {
-    Result<RankResult> result = rank_or_throw(scenario, models, options);
-    if (result) {
-      result->elapsed_s =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-    return result;
-  } catch (const std::bad_alloc&) {
-    return out_of_memory();
-  } catch (const std::exception& error) {
-    return make_error(ErrorCode::internal, error.what(), "report this as a defect");
+  Result<RankResult> result =
+      detail::guarded([&] { return rank_or_throw(scenario, models, options); });
+  if (result) {
+    result->elapsed_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
+  return result;
 }
 
 }  // namespace crashrank

@@ -1,5 +1,7 @@
 #include "crashrank/rank/scenario.hpp"
 
+#include "rank/guard.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -27,10 +29,8 @@ fs::path owning_folder(const fs::path& folder) {
   }
 }
 
-}  // namespace
-
-Result<std::string> resolve_mesh_path(const std::string& scenario_file, const std::string& mesh,
-                                      const ScenarioPaths& paths) {
+Result<std::string> resolve(const std::string& scenario_file, const std::string& mesh,
+                            const ScenarioPaths& paths) {
   std::error_code error;
   const fs::path folder =
       fs::weakly_canonical(fs::absolute(scenario_file, error).parent_path(), error);
@@ -60,12 +60,12 @@ Result<std::string> resolve_mesh_path(const std::string& scenario_file, const st
                "both, or allow the mesh's folder when calling"};
 }
 
-Result<Scenario> load_scenario(const std::string& text, const std::string& file,
-                               const ScenarioPaths& paths) {
+Result<Scenario> load(const std::string& text, const std::string& file,
+                      const ScenarioPaths& paths) {
   Result<Scenario> scenario = parse_scenario(text, file);
   if (!scenario) return scenario;
   for (ScenarioModel& model : scenario->models) {
-    Result<std::string> path = resolve_mesh_path(file, model.mesh, paths);
+    Result<std::string> path = resolve(file, model.mesh, paths);
     if (!path) {
       path.error().place = "models." + model.name + ".mesh";
       return path.error();
@@ -75,7 +75,7 @@ Result<Scenario> load_scenario(const std::string& text, const std::string& file,
   return scenario;
 }
 
-Result<Scenario> load_scenario_file(const std::string& file, const ScenarioPaths& paths) {
+Result<Scenario> read_and_load(const std::string& file, const ScenarioPaths& paths) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (error || !fs::exists(status)) {
@@ -95,7 +95,23 @@ Result<Scenario> load_scenario_file(const std::string& file, const ScenarioPaths
     in.read(block.data(), static_cast<std::streamsize>(block.size()));
     text.append(block, 0, static_cast<std::size_t>(in.gcount()));
   }
-  return load_scenario(text, file, paths);
+  return load(text, file, paths);
+}
+
+}  // namespace
+
+Result<std::string> resolve_mesh_path(const std::string& scenario_file, const std::string& mesh,
+                                      const ScenarioPaths& paths) {
+  return detail::guarded([&] { return resolve(scenario_file, mesh, paths); });
+}
+
+Result<Scenario> load_scenario(const std::string& text, const std::string& file,
+                               const ScenarioPaths& paths) {
+  return detail::guarded([&] { return load(text, file, paths); });
+}
+
+Result<Scenario> load_scenario_file(const std::string& file, const ScenarioPaths& paths) {
+  return detail::guarded([&] { return read_and_load(file, paths); });
 }
 
 }  // namespace crashrank

@@ -1,4 +1,5 @@
 #include "crashrank/rank/scenario.hpp"
+#include "rank/guard.hpp"
 #include "rank/json_object.hpp"
 #include "rank/json_text.hpp"
 
@@ -310,9 +311,7 @@ Scenario read_scenario(const json& document, Status& status) {
   return scenario;
 }
 
-}  // namespace
-
-Result<Scenario> parse_scenario(const std::string& text, const std::string& file) {
+Result<Scenario> parse(const std::string& text, const std::string& file) {
   if (text.size() > limits::file_bytes) {
     return Error{
         ErrorCode::limit_exceeded, file, {}, "is larger than 16 MiB", "split the scenario"};
@@ -330,6 +329,12 @@ Result<Scenario> parse_scenario(const std::string& text, const std::string& file
   }
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
   return scenario;
+}
+
+}  // namespace
+
+Result<Scenario> parse_scenario(const std::string& text, const std::string& file) {
+  return detail::guarded([&] { return parse(text, file); });
 }
 
 }  // namespace crashrank

@@ -312,6 +312,44 @@ TEST(Rank, TroubleIsAnErrorThatNamesItsPlace) {
   EXPECT_EQ(rank(scene.scenario, scene.models).error().code, ErrorCode::bad_input);
 }
 
+TEST(Rank, NumbersThatNobodyCanComputeWithAreRefused) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const auto place_after = [](auto&& spoil) {
+    Scene scene = car_and_wall();
+    scene.add_candidate("keep going", 0.0);
+    spoil(scene.scenario);
+    const Result<RankResult> result = rank(scene.scenario, scene.models);
+    EXPECT_FALSE(result.ok());
+    return result.ok() ? std::string() : result.error().place;
+  };
+  for (const double bad : {nan, inf, -inf}) {
+    EXPECT_EQ(place_after([&](Scenario& s) { s.ego.speed_mps = bad; }), "ego.speed_mps");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.ego.pose.translation.y() = bad; }), "ego.pose");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.actors[0].pose.rotation(1, 1) = bad; }),
+              "actors[0].pose");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.actors[0].acceleration_mps2 = bad; }),
+              "actors[0].acceleration_mps2");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.listed[0].steering_rad = bad; }),
+              "candidates.listed[0].steering_deg");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.horizon_s = bad; }), "horizon_s");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.crush.depth_m = bad; }), "crush.depth_m");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.models[0].mass_kg = bad; }), "models.car.mass_kg");
+    EXPECT_EQ(place_after([&](Scenario& s) { s.grip = bad; }), "grip");
+  }
+  EXPECT_EQ(place_after([](Scenario& s) { s.models[0].mass_kg = 0.0; }), "models.car.mass_kg");
+  EXPECT_EQ(place_after([](Scenario& s) { s.horizon_s = 0.0; }), "horizon_s");
+  EXPECT_EQ(place_after([](Scenario& s) { s.grid = CandidateGrid{0, 3}; }), "candidates.grid");
+  EXPECT_EQ(place_after([](Scenario& s) {
+              s.grid = CandidateGrid{1000, 1000};
+            }),
+            "candidates.grid");
+  EXPECT_EQ(place_after([](Scenario& s) {
+              s.actors[0].poses = {{1.0, {}}, {0.5, {}}};
+            }).rfind("actors.wall.poses", 0),
+            0U);
+}
+
 TEST(Rank, AQuestionLeftUndecidedIsToldAsAnInterval) {
   Scene scene = car_and_wall();
   scene.models[0] = *make_model(box_mesh({2, 1, 0.75}, 12));

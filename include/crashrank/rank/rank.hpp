@@ -146,8 +146,9 @@ struct RankResult {
 /// touches nothing before what does, a clean miss before a graze; then the later first contact;
 /// then the lower closing speed; then the order of the candidates. No two places are equal.
 ///
-/// Cost: about the candidates times the bodies they come near. Errors: bad_input (missing or empty
-/// model, ego without mass, poses out of order), usage (number of models), internal (no memory).
+/// Cost: about the candidates times the bodies they come near. Errors: bad_input (numbers out
+/// of `scenario_limits` or not finite, poses not rigid or out of order, missing or empty model, ego
+/// without mass), usage (number of models), internal (no memory).
 /// Safe from any thread; allocates.
 CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
                                       const RankOptions& options = {});

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "crashrank/base/result.hpp"
+
+#include <exception>
+#include <new>
+
+namespace crashrank::detail {
+
+/// Runs a function that returns a Result and turns what it throws into an error: no exception
+/// leaves the library.
+template <class Function> auto guarded(const Function& function) -> decltype(function()) {
+  try {
+    return function();
+  } catch (const std::bad_alloc&) {
+    return make_error(ErrorCode::internal, "there is not enough memory",
+                      "give smaller input or more memory");
+  } catch (const std::exception& error) {
+    return make_error(ErrorCode::internal, error.what(), "report this as a defect");
+  }
+}
+
+}  // namespace crashrank::detail
