@@ -135,16 +135,16 @@ Status check_surface(const TriangleMesh& mesh, const MeshQuality& quality) {
     return make_error(ErrorCode::bad_input, "the file holds no triangles",
                       "export surfaces, not points or lines");
   }
+  if (quality.degenerate_triangles == mesh.size()) {
+    return make_error(ErrorCode::bad_input, "every triangle is degenerate: there is no surface",
+                      "export the mesh again");
+  }
   const double largest = quality.extent_m.maxCoeff();
   if (!(largest >= min_extent_m && largest <= max_extent_m)) {
     return make_error(
         ErrorCode::bad_input,
         "its largest extent is " + number(largest) + " m, outside the range of 1e-6 to 1e6 m",
         "give the scale in metres per file unit");
-  }
-  if (quality.degenerate_triangles == mesh.size()) {
-    return make_error(ErrorCode::bad_input, "every triangle is degenerate: there is no surface",
-                      "export the mesh again");
   }
   return Success{};
 }

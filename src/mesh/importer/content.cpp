@@ -18,20 +18,6 @@ using namespace std::string_view_literals;
 constexpr std::size_t head_bytes = 4096;
 constexpr std::string_view utf8_mark = "\xef\xbb\xbf"sv;
 
-std::string read_at(int descriptor, std::size_t offset, std::size_t size) {
-  std::string text(size, '\0');
-  std::size_t done = 0;
-  while (done < size) {
-    const ssize_t got =
-        ::pread(descriptor, text.data() + done, size - done, static_cast<off_t>(offset + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) break;
-    done += static_cast<std::size_t>(got);
-  }
-  text.resize(done);
-  return text;
-}
-
 Error refuse(std::string reason, std::string remedy) {
   return make_error(ErrorCode::bad_input, std::move(reason), std::move(remedy));
 }
@@ -62,8 +48,11 @@ double unit_in_metres(std::string_view tag) {
   tag.remove_prefix(name + 7);
   tag = tag.substr(0, tag.find(quote));
   while (!tag.empty() && (tag.front() == ' ' || tag.front() == '+')) tag.remove_prefix(1);
+  // Exporters in some countries write "0,01", and the parser takes the comma for a point.
+  std::string number(tag);
+  std::replace(number.begin(), number.end(), ',', '.');
   double metres = 0.0;
-  const auto result = std::from_chars(tag.data(), tag.data() + tag.size(), metres);
+  const auto result = std::from_chars(number.data(), number.data() + number.size(), metres);
   return result.ec == std::errc() ? metres : std::nan("");
 }
 
@@ -120,6 +109,20 @@ Result<Content> look_at_head(std::string_view head, const std::string& extension
 }
 
 }  // namespace
+
+std::string read_at(int descriptor, std::size_t offset, std::size_t size) {
+  std::string text(size, '\0');
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t got =
+        ::pread(descriptor, text.data() + done, size - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  text.resize(done);
+  return text;
+}
 
 Result<Content> look_at(int descriptor, const std::string& extension) {
   const std::string head = read_at(descriptor, 0, head_bytes);

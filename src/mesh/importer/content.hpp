@@ -16,4 +16,7 @@ struct Content {
 /// gigabytes), XML entities and units that are no length. Reads the descriptor by position.
 Result<Content> look_at(int descriptor, const std::string& extension);
 
+/// Up to `size` bytes from `offset` on; fewer at the end of the file.
+std::string read_at(int descriptor, std::size_t offset, std::size_t size);
+
 }  // namespace crashrank::importer

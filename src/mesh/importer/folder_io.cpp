@@ -67,18 +67,9 @@ private:
   std::size_t position_ = 0;
 };
 
-std::string extension_of(const std::string& name) {
-  const std::size_t dot = name.find_last_of("./");
-  if (dot == std::string::npos || name[dot] == '/') return {};
-  std::string extension = name.substr(dot + 1);
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return extension;
-}
-
-// Which files a format may name and needs for its triangles or the names of its materials.
-bool may_name(const std::string& format, const std::string& extension) {
-  if (format == "obj") return extension == "mtl";
-  return format == "gltf" || format == "glb";
+// Only these formats spread over files: material libraries, by whatever name, and buffers.
+bool may_name_files(const std::string& format) {
+  return format == "obj" || format == "gltf" || format == "glb";
 }
 
 // Exporters write "my%20car.bin" for "my car.bin".
@@ -146,8 +137,8 @@ std::string FolderIo::resolve(const std::string& name, std::string& reason) cons
 }
 
 int FolderIo::open_inside(const std::string& name, std::string& reason) const {
-  if (!may_name(extension_, extension_of(name))) {
-    reason = "is not of a kind that a mesh of this format may name";
+  if (!may_name_files(extension_)) {
+    reason = "is named by a mesh whose format keeps everything in one file";
     return -1;
   }
   const std::string real = resolve(name, reason);
@@ -184,8 +175,7 @@ void FolderIo::note(const std::string& name, const std::string& reason) {
 
 bool FolderIo::Exists(const char* file) const {
   std::string reason;
-  return mesh_name_ == file ||
-         (may_name(extension_, extension_of(file)) && !resolve(file, reason).empty());
+  return mesh_name_ == file || (may_name_files(extension_) && !resolve(file, reason).empty());
 }
 
 Assimp::IOStream* FolderIo::Open(const char* file, const char* mode) {

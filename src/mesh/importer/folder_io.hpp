@@ -10,7 +10,7 @@
 namespace crashrank::importer {
 
 /// The parser's only way to files: the mesh, already open as standard input, and regular files
-/// whose real path lies inside the mesh's folder, of the kinds its format may name. Everything is
+/// whose real path lies inside the mesh's folder, for the formats that name any. Everything is
 /// read-only.
 class FolderIo : public Assimp::IOSystem {
 public:

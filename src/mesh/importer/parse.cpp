@@ -3,16 +3,21 @@
 #include "mesh/importer/content.hpp"
 #include "mesh/importer/flatten.hpp"
 #include "mesh/importer/folder_io.hpp"
+#include "mesh/importer/gltf_count.hpp"
 #include "mesh/text.hpp"
 
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
+#include <assimp/mesh.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <sstream>
@@ -38,6 +43,27 @@ void keep_parsers_of(Assimp::Importer& importer, const std::string& extension) {
       importer.UnregisterLoader(importer.GetImporter(i));
     }
   }
+}
+
+// The glTF parser leaves out faces with bad indices on its own and only logs it.
+class DropListener : public Assimp::LogStream {
+public:
+  void write(const char* message) override {
+    heard_ = heard_ || std::string(message).find("out-of-range indices") != std::string::npos;
+  }
+  bool heard() const { return heard_; }
+
+private:
+  bool heard_ = false;
+};
+
+std::uint64_t faces_in(const aiScene& scene) {
+  std::uint64_t faces = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) faces += mesh.mFaces[f].mNumIndices == 3 ? 1 : 0;
+  }
+  return faces;
 }
 
 void configure(Assimp::Importer& importer) {
@@ -111,6 +137,9 @@ Result<Parsed> parse(const Request& request) {
   importer.SetIOHandler(owned.release());
   keep_parsers_of(importer, request.extension);
   configure(importer);
+  DropListener listener;
+  Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+  Assimp::DefaultLogger::get()->attachStream(&listener, Assimp::Logger::Warn);
   if (importer.ReadFile(files.mesh_name(), 0) == nullptr) {
     return parser_error(importer.GetErrorString(), files, request);
   }
@@ -119,8 +148,14 @@ Result<Parsed> parse(const Request& request) {
   if (scene == nullptr || scene->mRootNode == nullptr) {
     return make_error(ErrorCode::bad_input, "the file holds no scene", "export the file again");
   }
-  const Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
+  std::uint64_t left_out = 0;
+  if (listener.heard()) {
+    const std::uint64_t promised = gltf_triangles(STDIN_FILENO, request.file_bytes);
+    left_out = std::max(promised, faces_in(*scene) + 1) - faces_in(*scene);
+  }
+  Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
   if (!dropped) return dropped.error();
+  *dropped += left_out;
   if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr) {
     return parser_error(importer.GetErrorString(), files, request);
   }
@@ -137,10 +172,10 @@ Result<Parsed> parse(const Request& request) {
 
   Parsed parsed{std::move(*mesh), *dropped, {}};
   if (*dropped > 0) {
-    parsed.warnings.push_back(
-        std::to_string(*dropped) +
-        (*dropped == 1 ? " face names a vertex that is" : " faces name vertices that are") +
-        " not there and left out; triangles are counted without");
+    parsed.warnings.push_back(std::to_string(*dropped) +
+                              (*dropped == 1 ? " face that names a missing vertex was left out"
+                                             : " faces that name missing vertices were left out") +
+                              "; triangles are numbered without");
   }
   for (const std::string& file : files.refused()) parsed.warnings.push_back(file);
   return parsed;

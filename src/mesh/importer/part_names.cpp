@@ -11,14 +11,18 @@
 namespace crashrank::importer {
 namespace {
 
-// "nodes[3]", "meshes[0]-1": how glTF's unnamed things are called.
+// FBX transforms come as chains of nodes, "door_$AssimpFbx$_GeometricScaling" for "door".
+std::string without_chain(const std::string& name) {
+  return name.substr(0, name.find("_$AssimpFbx$_"));
+}
+
+// "nodes[3]", "meshes[0]-1", "3DSMesh_2", "2": how glTF's and 3DS's unnamed things are called.
 bool is_indexed(std::string_view name) {
-  for (const std::string_view prefix : {"nodes[", "meshes[", "materials["}) {
+  for (const std::string_view prefix : {"", "nodes[", "meshes[", "materials[", "3DSMesh_"}) {
     if (name.substr(0, prefix.size()) != prefix) continue;
-    name.remove_prefix(prefix.size());
-    return std::all_of(name.begin(), name.end(), [](char c) {
-      return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == ']' || c == '-';
-    });
+    if (name.find_first_not_of("0123456789]-", prefix.size()) == std::string_view::npos) {
+      return true;
+    }
   }
   return false;
 }
@@ -26,8 +30,8 @@ bool is_indexed(std::string_view name) {
 }  // namespace
 
 bool is_generic(std::string_view name) {
-  constexpr std::array<std::string_view, 5> made_up{"DefaultMaterial", "defaultobject", "default",
-                                                    "RootNode", "ROOT"};
+  constexpr std::array<std::string_view, 6> made_up{
+      "DefaultMaterial", "%%%DEFAULT", "defaultobject", "default", "RootNode", "ROOT"};
   if (name.empty() || std::find(made_up.begin(), made_up.end(), name) != made_up.end()) {
     return true;
   }
@@ -51,7 +55,8 @@ std::vector<std::string> name_parts(const std::vector<PartLabels>& labels,
     names.push_back(name);
     return true;
   };
-  for (const PartLabels& label : labels) {
+  for (PartLabels label : labels) {
+    label.node = without_chain(label.node);
     std::string base = fallback;
     for (const std::string* name : {&label.node, &label.mesh, &label.material}) {
       if (is_generic(*name)) continue;

@@ -1,0 +1,314 @@
+#include "crashrank/mesh/import.hpp"
+
+#include "mesh/mesh_writers.hpp"
+#include "mesh/scratch_dir.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using test::ScratchDir;
+
+constexpr const char* cube_vertices =
+    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+constexpr const char* cube_faces =
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+std::string cube(const std::string& before = "", const std::string& after = "") {
+  return before + cube_vertices + cube_faces + after;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+std::string polygon(std::size_t corners) {
+  std::ostringstream out;
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(corners);
+    out << "v " << std::cos(angle) << ' ' << std::sin(angle) << " 0\n";
+  }
+  out << 'f';
+  for (std::size_t i = 1; i <= corners; ++i) out << ' ' << i;
+  out << '\n';
+  return out.str();
+}
+
+// A chain of nodes, each the only child of the one before.
+std::string deep_glb(std::size_t depth) {
+  std::ostringstream json;
+  json << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)";
+  for (std::size_t i = 0; i < depth; ++i) {
+    json << (i == 0 ? "" : ",") << R"({"children":[)" << i + 1 << "]}";
+  }
+  json << R"(,{"name":"last"}]})";
+  return test::glb(json.str(), "");
+}
+
+std::string cyclic_collada() {
+  return replaced(test::as_collada(test::eighths_soup()), "<matrix>",
+                  "<instance_node url=\"#hull\"/><matrix>");
+}
+
+std::string entity_bomb() {
+  std::string types = "<!DOCTYPE COLLADA [<!ENTITY a0 \"lol\">";
+  for (int i = 1; i < 10; ++i) {
+    std::string ten;
+    for (int k = 0; k < 10; ++k) ten += "&a" + std::to_string(i - 1) + ";";
+    types += "<!ENTITY a" + std::to_string(i) + " \"" + ten + "\">";
+  }
+  return replaced(test::as_collada(test::eighths_soup()), "<COLLADA", types + "]>\n<COLLADA");
+}
+
+// Same text in every run: a linear congruential sequence, no zero byte left out.
+std::string noise(std::size_t bytes) {
+  std::string text;
+  std::uint32_t state = 12345;
+  while (text.size() < bytes) {
+    state = state * 1664525U + 1013904223U;
+    text += static_cast<char>(state >> 24U);
+  }
+  return text;
+}
+
+std::string one_box_glb(const std::string& what, const std::string& by) {
+  std::string buffer;
+  const std::string json = test::as_gltf({test::eighths_soup()[0]}, "", buffer);
+  return test::glb(replaced(json, what, by), buffer);
+}
+
+// Index `value` in place of the first one of the only mesh.
+std::string glb_with_index(std::uint32_t value) {
+  std::string buffer;
+  const std::string json = test::as_gltf({test::eighths_soup()[0]}, "", buffer);
+  for (std::size_t byte = 0; byte < 4; ++byte) {
+    buffer[36 * 12 + byte] = static_cast<char>(value >> (8 * byte) & 0xffU);
+  }
+  return test::glb(json, buffer);
+}
+
+struct Case {
+  std::string name;
+  std::string bytes;
+  std::string reason = {};    // part of the message, where the file is to be refused
+  std::size_t triangles = 0;  // otherwise
+  std::string warning = {};   // part of one, where there has to be one
+  std::size_t dropped = 0;
+};
+
+std::vector<Case> cases() {
+  const test::Soup soup = test::eighths_soup();
+  const std::string mixed =
+      replaced(replaced(cube(), "f 5 6 7 8", "f 8 7 6 5"), "f 2 3 7 6", "f 6 7 3 2");
+  return {
+      {"empty.obj", "", "empty"},
+      {"overflow.obj", replaced(cube(), "v 1 1 1", "v 1e39 1 1"), "not finite"},
+      {"nan.obj", replaced(cube(), "v 1 1 1", "v nan 1 1"), "not finite"},
+      {"denormal.obj", "v 0 0 0\nv 1e-40 0 0\nv 0 1e-40 0\nf 1 2 3\n", "outside the range"},
+      {"huge.obj", "v 0 0 0\nv 3e6 0 0\nv 0 3e6 0\nf 1 2 3\n", "outside the range"},
+      {"index.obj", cube("", "f 1 2 99\n"), "out of range"},
+      {"flat.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nv 3 3 3\nf 1 2 3\nf 2 3 4\n", "degenerate"},
+      {"winding.obj", mixed, "", 12, "disagree"},
+      {"polygon.obj", polygon(20'000), "20000 corners"},
+      {"polygon_fits.obj", polygon(2'000), "", 1998},
+      {"lines.obj", cube("", "l 1 7\np 3\n"), "", 12},
+      {"bom.obj", cube("\xef\xbb\xbf"), "", 12},
+      {"utf16.obj", std::string("\xfe\xff\0v\0 ", 6), "UTF-16"},
+      {"noise.obj", noise(4096), "binary"},
+      {"noise.stl", noise(4096), "STL"},
+      {"noise.ply", noise(4096), "ply"},
+      {"noise.off", noise(4096), "binary"},
+      {"noise.3ds", noise(4096), "3DS"},
+      {"noise.fbx", noise(4096), "FBX"},
+      {"noise.glb", noise(4096), "glTF"},
+      {"noise.gltf", noise(4096), ""},
+      {"noise.dae", noise(4096), ""},
+      {"noise.ac", noise(4096), "AC3D"},
+      {"names.obj", cube("o <script>alert(1)</script>\t\"quoted\",\x1b[31mred\n"), "", 12},
+      {"twice.obj",
+       replaced(cube("o wheel\n"), "v -1 -1 -1", "v -1 -1 -1") +
+           "o wheel\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 9 10 11\n",
+       "", 13},
+      {"cut.stl", test::as_stl_binary(soup).substr(0, 84 + 50 * 7 + 20), "STL"},
+      {"none.stl", std::string(80, ' ') + std::string(4, '\0'), "STL"},
+      {"promises.ply",
+       replaced(test::as_ply_text(soup), "element vertex 108", "element vertex 4000000000"), ""},
+      {"points.ply",
+       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+       "property float z\nend_header\n0 0 0\n1 1 1\n",
+       "no triangles"},
+      {"promises.off", replaced(test::as_off(soup), "108 36", "353535235358 36"), ""},
+      {"accessor.glb", one_box_glb("\"count\":36", "\"count\":9999"), "out of range"},
+      {"index.glb", glb_with_index(60'000), "", 11, "1 face", 1},
+      {"cycle.glb",
+       one_box_glb("\"nodes\":[{\"name\":\"hull\",",
+                   "\"nodes\":[{\"name\":\"hull\",\"children\":[0],"),
+       "recursive"},
+      {"deep.glb", deep_glb(200'000), ""},
+      {"cycle.dae", cyclic_collada(), ""},
+      {"points.glb", one_box_glb("\"indices\":1", "\"indices\":1,\"mode\":0"), "no triangles"},
+      {"missing.gltf",
+       replaced(test::as_gltf(soup), "data:application/octet-stream;base64,",
+                "missing.bin\",\"x\":\""),
+       "'missing.bin' is missing"},
+      {"negative.dae", test::as_collada(soup, "-1"), "<unit>"},
+      {"zero.dae", test::as_collada(soup, "0"), "<unit>"},
+      {"comma.dae", test::as_collada(soup, "0,5"), "", 36},
+      {"entities.dae", entity_bomb(), "entities"},
+      {"zero.fbx", test::as_fbx(soup, 0.0), ""},
+      {"negative.fbx", test::as_fbx(soup, -100.0), "UnitScaleFactor"},
+      {"no_extension", cube(), "extension"},
+      {"cube.x3d", cube(), "'x3d' is not a supported"},
+      {"cube.obj.zip", cube(), "'zip' is not a supported"},
+      {"zip.dae", std::string("PK\x03\x04") + noise(100), "archive"},
+      {"zip_at_end.dae", test::as_collada(soup) + "<!-- PK\x05\x06" + std::string(18, '\0'),
+       "archive"},
+      {"gzip.obj", "\x1f\x8b\x08" + noise(100), "archive"},
+      {"hello.ply", "hello", "ply"},
+  };
+}
+
+TEST(BadFile, EachEndsAsItShouldInBoundedTime) {
+  const ScratchDir dir;
+  for (const Case& bad : cases()) {
+    SCOPED_TRACE(bad.name);
+    const std::string path = dir.write(bad.name, bad.bytes);
+    const Result<ImportedMesh> imported = import_mesh(path);
+    if (bad.triangles == 0) {
+      ASSERT_FALSE(imported.ok());
+      const Error& error = imported.error();
+      EXPECT_TRUE(error.code == ErrorCode::bad_input || error.code == ErrorCode::limit_exceeded)
+          << error.message();
+      EXPECT_EQ(error.file, path);
+      EXPECT_NE(error.message().find(bad.reason), std::string::npos) << error.message();
+      EXPECT_FALSE(error.reason.empty());
+      for (const char c : error.message()) {
+        EXPECT_GE(static_cast<unsigned char>(c), 0x20) << error.message();
+      }
+      continue;
+    }
+    ASSERT_TRUE(imported.ok()) << imported.error().message();
+    EXPECT_EQ(imported->mesh.size(), bad.triangles);
+    EXPECT_EQ(imported->dropped_triangles, bad.dropped);
+    std::string warnings;
+    for (const std::string& warning : imported->warnings) warnings += warning + "\n";
+    EXPECT_NE(warnings.find(bad.warning), std::string::npos) << warnings;
+  }
+}
+
+TEST(BadFile, ADeepTreeOfNodesThatTheParserSurvivesIsFlattenedWithoutRecursion) {
+  // Collada nests nodes in its text; 2,000 levels are within the parser's own reach.
+  std::string nested = test::as_collada({test::eighths_soup()[0]});
+  std::string open;
+  std::string close;
+  for (int i = 0; i < 2'000; ++i) {
+    open += "<node>";
+    close += "</node>";
+  }
+  nested = replaced(nested, "<node id", open + "<node id");
+  nested = replaced(nested, "</visual_scene>", close + "</visual_scene>");
+  const ScratchDir dir;
+  const Result<ImportedMesh> imported = import_mesh(dir.write("nested.dae", nested));
+  ASSERT_TRUE(imported.ok()) << imported.error().message();
+  EXPECT_EQ(imported->mesh.size(), 12U);
+}
+
+TEST(BadFile, NamesComeBackAsTheyAre) {
+  const ScratchDir dir;
+  const Result<ImportedMesh> imported =
+      import_mesh(dir.write("a.obj", cube("o <script>alert(1)</script>\n")));
+  ASSERT_TRUE(imported.ok()) << imported.error().message();
+  EXPECT_EQ(imported->mesh.parts[0].name, "<script>alert(1)</script>");
+}
+
+TEST(BadFile, NamesThatAreNotUtf8AreMended) {
+  const ScratchDir dir;
+  const Result<ImportedMesh> imported = import_mesh(dir.write("a.obj", cube("o d\xf6r\n")));
+  ASSERT_TRUE(imported.ok()) << imported.error().message();
+  EXPECT_EQ(imported->mesh.parts[0].name, "d\xef\xbf\xbdr");
+}
+
+TEST(BadFile, TheByteOrderMarkCostsNoVertex) {
+  const ScratchDir dir;
+  const Result<ImportedMesh> plain = import_mesh(dir.write("plain.obj", cube()));
+  const Result<ImportedMesh> marked = import_mesh(dir.write("marked.obj", cube("\xef\xbb\xbf")));
+  ASSERT_TRUE(plain.ok() && marked.ok());
+  EXPECT_EQ(plain->mesh.triangles, marked->mesh.triangles);
+  EXPECT_EQ(plain->mesh.vertices, marked->mesh.vertices);
+}
+
+TEST(BadFile, LimitsAreKept) {
+  const ScratchDir dir;
+  const std::string path = dir.write("a.stl", test::as_stl_binary(test::ragged_soup(3, 1000)));
+  const auto code_with = [&](const std::function<void(ImportLimits&)>& tighten) {
+    ImportOptions options;
+    tighten(options.limits);
+    const Result<ImportedMesh> imported = import_mesh(path, options);
+    return imported.ok()                                        ? "loaded"
+           : imported.error().code == ErrorCode::limit_exceeded ? "limit exceeded"
+                                                                : "another error";
+  };
+  EXPECT_STREQ(code_with([](ImportLimits&) {}), "loaded");
+  EXPECT_STREQ(code_with([](ImportLimits& l) { l.file_bytes = 1000; }), "limit exceeded");
+  EXPECT_STREQ(code_with([](ImportLimits& l) { l.triangles = 999; }), "limit exceeded");
+  EXPECT_STREQ(code_with([](ImportLimits& l) { l.vertices = 999; }), "limit exceeded");
+  EXPECT_STREQ(code_with([](ImportLimits& l) { l.parts = 0; }), "limit exceeded");
+}
+
+// The folder of files with a MANIFEST.tsv of columns file, what is wrong, what a loader should do
+// (beginning with REJECT or LOAD, "or REJECT" where both are right).
+TEST(BadFile, TheFilesOfCrashrankBadMeshesEndAsTheirManifestSays) {
+  const char* folder = std::getenv("CRASHRANK_BAD_MESHES");
+  if (folder == nullptr) GTEST_SKIP() << "CRASHRANK_BAD_MESHES names no folder of bad meshes";
+  std::ifstream manifest(std::string(folder) + "/MANIFEST.tsv");
+  ASSERT_TRUE(manifest) << "no MANIFEST.tsv in " << folder;
+  std::string line;
+  std::getline(manifest, line);
+  std::size_t count = 0;
+  while (std::getline(manifest, line)) {
+    std::istringstream columns(line);
+    std::string file;
+    std::string wrong;
+    std::string expected;
+    std::getline(columns, file, '\t');
+    std::getline(columns, wrong, '\t');
+    std::getline(columns, expected, '\t');
+    SCOPED_TRACE(file + ": " + expected);
+    const auto start = std::chrono::steady_clock::now();
+    const Result<ImportedMesh> imported = import_mesh(std::string(folder) + "/" + file);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    const bool load = expected.compare(0, 4, "LOAD") == 0;
+    const bool either = expected.find("REJECT") != std::string::npos && load;
+    const bool either_warn = expected.find("or WARN") != std::string::npos;
+    const std::string told = imported.ok() ? "loaded" : imported.error().message();
+    if (!either && !either_warn) {
+      EXPECT_EQ(imported.ok(), load) << told;
+    }
+    std::cout << file << ": " << took.count() << " s, " << told << '\n';
+    ++count;
+  }
+  EXPECT_GT(count, 0U);
+  rusage used{};
+  ASSERT_EQ(::getrusage(RUSAGE_CHILDREN, &used), 0);
+  std::cout << count << " files; the largest importer process used " << used.ru_maxrss / 1024
+            << " MiB\n";
+  EXPECT_LT(used.ru_maxrss, 1L << 20);
+}
+
+}  // namespace
+}  // namespace crashrank
