@@ -223,8 +223,12 @@ private:
   }
 
   /// A point of two triangles that intersect, within rounding: where an edge of one crosses the
-  /// other's inside; for coplanar and touching ones the closest points found above.
+  /// other's inside; for coplanar and touching ones the closest points found above. Of those the
+  /// pair that lies closest together: where a sliver's normal is mostly rounding, a computed
+  /// crossing may be far from the other triangle.
   Point common_point() const {
+    Point common = 0.5 * (point_a_ + point_b_);
+    double apart = (point_b_ - point_a_).squaredNorm();
     for (const auto& [s, t] : {std::pair{&a_, &b_}, std::pair{&b_, &a_}}) {
       const Point n = (t->corner[1] - t->corner[0]).cross(t->corner[2] - t->corner[0]);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -235,10 +239,13 @@ private:
         if (!(hp * hq < 0.0)) continue;
         const Point x = p + (hp / (hp - hq)) * (q - p);
         Point foot;
-        if (over(x, *t, foot)) return foot;
+        if (over(x, *t, foot) && (foot - x).squaredNorm() < apart) {
+          common = foot;
+          apart = (foot - x).squaredNorm();
+        }
       }
     }
-    return 0.5 * (point_a_ + point_b_);
+    return common;
   }
 
   const TriangleD& a_;
