@@ -35,9 +35,10 @@ TEST(Folder, FilesBesideAndBelowTheMeshAreRead) {
 TEST(Folder, NothingOutsideItIs) {
   const ScratchDir dir;
   std::string absolute = (dir.path() / "car/a.bin").string();
-  for (const std::string uri : {std::string("../outside.bin"), std::string("parts/../../outside.bin"),
-                                std::string("..\\\\outside.bin"), std::string("%2e%2e/outside.bin"),
-                                absolute, std::string("/etc/passwd")}) {
+  for (const std::string uri :
+       {std::string("../outside.bin"), std::string("parts/../../outside.bin"),
+        std::string("..\\\\outside.bin"), std::string("%2e%2e/outside.bin"), absolute,
+        std::string("/etc/passwd")}) {
     SCOPED_TRACE(uri);
     std::filesystem::create_directories(dir.path() / "car/parts");
     dir.write("car/a.bin", std::string(100'000, ' '));
@@ -113,8 +114,9 @@ TEST(Folder, TexturesAreNeverAskedFor) {
   const ScratchDir dir;
   dir.write("car/paint.mtl", "newmtl paint\nKd 1 0 0\nmap_Kd ../secret.png\n");
   const Result<ImportedMesh> imported =
-      import_mesh(dir.write("car/a.obj", "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
-                                         "usemtl paint\nf 1 2 3\n"));
+      import_mesh(dir.write("car/a.obj",
+                            "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                            "usemtl paint\nf 1 2 3\n"));
   ASSERT_TRUE(imported.ok()) << imported.error().message();
   EXPECT_TRUE(imported->warnings.empty());
   EXPECT_EQ(imported->mesh.parts[0].name, "paint");

@@ -123,7 +123,8 @@ TEST_F(ImporterProcess, AnswersThatContradictThemselvesAreNot) {
   lie("trailer", [](Answer& a) { a.trailer = 0; });
   lie("more promised than sent", [](Answer& a) { a.header.vertices = 1'000'000; });
   const std::string whole = Answer().bytes();
-  for (std::size_t cut = 0; cut < whole.size(); cut += 7) lies.emplace_back("cut", whole.substr(0, cut));
+  for (std::size_t cut = 0; cut < whole.size(); cut += 7)
+    lies.emplace_back("cut", whole.substr(0, cut));
   for (const auto& [what, bytes] : lies) {
     SCOPED_TRACE(what);
     EXPECT_FALSE(import_answered(bytes).ok());
@@ -143,12 +144,12 @@ TEST_F(ImporterProcess, RefusalsComeThroughInOneLine) {
   put(bytes, detail::import_trailer);
   const Result<ImportedMesh> imported = import_answered(bytes);
   ASSERT_FALSE(imported.ok());
-  EXPECT_EQ(imported.error().message(),
-            mesh_ + ": face 7: it is\\x0abroken\\x1b[31m; mend it");
+  EXPECT_EQ(imported.error().message(), mesh_ + ": face 7: it is\\x0abroken\\x1b[31m; mend it");
 }
 
 TEST_F(ImporterProcess, AHangingImporterIsKilledAtTheDeadline) {
-  for (const char* script : {"exec sleep 100", "exec sleep 100 >&-", "trap '' TERM; exec sleep 100"}) {
+  for (const char* script :
+       {"exec sleep 100", "exec sleep 100 >&-", "trap '' TERM; exec sleep 100"}) {
     const auto start = std::chrono::steady_clock::now();
     const Result<ImportedMesh> imported = import_by(script);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;

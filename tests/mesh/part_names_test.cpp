@@ -12,10 +12,11 @@ namespace {
 using Names = std::vector<std::string>;
 
 TEST(PartNames, PreferNodeThenMeshThenMaterialThenFile) {
-  EXPECT_EQ(name_parts({{"door", "Cube.001", "paint"}, {"", "wheel", "rubber"}, {"", "", "glass"},
-                        {"", "", ""}},
-                       "car", 256),
-            (Names{"door", "wheel", "glass", "car"}));
+  EXPECT_EQ(
+      name_parts(
+          {{"door", "Cube.001", "paint"}, {"", "wheel", "rubber"}, {"", "", "glass"}, {"", "", ""}},
+          "car", 256),
+      (Names{"door", "wheel", "glass", "car"}));
 }
 
 TEST(PartNames, SeeThroughNamesThatParsersMakeUp) {
@@ -26,15 +27,15 @@ TEST(PartNames, SeeThroughNamesThatParsersMakeUp) {
   for (const char* name : {"wheel", "<b>bold</b>", "nodes[x]", "Scene", "door<1>", "3DSMesh"}) {
     EXPECT_FALSE(is_generic(name)) << name;
   }
-  EXPECT_EQ(name_parts({{"hood_$AssimpFbx$_GeometricScaling", "", ""}}, "car", 256),
-            Names{"hood"});
+  EXPECT_EQ(name_parts({{"hood_$AssimpFbx$_GeometricScaling", "", ""}}, "car", 256), Names{"hood"});
 }
 
 TEST(PartNames, TellTheMeshesOfOneNodeApart) {
-  EXPECT_EQ(name_parts({{"truck", "geom", "paint"}, {"truck", "geom", "tyres"},
-                        {"truck", "geom", "tyres"}},
-                       "car", 256),
-            (Names{"truck", "truck/geom", "truck/tyres"}));
+  EXPECT_EQ(
+      name_parts(
+          {{"truck", "geom", "paint"}, {"truck", "geom", "tyres"}, {"truck", "geom", "tyres"}},
+          "car", 256),
+      (Names{"truck", "truck/geom", "truck/tyres"}));
   EXPECT_EQ(name_parts({{"wheel", "", ""}, {"wheel", "", ""}, {"wheel", "", ""}}, "car", 256),
             (Names{"wheel", "wheel.2", "wheel.3"}));
   EXPECT_EQ(name_parts({{"wheel", "", ""}, {"wheel.2", "", ""}, {"wheel", "", ""}}, "car", 256),
@@ -55,7 +56,8 @@ TEST(PartNames, StayUniqueValidAndShort) {
 }
 
 TEST(Text, EscapesWhatATerminalWouldObey) {
-  EXPECT_EQ(detail::printable("a\x1b[31m\n\xc2\x9b\xff\xc3\xa9"), "a\\x1b[31m\\x0a\\xc2\\x9b\\xff\xc3\xa9");
+  EXPECT_EQ(detail::printable("a\x1b[31m\n\xc2\x9b\xff\xc3\xa9"),
+            "a\\x1b[31m\\x0a\\xc2\\x9b\\xff\xc3\xa9");
   EXPECT_EQ(detail::printable("abcdef", 3), "abc...");
   EXPECT_EQ(detail::to_utf8("\xed\xa0\x80", 100), "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(detail::to_utf8("\xf4\x90\x80\x80", 3), "\xef\xbf\xbd");
