@@ -104,11 +104,11 @@ inline Result<Pose> pose_from_matrix(View<const double> row_major) {
     return make_error(ErrorCode::bad_input, "a pose needs 16 numbers, a row-major 4x4 matrix");
   }
   Pose pose;
+  const double* row = row_major.data();
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      pose.rotation(i, j) = row_major[static_cast<std::size_t>(4 * i + j)];
-    }
-    pose.translation[i] = row_major[static_cast<std::size_t>(4 * i + 3)];
+    for (int j = 0; j < 3; ++j) pose.rotation(i, j) = row[j];
+    pose.translation[i] = row[3];
+    row += 4;
   }
   constexpr double last_row[4] = {0.0, 0.0, 0.0, 1.0};
   for (std::size_t j = 0; j < 4; ++j) {

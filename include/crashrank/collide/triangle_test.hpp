@@ -80,7 +80,9 @@ private:
   }
 
   bool coplanar_segment_meets(const Point& p, const Point& q, const TriangleD& t) {
-    const auto& [a, b, c] = t.corner;
+    const Point& a = t.corner[0];
+    const Point& b = t.corner[1];
+    const Point& c = t.corner[2];
     // Any coordinate plane on which the triangle does not fall flat shows the picture undistorted.
     int dropped = 0;
     while (orient2d(a, b, c, dropped, exact_calls_) == 0) ++dropped;
