@@ -220,7 +220,7 @@ private:
 };
 
 /// Works off all lane pairs below `start`.
-void wide_traverse(const WideQuery& query, const WideTask& start, WideSink& sink) {
+inline void wide_traverse(const WideQuery& query, const WideTask& start, WideSink& sink) {
   Step step(query, sink);
   std::size_t waiting = 0;
   sink.stack[waiting++] = start;

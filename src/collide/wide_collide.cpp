@@ -33,7 +33,7 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
   const Eigen::Vector3d back = detail::rotate(to.rotation.transpose(), to.translation);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const auto k = static_cast<std::size_t>(3 * i + j);
+      const int k = 3 * i + j;
       query.rotation[k] = static_cast<float>(to.rotation(i, j));
       query.abs_rotation[k] = std::abs(query.rotation[k]);
       query.body_rotation[k] = static_cast<float>(pose.rotation(i, j));

@@ -205,11 +205,12 @@ ContactFacts contact_facts(const Model& a, const Motion& motion_a, const Model& 
     find_curve(a, b, relative(now.a, now.b), workspace);
   } else if (impact.state == ImpactState::contact && closing.norm() > 0.0) {
     double wait = options.depth_m / closing.norm();
-    for (int i = 0; i < most_tries && workspace.curve.empty(); ++i, wait *= 2.0) {
+    for (int i = 0; i < most_tries && workspace.curve.empty(); ++i) {
       facts.time_s = impact.time_s + std::min(wait, options.longest_s);
       now = moment_at(motion_a, motion_b, facts.time_s);
       find_curve(a, b, relative(now.a, now.b), workspace);
       if (wait >= options.longest_s) break;
+      wait *= 2.0;
     }
     if (workspace.curve.empty()) {
       facts.time_s = impact.time_s;
