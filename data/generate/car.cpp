@@ -9,6 +9,8 @@
 namespace generate {
 namespace {
 
+constexpr double far = 1e9;
+
 // x as the side view sees it: nose and tail are drawn back towards the sides.
 double bowed_x(const CarDesign& d, const Vec3& p) {
   const double y = p.y() / 0.8;
@@ -102,11 +104,18 @@ Field car_body(const CarDesign& d) {
     // Below the bumper line the crown would lift the floor: it fades out there.
     const double lift = crown * std::clamp((p.z() - 0.45) / 0.3, 0.0, 1.0);
     const double side = y - d.lower_half(p.x()) + d.lower_inset(p.z()) - arch_swell(d, p);
-    const double lower = smooth_max(d.lower.distance({x, p.z() + lift}), side, 0.11);
+    // Blends end where one side is beyond the other by their width: no more need be known there.
+    constexpr double edge_blend = 0.11;
+    constexpr double roof_blend = 0.13;
+    constexpr double belt_blend = 0.035;
+    const double lower = smooth_max(
+        d.lower.distance_within({x, p.z() + lift}, side - edge_blend, far), side, edge_blend);
     const double above = p.z() - d.belt_z;
-    const double glass = y - d.cabin_half(p.x()) + d.cabin_inset(above);
-    const double cabin = smooth_max(d.cabin.distance({x, p.z() + 0.8 * crown}), 0.92 * glass, 0.13);
-    return smooth_min(lower, cabin, 0.035);
+    const double glass = 0.92 * (y - d.cabin_half(p.x()) + d.cabin_inset(above));
+    if (glass > lower + belt_blend) return lower;
+    const double roof =
+        d.cabin.distance_within({x, p.z() + 0.8 * crown}, glass - roof_blend, lower + belt_blend);
+    return smooth_min(lower, smooth_max(roof, glass, roof_blend), belt_blend);
   };
 }
 

@@ -27,7 +27,7 @@ const std::vector<Entry>& catalogue() {
        "Size and mass of the European supermini class: 4.0-4.15 m long, 1,080-1,200 kg empty, a "
        "driver of 75 kg added. Yaw inertia: mass times the square of 0.29 lengths, the ratio "
        "published for a mid-size saloon of 1,621 kg and 3,167 kg m2."},
-      {"sedan", "Mid-size four-door saloon", "car", 60000, 0.0387,
+      {"sedan", "Mid-size four-door saloon", "car", 60000, 0.03954,
        [](double edge) { return build_car(sedan_design(), edge); }, 2.80, 1680.0, 3280.0,
        Vec3(1.66, 0.0, 0.55), "centre of the rear axle on the ground",
        "Size and mass of the mid-size class: 4.85-4.90 m long, 1,550-1,650 kg empty, a driver of "
@@ -37,8 +37,9 @@ const std::vector<Entry>& catalogue() {
        "Distribution lorry of the 18 t class, some two thirds laden; width 2.55 m and the rear "
        "under-run bar's clearance under 0.55 m are the legal limits in Europe. Yaw inertia: an "
        "even block of that length and width."},
-      {"motorcycle", "Roadster motorcycle with rider", "motorcycle", 12000, 0.052, build_motorcycle,
-       1.42, 285.0, 58.0, Vec3(0.66, 0.0, 0.72), "centre of the rear axle on the ground",
+      {"motorcycle", "Roadster motorcycle with rider", "motorcycle", 12000, 0.0543,
+       build_motorcycle, 1.42, 285.0, 58.0, Vec3(0.66, 0.0, 0.72),
+       "centre of the rear axle on the ground",
        "Middle-weight roadster, 205 kg ready to ride, and a rider of 80 kg with clothing. Yaw "
        "inertia: radius of gyration of 0.45 m."},
       {"pedestrian", "Adult of 1.75 m, walking", "pedestrian", 4000, 0.036, build_pedestrian, 0.0,
@@ -68,7 +69,7 @@ Model build_sized(const Entry& entry, std::size_t triangles) {
   double edge = entry.start_edge * std::sqrt(static_cast<double>(entry.triangles) / wanted);
   Model best = entry.build(edge);
   Model last = best;
-  for (int round = 0; round < 6 && off(best) >= 0.01; ++round) {
+  for (int round = 0; round < 6 && off(best) >= 0.015; ++round) {
     edge *= std::sqrt(static_cast<double>(last.triangle_count()) / wanted);
     last = entry.build(edge);
     if (off(last) < off(best)) best = last;

@@ -7,7 +7,8 @@
 namespace generate {
 namespace {
 
-constexpr double cell_size = 0.06;
+constexpr double cell_size = 0.03;
+constexpr double margin = 0.3;  // of the cells around the outline
 
 }  // namespace
 
@@ -33,9 +34,9 @@ Outline::Outline(const std::vector<Vec2>& control, int per_span) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  origin_ = low - Vec2::Constant(0.3);
-  columns_ = static_cast<int>((high.x() + 0.3 - origin_.x()) / cell_size) + 1;
-  rows_ = static_cast<int>((high.y() + 0.3 - origin_.y()) / cell_size) + 1;
+  origin_ = low - Vec2::Constant(margin);
+  columns_ = static_cast<int>((high.x() + margin - origin_.x()) / cell_size) + 1;
+  rows_ = static_cast<int>((high.y() + margin - origin_.y()) / cell_size) + 1;
   cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   const double reach = cell_size * 0.7072;
   std::vector<double> distance(points_.size());
@@ -52,6 +53,9 @@ Outline::Outline(const std::vector<Vec2>& control, int per_span) {
         if (distance[s] <= nearest + 2.0 * reach + 1e-9) cell.near.push_back(static_cast<int>(s));
       }
       if (nearest > reach + 1e-9) cell.side = inside(middle) ? -1 : 1;
+      const double slack = reach + 1e-9;
+      cell.least = cell.side > 0 ? nearest - slack : -nearest - slack;
+      cell.most = cell.side < 0 ? slack - nearest : nearest + slack;
     }
   }
 }
@@ -91,15 +95,26 @@ double Outline::exact_distance(const Vec2& point, const std::vector<int>* candid
   return side * distance;
 }
 
-double Outline::distance(const Vec2& point) const {
+const Outline::Cell* Outline::cell_of(const Vec2& point) const {
   const double column = std::floor((point.x() - origin_.x()) / cell_size);
   const double row = std::floor((point.y() - origin_.y()) / cell_size);
-  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) {
-    return exact_distance(point, nullptr, 1);
-  }
-  const Cell& cell = cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                            static_cast<std::size_t>(column)];
-  return exact_distance(point, &cell.near, cell.side);
+  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return nullptr;
+  return &cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                 static_cast<std::size_t>(column)];
+}
+
+double Outline::distance(const Vec2& point) const {
+  const Cell* cell = cell_of(point);
+  if (cell == nullptr) return exact_distance(point, nullptr, 1);
+  return exact_distance(point, &cell->near, cell->side);
+}
+
+double Outline::distance_within(const Vec2& point, double low, double high) const {
+  const Cell* cell = cell_of(point);
+  if (cell == nullptr) return high < margin ? margin : exact_distance(point, nullptr, 1);
+  if (cell->most < low) return cell->most;
+  if (cell->least > high) return cell->least;
+  return exact_distance(point, &cell->near, cell->side);
 }
 
 Outline polygon(const std::vector<Vec2>& corners) {

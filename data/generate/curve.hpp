@@ -17,13 +17,20 @@ public:
   /// Distance to the outline, m, negative inside.
   double distance(const Vec2& point) const;
 
+  /// The same where it lies between the limits; else any value beyond the limit that it is beyond,
+  /// which is quick to say far from the outline.
+  double distance_within(const Vec2& point, double low, double high) const;
+
   const std::vector<Vec2>& points() const { return points_; }
 
 private:
   struct Cell {
     std::vector<int> near;  // segments that can be the nearest one for a point of this cell
     int side = 0;           // -1 inside, 1 outside, 0 the outline runs through
+    double least = 0.0;     // bounds on the distance within the cell
+    double most = 0.0;
   };
+  const Cell* cell_of(const Vec2& point) const;
   double exact_distance(const Vec2& point, const std::vector<int>* candidates, int side) const;
   bool inside(const Vec2& point) const;
   double segment_distance_squared(const Vec2& point, int segment) const;
