@@ -40,6 +40,13 @@ Eigen::Matrix3d yawed(const Eigen::Matrix3d& rotation, double angle) {
   return result;
 }
 
+// Poses are accepted up to 1e-6 off a rotation, which 100 m away is as much as the tolerance of a
+// contact; what is a rotation to rounding keeps its bits.
+Pose rigid(const Pose& pose) {
+  if (rigidity_error(pose) <= 1e-12) return pose;
+  return {Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix(), pose.translation};
+}
+
 Pose advanced(const Pose& pose, const Velocity& velocity, double seconds) {
   Pose result = pose;
   result.translation += velocity.linear_mps * seconds;
@@ -80,8 +87,8 @@ Motion::Profile Motion::make_profile(double speed, double acceleration, double t
 
 Motion::Motion(const TurnMotion& turn) {
   Planar p;
-  p.start = turn.start;
-  const Eigen::Vector2d ahead = turn.start.rotation.col(0).head<2>();
+  p.start = rigid(turn.start);
+  const Eigen::Vector2d ahead = p.start.rotation.col(0).head<2>();
   if (ahead.norm() > 0.0) p.heading = ahead.normalized();
   p.profile = make_profile(turn.speed_mps, turn.acceleration_mps2, turn.top_speed_mps);
   p.yaw_rate = turn.yaw_rate_radps;
@@ -90,8 +97,8 @@ Motion::Motion(const TurnMotion& turn) {
 
 Motion::Motion(const ArcMotion& arc) {
   Planar p;
-  p.start = arc.start;
-  const Eigen::Vector2d ahead = arc.start.rotation.col(0).head<2>();
+  p.start = rigid(arc.start);
+  const Eigen::Vector2d ahead = p.start.rotation.col(0).head<2>();
   if (ahead.norm() > 0.0) p.heading = ahead.normalized();
   p.profile = make_profile(arc.speed_mps, arc.acceleration_mps2, arc.top_speed_mps);
   p.curvature = arc.curvature_per_m;
@@ -99,7 +106,7 @@ Motion::Motion(const ArcMotion& arc) {
   kind_ = p;
 }
 
-Motion::Motion(const FreeMotion& free) : kind_(free) {}
+Motion::Motion(const FreeMotion& free) : kind_(FreeMotion{rigid(free.start), free.velocity}) {}
 
 Motion Motion::at_rest(const Pose& pose) { return FreeMotion{pose, {}}; }
 
@@ -120,9 +127,7 @@ Result<Motion> Motion::timed(View<const TimedPose> poses) {
       return bad("it is not a rigid motion");
     }
     segments[i].time = poses[i].time_s;
-    segments[i].pose = poses[i].pose;
-    segments[i].pose.rotation =
-        Eigen::Quaterniond(poses[i].pose.rotation).normalized().toRotationMatrix();
+    segments[i].pose = rigid(poses[i].pose);
   }
   for (std::size_t i = 0; i + 1 < segments.size(); ++i) {
     const double seconds = segments[i + 1].time - segments[i].time;

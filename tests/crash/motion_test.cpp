@@ -135,6 +135,19 @@ TEST(Motion, TimedPosesOutOfOrderAreNamed) {
   EXPECT_FALSE(Motion::timed(View<const TimedPose>()).ok());
 }
 
+TEST(Motion, AStartThatIsNotQuiteARotationIsMadeOne) {
+  Pose skewed = pose_from_angles({1, 2, 3}, 0.4, 0.1, 0.2);
+  const Pose exact = skewed;
+  skewed.rotation(0, 1) += 4e-7;
+  for (const Motion& motion :
+       {Motion(TurnMotion{skewed, 5, 0.1, 0}), Motion(ArcMotion{skewed, 5, 0.1, 0}),
+        Motion(FreeMotion{skewed, {{1, 0, 0}, {0, 0, 1}}}), Motion::at_rest(skewed)}) {
+    EXPECT_LT(rigidity_error(motion.pose_at(1.0)), 1e-14);
+    EXPECT_LT((motion.pose_at(0.0).rotation - skewed.rotation).norm(), 1e-6);
+  }
+  EXPECT_EQ(Motion::at_rest(exact).pose_at(2.0).rotation, exact.rotation);
+}
+
 // Motions of every kind with parameters of vehicles and of things that tumble.
 Motion any_motion(Random& random) {
   const double speed = random.uniform(-15, 40);

@@ -78,6 +78,8 @@ struct MotionBound {
 /// How a body moves: its pose and velocity at every time t >= 0 (s). Before 0 it is where it is at
 /// 0. A value; reading from many threads is safe. Planar kinds move in the world's x-y plane
 /// whatever the pitch and roll of the start; their heading is the body's x axis seen from above.
+/// Start poses have to be rigid within `max_rigidity_error`; rotations off by more than rounding
+/// are orthonormalised.
 class CRASHRANK_API Motion {
 public:
   /// Rests at the world's origin.
@@ -90,7 +92,7 @@ public:
 
   /// Poses at strictly increasing times, at least one. Between two of them the origin moves on a
   /// straight line and the body turns about one axis by the shorter way, both at constant speed;
-  /// before the first and after the last it rests. Rotations are orthonormalised. Errors: bad_input
+  /// before the first and after the last it rests. Errors: bad_input
   /// naming the first pose that is out of order, not finite or not rigid.
   static Result<Motion> timed(View<const TimedPose> poses);
 
