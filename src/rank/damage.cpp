@@ -176,7 +176,7 @@ void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
   for (double k = first_sample; k <= samples; ++k) {
     const Pose b_in_a = relative(path.ego_at(k / samples), path.other_at(k / samples));
     const CollideResult result =
-        collide(ego_model.tree, other_model.tree, b_in_a, scratch.pairs, scratch.collide);
+        collide(ego_model, other_model, b_in_a, scratch.pairs, scratch.collide);
     ++work.damage_queries;
     work.damage += result.work;
     if (!result.intersecting) continue;

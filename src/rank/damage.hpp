@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/collide/collide.hpp"
+#include "crashrank/collide/wide_collide.hpp"
 #include "rank/passed.hpp"
 #include "rank/scene.hpp"
 #include "rank/triangle_set.hpp"
@@ -13,7 +13,7 @@ namespace crashrank::detail {
 /// Memory that reading damage reuses, one for each worker.
 struct DamageScratch {
   std::vector<Pair> pairs;
-  CollideWorkspace collide;
+  ModelWorkspace collide;
   TriangleSet ego;
   TriangleSet other;
   PassedScratch passed;
