@@ -35,7 +35,7 @@ TEST(Folder, FilesBesideAndBelowTheMeshAreRead) {
 TEST(Folder, NothingOutsideItIs) {
   const ScratchDir dir;
   std::string absolute = (dir.path() / "car/a.bin").string();
-  for (const std::string uri :
+  for (const std::string& uri :
        {std::string("../outside.bin"), std::string("parts/../../outside.bin"),
         std::string("..\\\\outside.bin"), std::string("%2e%2e/outside.bin"), absolute,
         std::string("/etc/passwd")}) {
@@ -99,7 +99,8 @@ TEST(Folder, BuffersCountAgainstTheLimitOfFiles) {
 TEST(Folder, MaterialsThatAreMissingOrOutsideAreAWarning) {
   const ScratchDir dir;
   dir.write("secret.mtl", "newmtl secret\nKd 1 0 0\n");
-  for (const std::string library : {"none.mtl", "../secret.mtl", "/etc/passwd"}) {
+  for (const char* named : {"none.mtl", "../secret.mtl", "/etc/passwd"}) {
+    const std::string library = named;
     SCOPED_TRACE(library);
     const Result<ImportedMesh> imported = import_mesh(
         dir.write("car/a.obj", "mtllib " + library + "\n" + test::as_obj(test::eighths_soup())));

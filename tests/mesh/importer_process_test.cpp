@@ -7,18 +7,20 @@
 #include <gtest/gtest.h>
 
 #include <dirent.h>
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 // Importers that misbehave: each is a shell script in place of the real one.
@@ -238,13 +240,6 @@ TEST_F(ImporterProcess, SignalsWhileWaitingDoNotMatter) {
   done = true;
   sender.join();
   ::sigaction(SIGUSR1, &before, nullptr);
-}
-
-TEST_F(ImporterProcess, TheImporterInheritsNothingButItsStreams) {
-  const int open = ::open(mesh_.c_str(), O_RDONLY);  // without O_CLOEXEC, as strangers do
-  ASSERT_GE(open, 0);
-  EXPECT_TRUE(import_mesh(mesh_).ok());
-  ::close(open);
 }
 
 }  // namespace

@@ -35,8 +35,11 @@ TEST(PartNames, TellTheMeshesOfOneNodeApart) {
       name_parts(
           {{"truck", "geom", "paint"}, {"truck", "geom", "tyres"}, {"truck", "geom", "tyres"}},
           "car", 256),
-      (Names{"truck", "truck/geom", "truck/tyres"}));
-  EXPECT_EQ(name_parts({{"wheel", "", ""}, {"wheel", "", ""}, {"wheel", "", ""}}, "car", 256),
+      (Names{"truck", "truck/tyres", "truck/tyres.2"}));
+  EXPECT_EQ(name_parts({{"door", "left", "paint"}, {"door", "right", "paint"}}, "car", 256),
+            (Names{"door", "door/right"}));
+  EXPECT_EQ(name_parts({{"wheel", "m", "rubber"}, {"wheel", "m", "rubber"}, {"wheel", "", ""}},
+                       "car", 256),
             (Names{"wheel", "wheel.2", "wheel.3"}));
   EXPECT_EQ(name_parts({{"wheel", "", ""}, {"wheel.2", "", ""}, {"wheel", "", ""}}, "car", 256),
             (Names{"wheel", "wheel.2", "wheel.3"}));

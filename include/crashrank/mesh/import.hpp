@@ -52,7 +52,7 @@ struct ImportedMesh {
 /// into triangles in place; points and lines are left out; degenerate and duplicate triangles keep
 /// their places. Vertices are those that triangles use, equal positions merged. Each mesh of a node
 /// is a part, named by node, else mesh, else material, else file; a name met again is told apart
-/// by its mesh or material where that helps ("body/glass") and by a number otherwise ("wheel.2").
+/// by material or mesh where they differ ("body/glass") and by a number otherwise ("wheel.2").
 /// Animation, skinning and textures are not looked at.
 ///
 /// The parser runs in a process of its own, with the limits above, and opens no file outside the

@@ -47,35 +47,38 @@ bool is_generic(std::string_view name) {
 
 std::vector<std::string> name_parts(const std::vector<PartLabels>& labels,
                                     const std::string& fallback, std::size_t limit) {
+  constexpr std::size_t room_for_number = 24;
   std::vector<std::string> names;
   std::unordered_set<std::string> taken;
   std::unordered_map<std::string, std::size_t> next_number;
+  std::unordered_map<std::string, const PartLabels*> first_bearer;
   const auto take = [&](const std::string& name) {
     if (!taken.insert(name).second) return false;
     names.push_back(name);
     return true;
   };
-  for (PartLabels label : labels) {
-    label.node = without_chain(label.node);
+  for (const PartLabels& label : labels) {
+    const std::string node = without_chain(label.node);
     std::string base = fallback;
-    for (const std::string* name : {&label.node, &label.mesh, &label.material}) {
+    for (const std::string* name : {&node, &label.mesh, &label.material}) {
       if (is_generic(*name)) continue;
       base = *name;
       break;
     }
-    // Room for "." and a number.
-    base = detail::to_utf8(base, limit - 24);
+    base = detail::to_utf8(base, limit - room_for_number);
+    const PartLabels& first = *first_bearer.try_emplace(base, &label).first->second;
     if (take(base)) continue;
-    bool told_apart = false;
-    for (const std::string* name : {&label.mesh, &label.material}) {
-      if (is_generic(*name) || *name == base) continue;
-      const std::string longer = base + "/" + *name;
-      if (longer.size() > limit - 24 || detail::to_utf8(longer, limit) != longer) continue;
-      told_apart = take(longer);
-      if (told_apart) break;
+    std::string stem = base;
+    for (const auto member : {&PartLabels::material, &PartLabels::mesh}) {
+      const std::string& name = label.*member;
+      if (is_generic(name) || name == base || name == first.*member) continue;
+      stem = detail::to_utf8(base + "/" + name, limit - room_for_number);
+      break;
     }
-    std::size_t& number = next_number.try_emplace(base, 2).first->second;
-    while (!told_apart) told_apart = take(base + "." + std::to_string(number++));
+    if (take(stem)) continue;
+    std::size_t& number = next_number.try_emplace(stem, 2).first->second;
+    while (!take(stem + "." + std::to_string(number++))) {
+    }
   }
   return names;
 }

@@ -19,8 +19,8 @@ bool is_generic(std::string_view name);
 
 /// One unique name for each part, in valid UTF-8 of at most `limit` bytes: the node's name, else
 /// the mesh's, else the material's, else `fallback`. The first to bear a name keeps it; the others
-/// add the mesh's or the material's, "body/glass", where that tells them apart, or else a number,
-/// "wheel.2".
+/// add what sets them apart from it, "body/glass" for another material or mesh, and a number,
+/// "wheel.2", where nothing does.
 std::vector<std::string> name_parts(const std::vector<PartLabels>& labels,
                                     const std::string& fallback, std::size_t limit);
 

@@ -1,0 +1,140 @@
+#include "crashrank/mesh/import.hpp"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iostream>
+#include <set>
+#include <string>
+#include <vector>
+
+// Real files, from Debian's assimp-testmodels, held against the parser called in the plainest way.
+namespace crashrank {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* models = "/usr/share/assimp/models";
+
+std::vector<std::string> model_files() {
+  const std::set<std::string> wanted{".obj", ".stl", ".ply", ".off", ".gltf",
+                                     ".glb", ".dae", ".fbx", ".3ds", ".ac"};
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(models, error)) {
+    std::string extension = entry.path().extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (wanted.count(extension) > 0) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+using Corners = std::array<Eigen::Vector3d, 3>;
+
+void walk(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& parent,
+          std::vector<Corners>& triangles) {
+  Eigen::Matrix4d here;
+  for (unsigned row = 0; row < 4; ++row) {
+    for (unsigned column = 0; column < 4; ++column) {
+      here(static_cast<int>(row), static_cast<int>(column)) =
+          static_cast<double>(node.mTransformation[row][column]);
+    }
+  }
+  here = parent * here;
+  const bool mirrored = here.topLeftCorner<3, 3>().determinant() < 0.0;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      if (mesh.mFaces[f].mNumIndices != 3) continue;
+      Corners corners;
+      for (unsigned c = 0; c < 3; ++c) {
+        const aiVector3D& v = mesh.mVertices[mesh.mFaces[f].mIndices[mirrored ? (3 - c) % 3 : c]];
+        corners[c] = (here * Eigen::Vector4d(v.x, v.y, v.z, 1.0)).head<3>();
+      }
+      triangles.push_back(corners);
+    }
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    walk(scene, *node.mChildren[i], here, triangles);
+  }
+}
+
+std::vector<Corners> plainly_read(const std::string& file) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate);
+  std::vector<Corners> triangles;
+  if (scene == nullptr) return triangles;
+  Eigen::Matrix4d outermost = Eigen::Matrix4d::Identity();
+  float centimetres = 1.0F;
+  const fs::path path(file);
+  if (path.extension() == ".fbx" || path.extension() == ".FBX") {
+    scene->mMetaData->Get("UnitScaleFactor", centimetres);
+    outermost.topLeftCorner<3, 3>() *= static_cast<double>(centimetres) / 100.0;
+  }
+  if (path.extension() == ".3ds" || path.extension() == ".3DS") {
+    outermost << 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1;  // y up back to z up
+  }
+  walk(*scene, *scene->mRootNode, outermost, triangles);
+  return triangles;
+}
+
+TEST(TestModels, EveryFileEndsAndLoadedOnesHoldTheParsersTrianglesInOrder) {
+  const std::vector<std::string> files = model_files();
+  if (files.empty()) GTEST_SKIP() << "the package assimp-testmodels is not installed";
+  std::size_t loaded = 0;
+  std::size_t triangles = 0;
+  for (const std::string& file : files) {
+    SCOPED_TRACE(file);
+    const Result<ImportedMesh> imported = import_mesh(file);
+    if (!imported) {
+      EXPECT_NE(imported.error().code, ErrorCode::internal) << imported.error().message();
+      continue;
+    }
+    ++loaded;
+    const std::vector<Corners> expected = plainly_read(file);
+    ASSERT_EQ(imported->mesh.size(), expected.size());
+    const double tolerance = 1e-6 * imported->quality.extent_m.maxCoeff() +
+                             1e-6 * imported->mesh.bounds().max.cwiseAbs().maxCoeff();
+    double worst = 0.0;
+    for (std::size_t t = 0; t < expected.size(); ++t) {
+      const Triangle got = imported->mesh.triangle(t);
+      for (std::size_t c = 0; c < 3; ++c) {
+        worst =
+            std::max(worst, (got.corner[c].cast<double>() - expected[t][c]).cwiseAbs().maxCoeff());
+      }
+    }
+    EXPECT_LE(worst, tolerance);
+    triangles += expected.size();
+  }
+  std::cout << files.size() << " files, " << loaded << " loaded with " << triangles
+            << " triangles\n";
+  EXPECT_GT(loaded, 80U);
+}
+
+TEST(TestModels, TheMilkTruckHasItsParts) {
+  const std::string truck = std::string(models) + "/glTF/CesiumMilkTruck/CesiumMilkTruck.gltf";
+  if (!fs::exists(truck)) GTEST_SKIP() << "the package assimp-testmodels is not installed";
+  const Result<ImportedMesh> imported = import_mesh(truck);
+  ASSERT_TRUE(imported.ok()) << imported.error().message();
+  std::string names;
+  for (const Part& part : imported->mesh.parts) names += part.name + ";";
+  EXPECT_NE(names.find("glass"), std::string::npos) << names;
+  EXPECT_GE(imported->mesh.parts.size(), 3U);
+  EXPECT_GT(imported->mesh.size(), 1000U);
+}
+
+}  // namespace
+}  // namespace crashrank
