@@ -1,5 +1,6 @@
 #include "crashrank/mesh/import.hpp"
 
+#include "mesh/mesh_writers.hpp"
 #include "mesh/scratch_dir.hpp"
 
 #include <gtest/gtest.h>
@@ -23,6 +24,16 @@ TEST(Import, ReadsTrianglesInFileOrder) {
   ASSERT_EQ(imported->mesh.parts.size(), 1U);
   EXPECT_EQ(imported->mesh.parts[0].name, "body");
   EXPECT_EQ(imported->mesh.parts[0].triangle_count, 2U);
+}
+
+TEST(Import, NodesCalledLikeTheFileKeepTheirName) {
+  const ScratchDir dir;
+  test::Soup soup = test::eighths_soup();
+  soup[0].name = "truck";
+  const Result<ImportedMesh> imported = import_mesh(dir.write("truck.glb", test::as_glb(soup)));
+  ASSERT_TRUE(imported.ok()) << imported.error().message();
+  EXPECT_EQ(imported->mesh.parts[0].name, "truck");
+  EXPECT_EQ(imported->mesh.parts[1].name, "door_left");
 }
 
 }  // namespace

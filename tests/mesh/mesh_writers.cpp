@@ -92,8 +92,8 @@ std::string gltf_json(const Soup& soup, const std::string& uri, std::string& buf
     for (std::uint32_t i = 0; i < corners; ++i) put(buffer, i);
     roots << comma << p;
     nodes << comma << R"({"name":")" << soup[p].name << R"(","mesh":)" << p << '}';
-    meshes << comma << R"({"primitives":[{"attributes":{"POSITION":)" << 2 * p << R"(},"indices":)"
-           << 2 * p + 1 << "}]}";
+    meshes << comma << R"({"name":"shape","primitives":[{"attributes":{"POSITION":)" << 2 * p
+           << R"(},"indices":)" << 2 * p + 1 << "}]}";
     const auto list = [](const Eigen::Vector3f& v) {
       std::ostringstream out;
       out.precision(9);

@@ -177,7 +177,7 @@ Result<std::uint64_t> clear_bad_faces(aiScene& scene, const Request& request) {
 }
 
 Result<TriangleMesh> flatten(const aiScene& scene, const Request& request, double metres_per_unit,
-                             const std::string& fallback_name) {
+                             const std::string& file_name) {
   const Result<std::vector<Visit>> visits = visit_nodes(scene, request);
   if (!visits) return visits.error();
   std::vector<PartLabels> labels;
@@ -185,12 +185,11 @@ Result<TriangleMesh> flatten(const aiScene& scene, const Request& request, doubl
   for (const Visit& visit : *visits) {
     labels.push_back(
         {text_of(visit.node->mName), text_of(visit.mesh->mName), material_of(scene, *visit.mesh)});
-    // Some parsers name the root after the file.
-    if (labels.back().node.substr(0, labels.back().node.find_last_of('.')) == fallback_name) {
-      labels.back().node.clear();
-    }
+    // The OBJ parser names the root after the file.
+    if (labels.back().node == file_name) labels.back().node.clear();
   }
-  const std::vector<std::string> names = name_parts(labels, fallback_name, request.name_bytes);
+  const std::vector<std::string> names =
+      name_parts(labels, file_name.substr(0, file_name.find_last_of('.')), request.name_bytes);
   Flattener flattener(request, metres_per_unit);
   for (std::size_t i = 0; i < visits->size(); ++i) {
     if (Status status = flattener.add((*visits)[i], names[i]); !status) return status.error();

@@ -19,6 +19,13 @@
 #endif
 #endif
 
+#ifdef CRASHRANK_SANITIZED
+// A finding in the parser has to look to the caller like the crash that it is: a signal.
+extern "C" const char* __asan_default_options() { return "abort_on_error=1:detect_leaks=0"; }
+extern "C" const char* __ubsan_default_options() { return "abort_on_error=1"; }
+extern "C" const char* __tsan_default_options() { return "abort_on_error=1"; }
+#endif
+
 namespace crashrank::importer {
 namespace {
 

@@ -4,7 +4,6 @@
 #include "mesh/importer/flatten.hpp"
 #include "mesh/importer/folder_io.hpp"
 #include "mesh/importer/gltf_count.hpp"
-#include "mesh/text.hpp"
 
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -121,8 +120,6 @@ Error parser_error(const std::string& text, const FolderIo& files, const Request
   return error;
 }
 
-std::string stem_of(const std::string& name) { return name.substr(0, name.find_last_of('.')); }
-
 }  // namespace
 
 Result<Parsed> parse(const Request& request) {
@@ -162,8 +159,7 @@ Result<Parsed> parse(const Request& request) {
   undo_axis_change(*scene, request);
   const Result<double> unit = metres_per_unit(*scene, request);
   if (!unit) return unit.error();
-  Result<TriangleMesh> mesh =
-      flatten(*scene, request, *unit, detail::to_utf8(stem_of(files.mesh_name()), 200));
+  Result<TriangleMesh> mesh = flatten(*scene, request, *unit, files.mesh_name());
   if (!mesh) return mesh.error();
   if (mesh->triangles.empty()) {
     return make_error(ErrorCode::bad_input, "the file holds no triangles",
