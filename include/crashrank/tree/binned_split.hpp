@@ -18,9 +18,14 @@ struct Cut {
   int bin = 0;
   std::uint32_t left_count = 0;
   float cost = std::numeric_limits<float>::infinity();
-  LaneBox left;
-  LaneBox right;
+  LaneBox left{};
+  LaneBox right{};
 };
+
+/// Counts stay below 2^31, where the conversion of a signed number is one instruction.
+inline float to_float(std::uint32_t count) {
+  return static_cast<float>(static_cast<std::int32_t>(count));
+}
 
 /// Cuts a set of records at the border of two of `bins` equal bins where the rule's cost is least,
 /// tried on all three axes, the first of equals. Records fall into bins by the middle of their
@@ -48,12 +53,13 @@ public:
     const float origin = origin_[cut.axis];
     const float scale = scale_[cut.axis];
     for (std::size_t i = 0; i < records.size(); ++i) {
-      const BuildRecord record = records[i];
+      const BuildRecord& record = records[i];
+      const RecordBits bits = load(record);
       const float place = ((record.min[cut.axis] + record.max[cut.axis]) - origin) * scale;
       const auto beyond = static_cast<std::uint32_t>(cut.bin - static_cast<int>(place));
       const std::size_t goes_right = beyond >> 31U;  // the sign
-      records[left] = record;
-      scratch[right] = record;
+      store(bits, records[left]);
+      store(bits, scratch[right]);
       left += 1 - goes_right;
       right += goes_right;
     }
@@ -63,7 +69,7 @@ public:
 private:
   /// Returns false where no axis can be divided.
   bool place_bins(View<const BuildRecord> records) {
-    LaneBox middles;
+    LaneBox middles = LaneBox::empty();
     for (const BuildRecord& record : records) {
       const Lanes m = middle(lanes(record));
       middles.grow({m, m});
@@ -86,7 +92,7 @@ private:
   void fill_bins(View<const BuildRecord> records) {
     for (int axis = 0; axis < 3; ++axis) {
       std::fill_n(counts_[axis], bins, 0U);
-      std::fill_n(boxes_[axis], bins, LaneBox{});
+      std::fill_n(boxes_[axis], bins, LaneBox::empty());
     }
     const Lanes origin = origin_;
     const Lanes scale = scale_;
@@ -108,15 +114,15 @@ private:
       right[b] = boxes[b];
       right[b].grow(right[b + 1]);
     }
-    LaneBox left;
+    LaneBox left = LaneBox::empty();
     std::uint32_t left_count = 0;
     for (int b = 0; b + 1 < bins; ++b) {
       if (counts_[axis][b] == 0) continue;
       left_count += counts_[axis][b];
       if (left_count == count) break;
       left.grow(boxes[b]);
-      const float cost = static_cast<float>(left_count) * rule.size(left) +
-                         static_cast<float>(count - left_count) * rule.size(right[b + 1]);
+      const float cost = to_float(left_count) * rule.size(left) +
+                         to_float(count - left_count) * rule.size(right[b + 1]);
       if (cost < best.cost) best = {axis, b, left_count, cost, left, right[b + 1]};
     }
   }

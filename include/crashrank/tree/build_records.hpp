@@ -36,11 +36,29 @@ inline LaneBox lanes(const BuildRecord& record) {
   return box;
 }
 
+/// A whole record in two vectors, to be moved.
+struct RecordBits {
+  IntLanes low;
+  IntLanes high;
+};
+
+inline RecordBits load(const BuildRecord& record) {
+  RecordBits bits;
+  std::memcpy(&bits.low, record.min, sizeof bits.low);
+  std::memcpy(&bits.high, record.max, sizeof bits.high);
+  return bits;
+}
+
+inline void store(const RecordBits& bits, BuildRecord& record) {
+  std::memcpy(record.min, &bits.low, sizeof bits.low);
+  std::memcpy(record.max, &bits.high, sizeof bits.high);
+}
+
 /// Twice the centre of a record's box.
 inline Lanes middle(const LaneBox& record_box) { return three(record_box.min + record_box.max); }
 
 inline LaneBox bounds(View<const BuildRecord> records) {
-  LaneBox box;
+  LaneBox box = LaneBox::empty();
   for (const BuildRecord& record : records) box.grow(lanes(record));
   return box;
 }

@@ -21,11 +21,16 @@ inline Lanes three(Lanes value) {
   return value;
 }
 
-/// Box in lanes. The default is empty: growing it by a box gives that box.
+/// Box in lanes. Left uninitialised unless said otherwise: builders keep arrays of them.
 struct LaneBox {
-  Lanes min = all_lanes(std::numeric_limits<float>::infinity());
-  Lanes max = all_lanes(-std::numeric_limits<float>::infinity());
+  Lanes min;
+  Lanes max;
 
+  /// Growing it by a box gives that box.
+  static LaneBox empty() {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    return {all_lanes(infinity), all_lanes(-infinity)};
+  }
   Lanes extent() const { return three(max - min); }
   void grow(const LaneBox& other) {
     min = lesser(min, other.min);

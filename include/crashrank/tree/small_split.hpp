@@ -19,13 +19,19 @@ public:
 
   Cut find(View<const BuildRecord> records, const Rule& rule) {
     const std::size_t n = records.size();
-    for (std::size_t i = 0; i < n; ++i) {
-      boxes_[i] = lanes(records[i]);
-      const Lanes m = middle(boxes_[i]);
-      for (int axis = 0; axis < 3; ++axis) keys_[axis][i] = m[axis];
-    }
+    for (std::size_t i = 0; i < n; ++i) boxes_[i] = lanes(records[i]);
     Cut best;
+    if (n == 2) {  // a frequent set with one cut only
+      const float cost = rule.size(boxes_[0]) + rule.size(boxes_[1]);
+      order_[0][0] = 0;
+      order_[0][1] = 1;
+      if (cost < best.cost) best = {0, 0, 1, cost, boxes_[0], boxes_[1]};
+      return best;
+    }
     for (int axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < n; ++i) {
+        keys_[axis][i] = boxes_[i].min[axis] + boxes_[i].max[axis];
+      }
       sort(axis, n);
       sweep(axis, n, rule, best);
     }
@@ -34,9 +40,11 @@ public:
 
   /// Puts the records into the order in which the cut was found.
   void partition(View<BuildRecord> records, const Cut& cut) const {
-    BuildRecord sorted[max_records];
-    for (std::size_t i = 0; i < records.size(); ++i) sorted[i] = records[order_[cut.axis][i]];
-    for (std::size_t i = 0; i < records.size(); ++i) records[i] = sorted[i];
+    RecordBits sorted[max_records];
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      sorted[i] = load(records[order_[cut.axis][i]]);
+    }
+    for (std::size_t i = 0; i < records.size(); ++i) store(sorted[i], records[i]);
   }
 
 private:
@@ -64,14 +72,13 @@ private:
       right[i] = boxes_[order[i]];
       right[i].grow(right[i + 1]);
     }
-    LaneBox left;
+    LaneBox left = boxes_[order[0]];
     for (std::size_t i = 1; i < n; ++i) {
-      left.grow(boxes_[order[i - 1]]);
-      const float cost =
-          static_cast<float>(i) * rule.size(left) + static_cast<float>(n - i) * rule.size(right[i]);
-      if (cost < best.cost) {
-        best = {axis, 0, static_cast<std::uint32_t>(i), cost, left, right[i]};
-      }
+      const auto left_count = static_cast<std::uint32_t>(i);
+      const float cost = to_float(left_count) * rule.size(left) +
+                         to_float(static_cast<std::uint32_t>(n) - left_count) * rule.size(right[i]);
+      if (cost < best.cost) best = {axis, 0, left_count, cost, left, right[i]};
+      left.grow(boxes_[order[i]]);
     }
   }
 
