@@ -107,16 +107,18 @@ NamedMesh soup(std::size_t triangles) {
 std::vector<Row> rows(bool with_paper) {
   std::vector<Row> all;
   const auto add = [&all](const char* name, SplitRule rule, std::uint32_t leaf, bool fill,
-                          std::uint32_t passes) {
+                          std::uint32_t passes, std::uint32_t threads = 1) {
     Row row;
     row.name = name;
     row.options.rule = rule;
     row.options.leaf_size = leaf;
     row.options.fill_leaves = fill;
     row.options.reinsertion_passes = passes;
+    row.options.threads = threads;
     all.push_back(std::move(row));
   };
   add("min-relative-segment", SplitRule::min_relative_segment, 4, false, 0);
+  add("min-relative-segment, 2 threads", SplitRule::min_relative_segment, 4, false, 0, 2);
   add("sah", SplitRule::sah, 4, false, 0);
   add("median", SplitRule::median, 4, false, 0);
   add("min-relative-segment fill 4", SplitRule::min_relative_segment, 4, true, 0);

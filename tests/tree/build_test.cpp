@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -139,6 +140,17 @@ TEST(Build, FilledLeavesAreNeverSplitFurther) {
   }
 }
 
+void expect_same_bits(const AabbTree& a, const AabbTree& b) {
+  ASSERT_EQ(a.order, b.order);
+  ASSERT_EQ(a.depth, b.depth);
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  ASSERT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(Node)), 0);
+  ASSERT_EQ(a.triangles.size(), b.triangles.size());
+  ASSERT_EQ(
+      std::memcmp(a.triangles.data(), b.triangles.data(), a.triangles.size() * sizeof(Triangle)),
+      0);
+}
+
 TEST(Build, GivesTheSameBitsTwice) {
   const TriangleMesh mesh = test::triangle_soup(700, 0.1F, 21);
   for (const BuildOptions& options : all_options()) {
@@ -146,15 +158,38 @@ TEST(Build, GivesTheSameBitsTwice) {
     const Result<AabbTree> a = build_tree(mesh, options);
     const Result<AabbTree> b = build_tree(mesh, options);
     ASSERT_TRUE(a.ok() && b.ok());
-    ASSERT_EQ(a->order, b->order);
-    ASSERT_EQ(a->nodes.size(), b->nodes.size());
-    for (std::size_t i = 0; i < a->nodes.size(); ++i) {
-      ASSERT_EQ(a->nodes[i].box.min, b->nodes[i].box.min);
-      ASSERT_EQ(a->nodes[i].box.max, b->nodes[i].box.max);
-      ASSERT_EQ(a->nodes[i].first, b->nodes[i].first);
-      ASSERT_EQ(a->nodes[i].count, b->nodes[i].count);
+    expect_same_bits(*a, *b);
+  }
+}
+
+TEST(Build, GivesTheSameBitsOnAnyNumberOfThreads) {
+  TriangleMesh equal;
+  for (int i = 0; i < 9000; ++i) test::add_triangle(equal, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  for (const TriangleMesh& mesh : {test::triangle_soup(30000, 0.02F, 23), test::strip(20000), equal,
+                                   test::triangle_soup(5, 0.1F, 24)}) {
+    for (const SplitRule rule : all_rules) {
+      if (rule == SplitRule::paper && mesh.size() > 10) continue;  // slow, and always serial
+      BuildOptions options;
+      options.rule = rule;
+      SCOPED_TRACE(std::to_string(mesh.size()) + " triangles, " + describe(options));
+      const Result<AabbTree> serial = build_tree(mesh, options);
+      ASSERT_TRUE(serial.ok());
+      ASSERT_TRUE(validate(*serial, mesh).ok());
+      for (const std::uint32_t threads : {2U, 3U, 8U}) {
+        options.threads = threads;
+        const Result<AabbTree> parallel = build_tree(mesh, options);
+        ASSERT_TRUE(parallel.ok());
+        expect_same_bits(*serial, *parallel);
+      }
     }
   }
+}
+
+TEST(Build, ThreadsPassOnWhatOneOfThemThrows) {
+  const auto work = [](std::uint32_t index) {
+    if (index == 0) throw std::bad_alloc();
+  };
+  EXPECT_THROW(detail::on_threads(3, work), std::bad_alloc);
 }
 
 // Sum of the surfaces of inner nodes, what reinsertion brings down.
@@ -200,6 +235,11 @@ TEST(Build, RefusesWhatHasNoTree) {
   EXPECT_EQ(code(TriangleMesh{}), ErrorCode::bad_input);
   EXPECT_EQ(code(good, 0), ErrorCode::usage);
   EXPECT_EQ(code(good, 256), ErrorCode::usage);
+  BuildOptions threads;
+  threads.threads = 0;
+  EXPECT_EQ(build_tree(good, threads).error().code, ErrorCode::usage);
+  threads.threads = 257;
+  EXPECT_EQ(build_tree(good, threads).error().code, ErrorCode::usage);
   TriangleMesh mesh = good;
   mesh.triangles[1][2] = 9;
   EXPECT_EQ(code(mesh), ErrorCode::bad_input);

@@ -6,6 +6,7 @@
 #include "crashrank/tree/gaussian_frame.hpp"
 #include "crashrank/tree/greedy_build.hpp"
 #include "crashrank/tree/literal_split.hpp"
+#include "crashrank/tree/parallel_build.hpp"
 #include "crashrank/tree/reinsertion.hpp"
 #include "crashrank/tree/split_cost.hpp"
 #include "crashrank/tree/tree_writer.hpp"
@@ -29,25 +30,82 @@ struct BuildOptions {
   /// smaller; at most this many passes over the tree, fewer when nothing moves any more. Worth its
   /// time (see bench/tree_bench) for a model that is built once and queried often.
   std::uint32_t reinsertion_passes = 0;
+  /// Threads that min_relative_segment and sah build on, 1 to 256, the calling one among them. The
+  /// tree is the same, bit for bit.
+  std::uint32_t threads = 1;
 };
 
 namespace detail {
 
 inline constexpr std::uint32_t max_leaf_size = 255;
+inline constexpr std::uint32_t max_build_threads = 256;
+
+/// Below this many triangles a tree is built before a second thread has begun to help.
+inline constexpr std::size_t min_parallel_triangles = 4096;
+
+template <class Rule>
+void build_by_cost(View<BuildRecord> records, const BuildOptions& options, std::uint32_t threads,
+                   std::vector<Node>& nodes) {
+  std::vector<BuildRecord> scratch(records.size());
+  const LeafLimits leaves{options.leaf_size, options.fill_leaves};
+  const Box root = to_box(bounds(records));
+  if (threads > 1) {
+    ParallelBuilder<Rule>(records, scratch, leaves).build(root, threads, nodes);
+    return;
+  }
+  nodes.reserve(records.size());
+  TreeWriter writer(nodes);
+  writer.open_root(root, 0, static_cast<std::uint32_t>(records.size()), 0);
+  GreedyBuilder<Rule>(records, scratch, leaves).build(writer);
+}
+
+inline void build_nodes(std::vector<BuildRecord>& records, const BuildOptions& options,
+                        std::uint32_t threads, std::vector<Node>& nodes) {
+  if (options.rule == SplitRule::min_relative_segment) {
+    return build_by_cost<RelativeSegmentRule>(records, options, threads, nodes);
+  }
+  if (options.rule == SplitRule::sah) {
+    return build_by_cost<SurfaceAreaRule>(records, options, threads, nodes);
+  }
+  nodes.reserve(records.size());
+  TreeWriter writer(nodes);
+  writer.open_root(to_box(bounds(records)), 0, static_cast<std::uint32_t>(records.size()), 0);
+  if (options.rule == SplitRule::paper) {
+    LiteralBuilder(records).build(writer, records, literal_work_limit);
+  } else {
+    build_by_median(writer, records, options.leaf_size);
+  }
+}
+
+/// Puts the triangles of a leaf into the order of their indices and writes corners by slot.
+inline void fill_slots(const TriangleMesh& mesh, std::uint32_t threads, AabbTree& tree) {
+  for (const Node& node : tree.nodes) {
+    if (node.count < 2) continue;
+    const auto first = tree.order.begin() + node.first;
+    std::sort(first, first + node.count);
+  }
+  tree.triangles.resize(tree.order.size());
+  on_slices(tree.order.size(), threads, [&mesh, &tree](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) tree.triangles[i] = mesh.triangle(tree.order[i]);
+  });
+}
 
 }  // namespace detail
 
 /// Builds the box tree of a mesh (Wiseman & Grinberg 2016, sections 2 and 3). The same mesh and
 /// options give the same tree, bit for bit, on every machine. Cost: O(n log n) for all rules but
 /// `paper`, whose work is O(n · depth) with a fixed upper limit. No recursion: depth costs heap.
-/// Errors: usage for a leaf size outside 1 to 255; bad_input for a mesh without triangles, a vertex
-/// index out of range, a coordinate that is not finite (of any vertex, used or not), or coordinates
-/// too large to be turned into the Gaussian frame; limit_exceeded above `max_triangles`. Safe from
-/// any thread; throws only std::bad_alloc.
+/// Errors: usage for a leaf size outside 1 to 255 or a number of threads outside 1 to 256;
+/// bad_input for a mesh without triangles, a vertex index out of range, a coordinate that is not
+/// finite (of any vertex, used or not), or coordinates too large to be turned into the Gaussian
+/// frame; limit_exceeded above `max_triangles`. Safe from any thread; throws only std::bad_alloc.
 inline Result<AabbTree> build_tree(const TriangleMesh& mesh, const BuildOptions& options = {}) {
   if (options.leaf_size < 1 || options.leaf_size > detail::max_leaf_size) {
     return make_error(ErrorCode::usage, "a leaf holds 1 to 255 triangles",
                       "choose a leaf size in that range");
+  }
+  if (options.threads < 1 || options.threads > detail::max_build_threads) {
+    return make_error(ErrorCode::usage, "a tree is built on 1 to 256 threads");
   }
   if (Status status = detail::check_mesh(mesh); !status) return status.error();
   AabbTree tree;
@@ -64,29 +122,9 @@ inline Result<AabbTree> build_tree(const TriangleMesh& mesh, const BuildOptions&
     records = std::move(*projected);
   }
 
-  const auto count = static_cast<std::uint32_t>(records.size());
-  tree.nodes.reserve(count);
-  detail::TreeWriter writer(tree.nodes);
-  writer.open_root(detail::to_box(detail::bounds(records)), 0, count, 0);
-  const detail::LeafLimits leaves{options.leaf_size, options.fill_leaves};
-  std::vector<detail::BuildRecord> scratch;
-  switch (options.rule) {
-    case SplitRule::min_relative_segment:
-      scratch.resize(records.size());
-      detail::build_greedily<detail::RelativeSegmentRule>(writer, records, scratch, leaves);
-      break;
-    case SplitRule::sah:
-      scratch.resize(records.size());
-      detail::build_greedily<detail::SurfaceAreaRule>(writer, records, scratch, leaves);
-      break;
-    case SplitRule::median:
-      detail::build_by_median(writer, records, options.leaf_size);
-      break;
-    case SplitRule::paper:
-      detail::LiteralBuilder(records).build(writer, records, detail::literal_work_limit);
-      break;
-  }
-
+  const std::uint32_t threads =
+      records.size() < detail::min_parallel_triangles ? 1 : options.threads;
+  detail::build_nodes(records, options, threads, tree.nodes);
   tree.order.resize(records.size());
   for (std::size_t i = 0; i < records.size(); ++i) tree.order[i] = records[i].index;
   if (options.reinsertion_passes > 0) {
@@ -95,13 +133,8 @@ inline Result<AabbTree> build_tree(const TriangleMesh& mesh, const BuildOptions&
     }
     reinsertion.write(tree.nodes, tree.order);
   }
+  detail::fill_slots(mesh, threads, tree);
   tree.depth = measure_depth(tree.nodes);
-  for (const Node& node : tree.nodes) {
-    const auto first = tree.order.begin() + node.first;
-    if (node.is_leaf()) std::sort(first, first + node.count);
-  }
-  tree.triangles.resize(records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) tree.triangles[i] = mesh.triangle(tree.order[i]);
   return tree;
 }
 

@@ -39,40 +39,48 @@ inline void split_at_median(TreeWriter& writer, const OpenNode& open, View<Build
                to_box(bounds({records.data() + half, records.size() - half})));
 }
 
-/// Decides what is open top down, each cut the cheapest by `Rule` at that node. `scratch` has room
-/// for all records.
-template <class Rule>
-void build_greedily(TreeWriter& writer, View<BuildRecord> records, View<BuildRecord> scratch,
-                    const LeafLimits& leaves) {
-  BinnedSplitter<Rule> binned;
-  SmallSplitter<Rule> small;
-  OpenNode open{};
-  while (writer.next(open)) {
-    if (open.count == 1 || (leaves.fill && open.count <= leaves.size)) {
-      writer.leaf(open);
-      continue;
-    }
-    const View<BuildRecord> here(records.data() + open.first, open.count);
+/// Decides open nodes, each cut the cheapest by `Rule` at that node. Looks at and moves the node's
+/// own records only. `scratch` has room for all records.
+template <class Rule> class GreedyBuilder {
+public:
+  GreedyBuilder(View<BuildRecord> records, View<BuildRecord> scratch, const LeafLimits& leaves)
+      : records_(records), scratch_(scratch), leaves_(leaves) {}
+
+  /// Decides one open node: a leaf, or two more that are open.
+  void decide(TreeWriter& writer, const OpenNode& open) {
+    if (open.count == 1 || (leaves_.fill && open.count <= leaves_.size)) return writer.leaf(open);
+    const View<BuildRecord> here(records_.data() + open.first, open.count);
     const LaneBox whole = to_lanes(writer.box(open));
     const Rule rule(whole);
     const bool few = open.count <= SmallSplitter<Rule>::max_records;
     Cut cut;
-    if (open.depth < balanced_depth) cut = few ? small.find(here, rule) : binned.find(here, rule);
-    const bool fits = open.count <= leaves.size;
+    if (open.depth < balanced_depth) cut = few ? small_.find(here, rule) : binned_.find(here, rule);
+    const bool fits = open.count <= leaves_.size;
     if (fits && (cut.axis < 0 || !worth_splitting(cut, open.count, rule.size(whole)))) {
-      writer.leaf(open);
-    } else if (cut.axis < 0) {
-      split_at_median(writer, open, here);
-    } else {
-      if (few) {
-        small.partition(here, cut);
-      } else {
-        binned.partition(here, cut, scratch);
-      }
-      writer.split(open, cut.left_count, to_box(cut.left), to_box(cut.right));
+      return writer.leaf(open);
     }
+    if (cut.axis < 0) return split_at_median(writer, open, here);
+    if (few) {
+      small_.partition(here, cut);
+    } else {
+      binned_.partition(here, cut, {scratch_.data() + open.first, open.count});
+    }
+    writer.split(open, cut.left_count, to_box(cut.left), to_box(cut.right));
   }
-}
+
+  /// Decides all that is open, top down.
+  void build(TreeWriter& writer) {
+    OpenNode open{};
+    while (writer.next(open)) decide(writer, open);
+  }
+
+private:
+  View<BuildRecord> records_;
+  View<BuildRecord> scratch_;
+  LeafLimits leaves_;
+  BinnedSplitter<Rule> binned_;
+  SmallSplitter<Rule> small_;
+};
 
 inline void build_by_median(TreeWriter& writer, View<BuildRecord> records,
                             std::uint32_t leaf_size) {
