@@ -1,12 +1,14 @@
-// Holds collide() against brute force in exact arithmetic on reduced meshes and against FCL on full
-// ones, over random poses of the shipped models.
+// Holds both engines of collide() against brute force in exact arithmetic on reduced meshes and on
+// soups of adversarial triangles, and against FCL on full meshes, over random poses.
 
 #include "crashrank/collide/collide.hpp"
-#include "crashrank/tree/build.hpp"
+#include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/tree/model.hpp"
 #include "oracle/body_poses.hpp"
+#include "oracle/brute_force.hpp"
 #include "oracle/fcl_pairs.hpp"
 #include "oracle/shipped_models.hpp"
-#include "oracle/triangle_oracle.hpp"
+#include "oracle/triangle_soup.hpp"
 
 #include <unistd.h>
 #include <CLI/CLI.hpp>
@@ -23,7 +25,7 @@
 
 namespace {
 
-using crashrank::AabbTree;
+using crashrank::Model;
 using crashrank::Pair;
 using crashrank::Pose;
 using crashrank::TriangleMesh;
@@ -31,7 +33,7 @@ using crashrank::TriangleMesh;
 struct Body {
   std::string name;
   TriangleMesh mesh;
-  std::vector<AabbTree> trees;  // one a way of building
+  std::vector<Model> models;  // one a way of building
   std::unique_ptr<oracle::FclMesh> fcl;
 };
 
@@ -44,84 +46,12 @@ struct Options {
   std::vector<std::string> models;
 };
 
-oracle::Triangle to_oracle(const crashrank::TriangleD& t) {
-  oracle::Triangle result{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    result[i] = {t.corner[i].x(), t.corner[i].y(), t.corner[i].z()};
-  }
-  return result;
-}
-
-// Extents of a triangle along nine directions: the axes and the sums and differences of two
-// coordinates. Rounding is monotone, so that intervals of rounded sums that do not overlap belong
-// to exact ones that do not overlap either: triangles told apart here share no point.
-struct Extents {
-  std::array<double, 9> least;
-  std::array<double, 9> most;
-
-  explicit Extents(const oracle::Triangle& t) {
-    least.fill(INFINITY);
-    most.fill(-INFINITY);
-    for (const auto& [x, y, z] : t) {
-      const std::array<double, 9> at{x, y, z, x + y, x - y, y + z, y - z, z + x, z - x};
-      for (std::size_t k = 0; k < at.size(); ++k) {
-        least[k] = std::min(least[k], at[k]);
-        most[k] = std::max(most[k], at[k]);
-      }
-    }
-  }
-  bool apart(const Extents& other) const {
-    for (std::size_t k = 0; k < least.size(); ++k) {
-      if (most[k] < other.least[k] || other.most[k] < least[k]) return true;
-    }
-    return false;
-  }
-};
-
-// All triangles of a mesh in A's frame.
-struct Placed {
-  std::vector<oracle::Triangle> triangle;
-  std::vector<Extents> extents;
-
-  Placed(const TriangleMesh& mesh, const Pose* pose) {
-    for (std::size_t i = 0; i < mesh.size(); ++i) {
-      const crashrank::Triangle t = mesh.triangle(i);
-      triangle.push_back(
-          to_oracle(pose == nullptr ? crashrank::to_double(t) : crashrank::carry(*pose, t)));
-      extents.emplace_back(triangle.back());
-    }
-  }
-};
-
-std::vector<Pair> brute_force(const TriangleMesh& a, const TriangleMesh& b, const Pose& pose) {
-  const Placed pa(a, nullptr);
-  const Placed pb(b, &pose);
-  std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      if (pa.extents[i].apart(pb.extents[j])) continue;
-      if (oracle::rational_intersects(pa.triangle[i], pb.triangle[j])) {
-        pairs.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
-      }
-    }
-  }
-  return pairs;
-}
-
-bool truth(const TriangleMesh& a, const TriangleMesh& b, const Pose& pose, Pair pair) {
-  return oracle::rational_intersects(
-      to_oracle(crashrank::to_double(a.triangle(static_cast<std::size_t>(pair.a)))),
-      to_oracle(crashrank::carry(pose, b.triangle(static_cast<std::size_t>(pair.b)))));
-}
-
-struct Count {
-  std::uint64_t pairs = 0;     // true ones
-  std::uint64_t touching = 0;  // poses with at least one
+// What one engine got wrong, or FCL.
+struct Errors {
   std::uint64_t missed = 0;
-  std::uint64_t invented = 0;
-  std::uint64_t any_wrong = 0;  // poses where "any" contradicts "all"
-  std::uint64_t fcl_missed = 0;
-  std::uint64_t fcl_invented = 0;
+  std::uint64_t invented = 0;   // pairs that share no point, or given twice
+  std::uint64_t any_wrong = 0;  // poses where "any" is not what the pairs say
+  std::uint64_t sum() const { return missed + invented + any_wrong; }
 };
 
 std::vector<Pair> difference(const std::vector<Pair>& from, const std::vector<Pair>& what) {
@@ -130,11 +60,34 @@ std::vector<Pair> difference(const std::vector<Pair>& from, const std::vector<Pa
   return rest;
 }
 
+const std::vector<crashrank::BuildOptions>& ways_of_building() {
+  using crashrank::BoxFrame;
+  using crashrank::SplitRule;
+  static const std::vector<crashrank::BuildOptions> ways{
+      {SplitRule::min_relative_segment, BoxFrame::world, 4},
+      {SplitRule::min_relative_segment, BoxFrame::gaussian, 1},
+      {SplitRule::paper, BoxFrame::world, 1},
+      {SplitRule::sah, BoxFrame::gaussian, 8},
+      {SplitRule::median, BoxFrame::world, 2}};
+  return ways;
+}
+
+bool add_model(Body& body, const crashrank::BuildOptions& way) {
+  auto model = make_model(body.mesh, way);
+  if (!model) {
+    std::fprintf(stderr, "%s: %s\n", body.name.c_str(), model.error().message().c_str());
+    return false;
+  }
+  body.models.push_back(std::move(*model));
+  return true;
+}
+
 class Campaign {
 public:
   explicit Campaign(const Options& options) : options_(options), random_(options.seed) {}
 
   bool load() {
+    if (options_.check == "soup") return true;
     for (const std::string& name : options_.models) {
       auto mesh = oracle::read_obj(options_.folder + "/" + name + ".obj");
       if (!mesh) {
@@ -142,97 +95,143 @@ public:
         return false;
       }
       Body body{name, std::move(*mesh), {}, nullptr};
-      if (options_.check == "brute") body.mesh = oracle::reduced_to(body.mesh, options_.triangles);
-      if (!build_trees(body)) return false;
-      if (options_.check == "fcl") body.fcl = std::make_unique<oracle::FclMesh>(body.mesh);
+      if (options_.check == "brute") {
+        body.mesh = oracle::reduced_to(body.mesh, options_.triangles);
+        for (const crashrank::BuildOptions& way : ways_of_building()) {
+          if (!add_model(body, way)) return false;
+        }
+      } else {
+        if (!add_model(body, {})) return false;
+        body.fcl = std::make_unique<oracle::FclMesh>(body.mesh);
+      }
       std::printf("%s: %zu triangles\n", name.c_str(), body.mesh.size());
       bodies_.push_back(std::move(body));
     }
     return true;
   }
 
-  void run() {
+  bool run() {
     const bool terminal = isatty(STDERR_FILENO) != 0;
     for (std::uint64_t n = 0; n < options_.poses; ++n) {
-      check_pose();
+      if (!(options_.check == "soup" ? check_soup() : check_bodies())) return false;
       if (terminal && n % 20 == 0) {
         std::fprintf(stderr, "\r%5.1f %%",
                      100.0 * static_cast<double>(n) / static_cast<double>(options_.poses));
       }
     }
     if (terminal) std::fputs("\r        \r", stderr);
+    return true;
   }
 
-  const Count& count() const { return count_; }
+  bool report() const {
+    std::printf(
+        "%llu poses, %llu touching, %llu pairs\n", static_cast<unsigned long long>(options_.poses),
+        static_cast<unsigned long long>(touching_), static_cast<unsigned long long>(pairs_));
+    print("scalar engine", scalar_);
+    print("vector engine", vector_);
+    if (options_.check == "fcl") print("FCL", fcl_);
+    if (touching_ == 0) std::puts("no pose touched: nothing was checked");
+    return touching_ > 0 && scalar_.sum() + vector_.sum() == 0;
+  }
 
 private:
-  bool build_trees(Body& body) {
-    using crashrank::BoxFrame;
-    using crashrank::SplitRule;
-    const bool brute = options_.check == "brute";
-    std::vector<crashrank::BuildOptions> ways{{}};
-    if (brute) {
-      ways = {{SplitRule::min_relative_segment, BoxFrame::world, 4},
-              {SplitRule::min_relative_segment, BoxFrame::gaussian, 1},
-              {SplitRule::paper, BoxFrame::world, 1},
-              {SplitRule::sah, BoxFrame::gaussian, 8},
-              {SplitRule::median, BoxFrame::world, 2}};
-    }
-    for (const crashrank::BuildOptions& way : ways) {
-      auto tree = build_tree(body.mesh, way);
-      if (!tree) {
-        std::fprintf(stderr, "%s: %s\n", body.name.c_str(), tree.error().message().c_str());
-        return false;
-      }
-      body.trees.push_back(std::move(*tree));
-    }
-    return true;
+  static void print(const char* who, const Errors& errors) {
+    std::printf("%-14s %llu missed, %llu invented, %llu wrong any\n", who,
+                static_cast<unsigned long long>(errors.missed),
+                static_cast<unsigned long long>(errors.invented),
+                static_cast<unsigned long long>(errors.any_wrong));
   }
 
   std::size_t pick(std::size_t count) {
     return static_cast<std::size_t>(random_.integer(0, static_cast<std::int64_t>(count) - 1));
   }
 
-  void check_pose() {
+  bool check_soup() {
+    oracle::Soup soup = oracle::make_soup(random_, options_.triangles);
+    Body a{"soup A", std::move(soup.a), {}, nullptr};
+    Body b{"soup B", std::move(soup.b), {}, nullptr};
+    const auto& ways = ways_of_building();
+    if (!add_model(a, ways[pick(ways.size())]) || !add_model(b, ways[pick(ways.size())])) {
+      return false;
+    }
+    check(a, a.models[0], b, b.models[0], soup.b_in_a);
+    return true;
+  }
+
+  bool check_bodies() {
     const Body& a = bodies_[pick(bodies_.size())];
     const Body& b = bodies_[pick(bodies_.size())];
-    const AabbTree& tree_a = a.trees[pick(a.trees.size())];
-    const AabbTree& tree_b = b.trees[pick(b.trees.size())];
-    const Pose pose = oracle::random_pose(random_, a.mesh.bounds(), b.mesh.bounds());
+    const Model& model_a = a.models[pick(a.models.size())];
+    const Model& model_b = b.models[pick(b.models.size())];
+    check(a, model_a, b, model_b, oracle::random_pose(random_, a.mesh.bounds(), b.mesh.bounds()));
+    return true;
+  }
 
-    std::vector<Pair> ours;
-    collide(tree_a, tree_b, pose, ours, workspace_);
-    std::sort(ours.begin(), ours.end());
+  void check(const Body& a, const Model& model_a, const Body& b, const Model& model_b,
+             const Pose& pose) {
+    std::vector<Pair> scalar;
+    std::vector<Pair> vector;
     std::vector<Pair> one;
-    const bool any = collide(tree_a, tree_b, pose, one, workspace_, {true}).intersecting;
-    if (any == ours.empty()) ++count_.any_wrong;
+    collide(model_a.tree, model_b.tree, pose, scalar, scalar_workspace_);
+    collide(model_a, model_b, pose, vector, vector_workspace_);
+    const bool scalar_any =
+        collide(model_a.tree, model_b.tree, pose, one, scalar_workspace_, {true}).intersecting;
+    const bool vector_any =
+        collide(model_a, model_b, pose, one, vector_workspace_, {true}).intersecting;
+    std::sort(scalar.begin(), scalar.end());
+    std::sort(vector.begin(), vector.end());
 
-    const std::vector<Pair> theirs =
-        options_.check == "brute" ? brute_force(a.mesh, b.mesh, pose) : a.fcl->pairs(*b.fcl, pose);
-    std::uint64_t missed = 0;
-    std::uint64_t invented = 0;
-    for (const Pair pair : difference(theirs, ours)) {
-      (truth(a.mesh, b.mesh, pose, pair) ? missed : count_.fcl_invented) += 1;
+    std::vector<Pair> truth;
+    if (a.fcl == nullptr) {
+      truth = oracle::brute_force(a.mesh, b.mesh, pose);
+    } else {
+      // Where FCL and either engine part, exact arithmetic decides who is right.
+      const std::vector<Pair> theirs = a.fcl->pairs(*b.fcl, pose);
+      std::vector<Pair> claimed;
+      std::set_union(scalar.begin(), scalar.end(), vector.begin(), vector.end(),
+                     std::back_inserter(claimed));
+      claimed.erase(std::unique(claimed.begin(), claimed.end()), claimed.end());
+      std::set_intersection(claimed.begin(), claimed.end(), theirs.begin(), theirs.end(),
+                            std::back_inserter(truth));
+      for (const auto& doubtful : {difference(theirs, claimed), difference(claimed, theirs)}) {
+        for (const Pair pair : doubtful) {
+          if (oracle::shares_point(a.mesh, b.mesh, pose, pair)) truth.push_back(pair);
+        }
+      }
+      std::sort(truth.begin(), truth.end());
+      judge(fcl_, "FCL", a, b, theirs, truth, !theirs.empty());
     }
-    for (const Pair pair : difference(ours, theirs)) {
-      (truth(a.mesh, b.mesh, pose, pair) ? count_.fcl_missed : invented) += 1;
-    }
-    if (missed + invented > 0) {
-      std::fprintf(stderr, "%s against %s: %llu missed, %llu invented\n", a.name.c_str(),
+    judge(scalar_, "scalar", a, b, scalar, truth, scalar_any);
+    judge(vector_, "vector", a, b, vector, truth, vector_any);
+    pairs_ += truth.size();
+    if (!truth.empty()) ++touching_;
+  }
+
+  void judge(Errors& errors, const char* who, const Body& a, const Body& b,
+             const std::vector<Pair>& answer, const std::vector<Pair>& truth, bool any) {
+    const std::uint64_t missed = difference(truth, answer).size();
+    const std::uint64_t invented = difference(answer, truth).size();
+    const bool any_wrong = any == answer.empty();
+    errors.missed += missed;
+    errors.invented += invented;
+    errors.any_wrong += static_cast<std::uint64_t>(any_wrong);
+    if (missed + invented > 0 || any_wrong) {
+      std::fprintf(stderr, "%s, %s against %s: %llu missed, %llu invented%s\n", who, a.name.c_str(),
                    b.name.c_str(), static_cast<unsigned long long>(missed),
-                   static_cast<unsigned long long>(invented));
+                   static_cast<unsigned long long>(invented), any_wrong ? ", any is wrong" : "");
     }
-    count_.missed += missed;
-    count_.invented += invented;
-    count_.pairs += ours.size() + missed - invented;
-    if (!ours.empty()) ++count_.touching;
   }
 
   Options options_;
   oracle::Random random_;
   std::vector<Body> bodies_;
-  crashrank::CollideWorkspace workspace_;
-  Count count_;
+  crashrank::CollideWorkspace scalar_workspace_;
+  crashrank::ModelWorkspace vector_workspace_;
+  std::uint64_t pairs_ = 0;
+  std::uint64_t touching_ = 0;
+  Errors scalar_;
+  Errors vector_;
+  Errors fcl_;
 };
 
 }  // namespace
@@ -245,9 +244,9 @@ int main(int argc, char** argv) {
   app.add_option("--poses", options.poses, "random poses; the nightly size is 10000");
   app.add_option("--seed", options.seed, "seed of the poses");
   app.add_option("--check", options.check,
-                 "exact brute force on reduced meshes, or FCL on full ones")
-      ->check(CLI::IsMember({"brute", "fcl"}));
-  app.add_option("--triangles", options.triangles, "size of the reduced meshes");
+                 "exact brute force on reduced models or adversarial soups, or FCL on models")
+      ->check(CLI::IsMember({"brute", "soup", "fcl"}));
+  app.add_option("--triangles", options.triangles, "size of reduced models and soups");
   app.add_option("--models", options.models, "names of shipped models")->delimiter(',');
   app.add_option("--folder", options.folder, "where the models' OBJ files are");
   CLI11_PARSE(app, argc, argv);
@@ -255,26 +254,9 @@ int main(int argc, char** argv) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(options.seed));
   Campaign campaign(options);
   if (!campaign.load()) return 1;
-  campaign.run();
-
-  const Count& count = campaign.count();
-  std::printf("%llu poses, %llu touching, %llu pairs: %llu missed, %llu invented, %llu wrong any\n",
-              static_cast<unsigned long long>(options.poses),
-              static_cast<unsigned long long>(count.touching),
-              static_cast<unsigned long long>(count.pairs),
-              static_cast<unsigned long long>(count.missed),
-              static_cast<unsigned long long>(count.invented),
-              static_cast<unsigned long long>(count.any_wrong));
-  if (options.check == "fcl") {
-    std::printf("FCL differs, and is wrong by exact arithmetic: %llu missed, %llu invented\n",
-                static_cast<unsigned long long>(count.fcl_missed),
-                static_cast<unsigned long long>(count.fcl_invented));
-  }
+  if (!campaign.run()) return 1;
+  const bool right = campaign.report();
   std::printf("%.1f s of processor time\n",
               static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC));
-  if (count.touching == 0) {
-    std::puts("no pose touched: nothing was checked");
-    return 1;
-  }
-  return count.missed + count.invented + count.any_wrong == 0 ? 0 : 1;
+  return right ? 0 : 1;
 }
