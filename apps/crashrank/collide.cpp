@@ -1,14 +1,15 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "cost.hpp"
+#include "engine.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
 #include "poses.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
-#include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/report/table.hpp"
 #include "crashrank/tree/model.hpp"
 
@@ -33,6 +34,7 @@ struct Options {
   std::string b;
   MeshArguments mesh;
   TreeArguments tree;
+  EngineArguments engine;
   std::vector<std::string> poses;
   std::string poses_file;
   std::string pairs_file;
@@ -47,8 +49,7 @@ struct Body {
 };
 
 struct Query {
-  CollideResult result;
-  double seconds = 0.0;
+  Answer answer;  ///< `seconds` is the median of all runs
   double sort_seconds = 0.0;
   std::string hash;  ///< empty with --any, whose pair depends on the tree
 };
@@ -66,6 +67,10 @@ Status check(const Options& options) {
     return make_error(ErrorCode::usage, "--json and --pairs - would both write standard output",
                       "give --pairs a file");
   }
+  if (options.any && options.engine.workers > 0) {
+    return make_error(ErrorCode::usage, "--any is for one thread", "leave --workers out");
+  }
+  if (const Status engine = options.engine.check(); !engine) return engine.error();
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return build.error();
   }
@@ -108,20 +113,20 @@ Result<std::vector<Pose>> load_poses(const Options& options) {
 }
 
 /// Runs one query `repeat` times; `pairs` ends sorted.
-Query ask(const Body& a, const Body& b, const Pose& pose, const Options& options,
-          CollideWorkspace& workspace, std::vector<Pair>& pairs) {
-  Query query;
+Result<Query> ask(const Engine& engine, const Pose& pose, const Options& options,
+                  std::vector<Pair>& pairs) {
   std::vector<double> seconds(static_cast<std::size_t>(options.repeat));
-  CollideOptions how;
-  how.any = options.any;
+  Result<Answer> answer = Answer{};
   for (double& taken : seconds) {
-    const Clock::time_point start = Clock::now();
-    query.result = collide(a.model.tree, b.model.tree, pose, pairs, workspace, how);
-    taken = seconds_since(start);
+    answer = engine(pose, options.any, pairs);
+    if (!answer) return answer.error();
+    taken = answer->seconds;
   }
   const auto middle = seconds.begin() + options.repeat / 2;
   std::nth_element(seconds.begin(), middle, seconds.end());
-  query.seconds = *middle;
+  Query query;
+  query.answer = *answer;
+  query.answer.seconds = *middle;
   const Clock::time_point start = Clock::now();
   std::sort(pairs.begin(), pairs.end());
   query.sort_seconds = seconds_since(start);
@@ -138,7 +143,7 @@ void write_pairs(OutputFile& out, std::size_t query, const std::vector<Pair>& pa
 }
 
 double predicted(const Query& query, const Cost& cost) {
-  const CollideWork& work = query.result.work;
+  const CollideWork& work = query.answer.result.work;
   const double boxes = work.bv_tests > 0 ? static_cast<double>(work.bv_tests) * cost.cb_s : 0.0;
   const double triangles =
       work.primitive_tests > 0 ? static_cast<double>(work.primitive_tests) * cost.cp_s : 0.0;
@@ -153,20 +158,27 @@ Json body_json(const std::string& file, const Body& body) {
           {"build_s", body.build_s}};
 }
 
+/// "scalar", or the vector unit in use.
+std::string kernel_name(const EngineArguments& engine) {
+  return engine.kernel == "scalar" || engine.workers > 0 ? "scalar" : vector_unit();
+}
+
 Json to_json(const Options& options, const Body& a, const Body& b,
              const std::vector<Query>& queries, const Cost& cost) {
   Json list = Json::array();
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Query& query = queries[i];
     list.push_back({{"index", i},
-                    {"intersecting", query.result.intersecting},
-                    {"pairs", query.result.pairs},
-                    {"bv_tests", query.result.work.bv_tests},
-                    {"primitive_tests", query.result.work.primitive_tests},
-                    {"exact_tests", query.result.work.exact_tests},
-                    {"seconds", query.seconds},
+                    {"intersecting", query.answer.result.intersecting},
+                    {"pairs", query.answer.result.pairs},
+                    {"bv_tests", query.answer.result.work.bv_tests},
+                    {"primitive_tests", query.answer.result.work.primitive_tests},
+                    {"exact_tests", query.answer.result.work.exact_tests},
+                    {"seconds", query.answer.seconds},
                     {"sort_seconds", query.sort_seconds},
                     {"predicted_seconds", predicted(query, cost)},
+                    {"jobs", query.answer.jobs},
+                    {"depth", query.answer.depth},
                     {"hash", options.any ? Json(nullptr) : Json(query.hash)}});
   }
   return {{"queries", std::move(list)},   {"cost", {{"Cb_s", cost.cb_s}, {"Cp_s", cost.cp_s}}},
@@ -175,7 +187,7 @@ Json to_json(const Options& options, const Body& a, const Body& b,
           {"any", options.any},           {"repeat", options.repeat}};
 }
 
-std::string to_text(const std::vector<Query>& queries, const Cost& cost, bool colours) {
+std::string to_text(const Options& options, const std::vector<Query>& queries, const Cost& cost) {
   Table table({{"query", true},
                {"touch"},
                {"pairs", true},
@@ -186,15 +198,17 @@ std::string to_text(const std::vector<Query>& queries, const Cost& cost, bool co
                {"hash"}});
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Query& query = queries[i];
-    table.add_row({std::to_string(i), query.result.intersecting ? "yes" : "no",
-                   std::to_string(query.result.pairs), std::to_string(query.result.work.bv_tests),
-                   std::to_string(query.result.work.primitive_tests),
-                   fmt::format("{:.2f}", query.seconds * 1e6),
+    table.add_row({std::to_string(i), query.answer.result.intersecting ? "yes" : "no",
+                   std::to_string(query.answer.result.pairs),
+                   std::to_string(query.answer.result.work.bv_tests),
+                   std::to_string(query.answer.result.work.primitive_tests),
+                   fmt::format("{:.2f}", query.answer.seconds * 1e6),
                    fmt::format("{:.2f}", predicted(query, cost) * 1e6), query.hash});
   }
-  return table.text(colours) +
-         fmt::format("Cb = {:.2f} ns a box test, Cp = {:.2f} ns a triangle test, measured here.\n",
-                     cost.cb_s * 1e9, cost.cp_s * 1e9);
+  return table.text(colours_wanted()) +
+         fmt::format(
+             "Cb = {:.2f} ns a box test, Cp = {:.2f} ns a triangle test, measured here ({}).\n",
+             cost.cb_s * 1e9, cost.cp_s * 1e9, kernel_name(options.engine));
 }
 
 int run(const Options& options) {
@@ -213,15 +227,18 @@ int run(const Options& options) {
     pairs_out->write("query,a,b\n");
   }
 
-  const Cost cost = measure_cost(a->model.tree, b->model.tree);
-  CollideWorkspace workspace;
+  const Result<Engine> engine = make_engine(options.engine, a->model, b->model);
+  if (!engine) return fail(engine.error());
+  const Cost cost = measure_cost(*engine, a->model, b->model);
   std::vector<Pair> pairs;
   std::vector<Query> queries;
   queries.reserve(poses->size());
   {
     Progress progress("colliding", poses->size());
     for (const Pose& pose : *poses) {
-      queries.push_back(ask(*a, *b, pose, options, workspace, pairs));
+      const Result<Query> query = ask(*engine, pose, options, pairs);
+      if (!query) return fail(query.error());
+      queries.push_back(*query);
       if (pairs_out) write_pairs(*pairs_out, queries.size() - 1, pairs);
       progress.update(queries.size());
     }
@@ -232,7 +249,7 @@ int run(const Options& options) {
   if (options.json) {
     print_json(to_json(options, *a, *b, queries, cost));
   } else if (!is_standard(options.pairs_file)) {
-    print(to_text(queries, cost, colours_wanted()));
+    print(to_text(options, queries, cost));
   }
   return exit_done;
 }
@@ -267,6 +284,7 @@ void add_collide(CLI::App& app, Action& action) {
   command->add_option("--pairs", options->pairs_file,
                       "Write the pairs as CSV query,a,b, sorted; - is standard output");
   command->add_flag("--json", options->json, "Answer in JSON");
+  options->engine.add_to(*command);
   options->tree.add_to(*command);
   options->mesh.add_to(*command);
   command->footer(epilogue);

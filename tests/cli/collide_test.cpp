@@ -140,6 +140,28 @@ TEST(Collide, PairsAreThoseOfExactArithmeticAndHashedAsSaid) {
   }
 }
 
+TEST(Collide, EnginesWorkersAndPoliciesGiveTheSameAnswer) {
+  const Boxes boxes;
+  const std::vector<std::string> plain{"collide", "a.obj", "b.obj",   "--json",
+                                       "--pose",  half_in, "--pairs", "pairs.csv"};
+  const Outcome reference = boxes.place.crashrank(plain);
+  ASSERT_EQ(reference.code, 0) << reference.err;
+  const std::string pairs = boxes.place.read("pairs.csv");
+  std::vector<std::vector<std::string>> ways{{"--kernel", "scalar"}, {"--workers", "2"}};
+  for (const char* policy : {"best-match", "random", "lowest", "best-match-load"}) {
+    ways.push_back({"--workers", "3", "--depth", "2", "--policy", policy});
+  }
+  for (const std::vector<std::string>& way : ways) {
+    SCOPED_TRACE(testing::PrintToString(way));
+    std::vector<std::string> arguments = plain;
+    arguments.insert(arguments.end(), way.begin(), way.end());
+    const Outcome run = boxes.place.crashrank(arguments);
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(boxes.place.read("pairs.csv"), pairs);
+    EXPECT_EQ(run.json()["queries"][0]["hash"], reference.json()["queries"][0]["hash"]);
+  }
+}
+
 TEST(Collide, WithoutAPoseFilesStandAsTheyAre) {
   const Boxes boxes;
   const Outcome run = boxes.place.crashrank({"collide", "a.obj", "b.obj", "--pairs", "-"});

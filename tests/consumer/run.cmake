@@ -39,6 +39,29 @@ if(first STREQUAL "")
 endif()
 
 if(KIND STREQUAL "installed")
+  # The example answers what the installed program ranks first, and the README shows its text.
+  set(scenario ${SOURCE}/data/scenarios/oncoming_truck.json)
+  execute_process(COMMAND ${WORK}/build/bin/example_first_choice ${scenario}
+    RESULT_VARIABLE status OUTPUT_VARIABLE choice ERROR_VARIABLE trouble)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "example_first_choice ended with ${status}: ${trouble}")
+  endif()
+  execute_process(COMMAND ${WORK}/prefix/bin/crashrank rank ${scenario} --json
+    RESULT_VARIABLE status OUTPUT_VARIABLE ranking ERROR_VARIABLE trouble)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "the installed crashrank ended with ${status}: ${trouble}")
+  endif()
+  string(JSON first_choice GET "${ranking}" ranking 0 candidate)
+  if(NOT choice STREQUAL "${first_choice}\n")
+    message(FATAL_ERROR "the example chose ${choice} and the program ${first_choice}")
+  endif()
+  file(READ ${SOURCE}/apps/examples/first_choice.cpp example)
+  file(READ ${SOURCE}/README.md readme)
+  string(FIND "${readme}" "${example}" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "README.md does not show apps/examples/first_choice.cpp as it is")
+  endif()
+
   # Arithmetic that may be reordered is refused rather than trusted.
   execute_process(COMMAND ${COMPILER} -std=c++17 -ffast-math -fsyntax-only
     -I${WORK}/prefix/include -x c++ ${WORK}/prefix/include/crashrank/base/version.hpp

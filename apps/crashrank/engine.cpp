@@ -1,0 +1,131 @@
+#include "engine.hpp"
+
+#include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
+
+#include <charconv>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace crashrank::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+bool is_kernel(const std::string& name) { return name == "fast" || name == "scalar"; }
+
+/// "auto" is `auto_depth`; nothing for what is no depth.
+std::optional<std::uint32_t> parse_depth(const std::string& text) {
+  if (text == "auto") return auto_depth;
+  std::uint32_t depth = 0;
+  const char* end = text.data() + text.size();
+  const std::from_chars_result read = std::from_chars(text.data(), end, depth);
+  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
+  if (depth < 1 || depth > max_distribution_depth) return std::nullopt;
+  return depth;
+}
+
+/// The calling thread does all.
+Engine serial_engine(bool fast, const Model& a, const Model& b) {
+  const auto workspace = std::make_shared<ModelWorkspace>();
+  workspace->prepare(a, b);
+  return [fast, &a, &b, workspace](const Pose& pose, bool any,
+                                   std::vector<Pair>& pairs) -> Result<Answer> {
+    CollideOptions how;
+    how.any = any;
+    Answer answer;
+    const Clock::time_point start = Clock::now();
+    answer.result = fast ? collide(a, b, pose, pairs, *workspace, how)
+                         : collide(a.tree, b.tree, pose, pairs, workspace->scalar, how);
+    answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return answer;
+  };
+}
+
+struct Workers {
+  Dispatcher dispatcher;
+  PartIndex a;
+  PartIndex b;
+  PairLists lists;
+};
+
+}  // namespace
+
+void EngineArguments::add_to(CLI::App& command) {
+  const std::string group = "Engine";
+  command
+      .add_option("--kernel", kernel,
+                  "fast (default: the vector unit of this processor) or scalar; with workers the "
+                  "scalar one works")
+      ->group(group);
+  command
+      .add_option("--workers", workers,
+                  "Threads that share a query; without them the calling thread does all")
+      ->check(CLI::Range(1U, max_workers))
+      ->group(group);
+  command
+      .add_option("--policy", policy,
+                  "How a job finds its worker: best-match (default), random, lowest or "
+                  "best-match-load")
+      ->group(group);
+  command
+      .add_option("--depth", depth, "Distribution depth at which trees are cut, 1 to 16, or auto")
+      ->group(group);
+}
+
+Status EngineArguments::check() const {
+  if (!is_kernel(kernel)) {
+    return make_error(ErrorCode::usage, "--kernel " + kernel + ": is no kernel",
+                      "give fast or scalar");
+  }
+  if (!parse_depth(depth)) {
+    return make_error(ErrorCode::usage, "--depth " + depth + ": is no distribution depth",
+                      "give a number from 1 to 16, or auto");
+  }
+  const Result<Policy> known = policy_from_name(policy);
+  if (!known) return known.error();
+  return Success{};
+}
+
+Result<Engine> make_engine(const EngineArguments& arguments, const Model& a, const Model& b) {
+  if (Status sound = arguments.check(); !sound) return sound.error();
+  if (arguments.workers == 0) return serial_engine(arguments.kernel == "fast", a, b);
+
+  PoolOptions pool;
+  pool.workers = arguments.workers;
+  Result<Dispatcher> dispatcher = Dispatcher::start(pool);
+  if (!dispatcher) return dispatcher.error();
+  Result<PartIndex> index_a = PartIndex::make(a.tree);
+  if (!index_a) return index_a.error();
+  Result<PartIndex> index_b = PartIndex::make(b.tree);
+  if (!index_b) return index_b.error();
+  const std::shared_ptr<Workers> workers(
+      new Workers{std::move(*dispatcher), std::move(*index_a), std::move(*index_b), {}});
+  DispatchOptions how;
+  how.policy = *policy_from_name(arguments.policy);
+  how.depth = *parse_depth(arguments.depth);
+  return Engine(
+      [workers, how](const Pose& pose, bool any, std::vector<Pair>& pairs) -> Result<Answer> {
+        if (any)
+          return make_error(ErrorCode::usage, "--any is for one thread: leave --workers out");
+        const DispatchQuery query{&workers->a, &workers->b, pose};
+        Result<DispatchReport> report = workers->dispatcher.run({&query, 1}, workers->lists, how);
+        if (!report) return report.error();
+        if (report->end != DispatchEnd::ok) {
+          return make_error(ErrorCode::out_of_budget, "the workers ran out of memory");
+        }
+        workers->lists.gather(0, pairs);
+        Answer answer;
+        answer.result.pairs = pairs.size();
+        answer.result.intersecting = !pairs.empty();
+        answer.result.work = report->work;
+        answer.seconds = report->seconds;
+        answer.jobs = report->jobs;
+        answer.depth = report->depth;
+        return answer;
+      });
+}
+
+}  // namespace crashrank::cli

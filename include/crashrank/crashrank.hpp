@@ -1,0 +1,36 @@
+#pragma once
+
+/// Everything that the targets crashrank::core and crashrank::crashrank offer. Mesh files are read
+/// by crashrank::import, whose header is crashrank/mesh/import.hpp.
+
+#include "crashrank/base/library_version.hpp"
+#include "crashrank/base/pose.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/base/version.hpp"
+#include "crashrank/base/view.hpp"
+
+#include "crashrank/mesh/quality.hpp"
+#include "crashrank/mesh/transform.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
+
+#include "crashrank/tree/build.hpp"
+#include "crashrank/tree/model.hpp"
+#include "crashrank/tree/validate.hpp"
+
+#include "crashrank/collide/broad_phase.hpp"
+#include "crashrank/collide/collide.hpp"
+#include "crashrank/collide/distance.hpp"
+#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/wide_collide.hpp"
+
+#include "crashrank/dispatch/dispatcher.hpp"
+
+#include "crashrank/crash/motion.hpp"
+#include "crashrank/crash/time_of_impact.hpp"
+
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/scenario.hpp"
+
+#include "crashrank/report/damage_model.hpp"
+#include "crashrank/report/picture.hpp"
+#include "crashrank/report/ranking.hpp"
