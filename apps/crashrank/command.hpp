@@ -13,5 +13,6 @@ using Action = std::function<int()>;
 void add_inspect(CLI::App& app, Action& action);
 void add_collide(CLI::App& app, Action& action);
 void add_rank(CLI::App& app, Action& action);
+void add_sweep(CLI::App& app, Action& action);
 
 }  // namespace crashrank::cli

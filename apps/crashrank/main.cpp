@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   add_inspect(app, action);
   add_collide(app, action);
   add_rank(app, action);
+  add_sweep(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

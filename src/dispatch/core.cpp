@@ -1,19 +1,17 @@
 #include "dispatch/core.hpp"
 
-#include <ctime>
+#include <chrono>
 
 namespace crashrank::detail {
 
-double thread_seconds() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+double clock_seconds() noexcept {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void Core::run(const Batch& batch) {
-  double last = measure ? thread_seconds() : 0.0;
+  double last = measure ? clock_seconds() : 0.0;
   const auto lap = [&last] {
-    const double now = thread_seconds();
+    const double now = clock_seconds();
     const double took = now - last;
     last = now;
     return took;
@@ -24,7 +22,8 @@ void Core::run(const Batch& batch) {
     bytes += fetch.bytes();
   }
   if (measure) {
-    batch_times.push_back({static_cast<std::uint32_t>(batch.jobs.size()), bytes, lap()});
+    batch_times.push_back({static_cast<std::uint32_t>(batch.jobs.size()),
+                           static_cast<std::uint32_t>(batch.fetches.size()), bytes, lap()});
   }
   const View<const TreeView> parts = private_parts ? store.parts() : shared_trees;
   for (const Job& job : batch.jobs) {
@@ -39,23 +38,42 @@ void Core::run(const Batch& batch) {
 }
 
 void Core::run(const Job& job, const QueryFrame& frame, View<const TreeView> parts) {
+  const std::size_t first = found->pairs.size();
+  if (models.empty()) {
+    search(job, frame, parts);
+  } else {
+    search_fast(job, frame);
+  }
+  const std::size_t last = found->pairs.size();
+  if (last == first) return;
+  if (!found->runs.empty() && found->runs.back().query == job.query) {
+    found->runs.back().count = last - found->runs.back().first;
+  } else {
+    found->runs.push_back({job.query, number, first, last - first});
+  }
+}
+
+void Core::search(const Job& job, const QueryFrame& frame, View<const TreeView> parts) {
   const TreeView& a = parts[job.part_a];
   const TreeView& b = parts[job.part_b];
-  std::vector<Pair>& pairs = found->pairs;
-  const std::size_t first = pairs.size();
   traverse(a, b, frame.to, job.start, View<NodePair>(stack), work,
            [&](const Node& leaf_a, const Node& leaf_b) {
              return collide_leaves(a, leaf_a, b, leaf_b, frame.b_in_a, work, [&](Pair pair) {
-               pairs.push_back(pair);
+               found->pairs.push_back(pair);
                return true;
              });
            });
-  if (pairs.size() == first) return;
-  if (!found->runs.empty() && found->runs.back().query == job.query) {
-    found->runs.back().count = pairs.size() - found->runs.back().first;
-  } else {
-    found->runs.push_back({job.query, number, first, pairs.size() - first});
-  }
+}
+
+void Core::search_fast(const Job& job, const QueryFrame& frame) {
+  // The engine clears what it fills: straight into the results while those are empty, which a lone
+  // query's always are.
+  const bool direct = found->pairs.empty();
+  std::vector<Pair>& pairs = direct ? found->pairs : pairs_of_a_job;
+  work += collide(*models[job.part_a], job.start.a, *models[job.part_b], job.start.b, frame.b_in_a,
+                  pairs, workspace)
+              .work;
+  if (!direct) found->pairs.insert(found->pairs.end(), pairs.begin(), pairs.end());
 }
 
 }  // namespace crashrank::detail

@@ -4,9 +4,11 @@
 #include "crashrank/collide/box_test.hpp"
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/pair.hpp"
+#include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/dispatch/pair_lists.hpp"
 #include "dispatch/part_store.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -42,6 +44,13 @@ struct Batch {
     frames.clear();
     jobs.clear();
   }
+  /// Room for as many jobs as a batch usually takes.
+  void reserve(std::uint32_t buffer) {
+    const std::size_t room = std::min(buffer, 64U);
+    fetches.reserve(2 * room);
+    frames.reserve(room);
+    jobs.reserve(room);
+  }
 };
 
 /// What measuring a job and a batch gives; see DispatchRecording.
@@ -52,6 +61,7 @@ struct JobTime {
 };
 struct BatchTime {
   std::uint32_t jobs = 0;
+  std::uint32_t parts = 0;
   std::uint64_t bytes = 0;
   double seconds = 0.0;
 };
@@ -62,10 +72,13 @@ struct alignas(64) Core {
   PartStore store;
   bool private_parts = false;
   View<const TreeView> shared_trees;  ///< by body, where trees are shared
+  View<const Model* const> models;    ///< by body, for the vector engine; else empty
   const std::atomic<bool>* cancel = nullptr;
   const std::atomic<bool>* stop = nullptr;  ///< set when the rest of the dispatch is of no use
   FoundPairs* found = nullptr;
   std::vector<NodePair> stack;
+  ModelWorkspace workspace;          ///< of the vector engine
+  std::vector<Pair> pairs_of_a_job;  ///< of the vector engine
   CollideWork work;
   bool measure = false;
   std::vector<JobTime> job_times;
@@ -80,13 +93,16 @@ struct alignas(64) Core {
   void run(const Job& job, const QueryFrame& frame, View<const TreeView> parts);
 
 private:
+  void search(const Job& job, const QueryFrame& frame, View<const TreeView> parts);
+  void search_fast(const Job& job, const QueryFrame& frame);
   bool ended() const noexcept {
     return stop->load(std::memory_order_relaxed) ||
            (cancel != nullptr && cancel->load(std::memory_order_relaxed));
   }
 };
 
-/// Processor time of the calling thread, s.
-double thread_seconds() noexcept;
+/// The steady clock, s. The clock of a thread's processor time would not count other programs, but
+/// takes longer to read than a small job takes to do.
+double clock_seconds() noexcept;
 
 }  // namespace crashrank::detail

@@ -2,6 +2,7 @@
 
 #include "dispatch/choose_depth.hpp"
 #include "dispatch/core.hpp"
+#include "dispatch/estimate_work.hpp"
 #include "dispatch/find_jobs.hpp"
 #include "dispatch/holdings.hpp"
 #include "dispatch/placer.hpp"
@@ -30,9 +31,17 @@ Status check(View<const DispatchQuery> queries, const DispatchOptions& options) 
   if (options.buffer < 1 || options.buffer > 65536) {
     return make_error(ErrorCode::usage, "a buffer holds 1 to 65536 jobs");
   }
+  if (options.kernel == Kernel::fast && options.store == StoreMode::private_copy) {
+    return make_error(ErrorCode::usage, "the fast kernel reads shared trees",
+                      "choose shared stores, or the scalar kernel");
+  }
   for (const DispatchQuery& query : queries) {
     if (query.a == nullptr || query.b == nullptr) {
       return make_error(ErrorCode::usage, "a query needs the part indices of two models");
+    }
+    if (options.kernel == Kernel::fast &&
+        (query.a->model() == nullptr || query.b->model() == nullptr)) {
+      return make_error(ErrorCode::usage, "the fast kernel needs part indices made from models");
     }
   }
   return Success{};
@@ -47,12 +56,17 @@ struct Dispatcher::State {
   WorkerPool pool;
   std::vector<detail::Core> cores;
   detail::Holdings holdings;
-  std::vector<TreeView> trees;  ///< by body
+  std::vector<TreeView> trees;       ///< by body
+  std::vector<const Model*> models;  ///< by body, for the vector engine; else empty
   std::vector<NodePair> stack;
   std::vector<std::pair<Policy, std::unique_ptr<PlacementPolicy>>> policies;
   std::atomic<bool> stop{false};
-  detail::QueryFrame frame;  ///< of the query whose jobs are being found
-  CollideWork work;          ///< the main thread's
+  std::vector<detail::QueryFrame> frames;  ///< by query, as far as their jobs were looked for
+  std::vector<WaitingJob> waiting;
+  std::vector<detail::FoundJob> waiting_found;
+  CollideWork work;  ///< the main thread's
+  bool measure = false;
+  double aside_seconds = 0.0;  ///< measured: sending and waiting, which a replay charges itself
   bool holdings_valid = false;
   StoreMode holdings_mode = StoreMode::shared;
 
@@ -66,7 +80,11 @@ struct Dispatcher::State {
   // What Placer asks of cores.
   std::uint32_t outstanding(std::uint32_t core) const noexcept { return pool.outstanding(core); }
   std::uint32_t seen() const noexcept { return pool.finished_tasks(); }
-  void wait(std::uint32_t seen) noexcept { pool.wait_beyond(seen); }
+  void wait(std::uint32_t seen) noexcept {
+    const double before = measure ? detail::clock_seconds() : 0.0;
+    pool.wait_beyond(seen);
+    if (measure) aside_seconds += detail::clock_seconds() - before;
+  }
 
   void fetch(std::uint32_t core, std::uint32_t body, std::uint32_t node) {
     const IndexedNode& part = holdings.index(body).nodes()[node];
@@ -76,7 +94,7 @@ struct Dispatcher::State {
   void append(std::uint32_t core, const detail::FoundJob& found) {
     detail::Batch& batch = open_batch(core);
     if (batch.frames.empty() || batch.frames.back().query != found.query) {
-      batch.frames.push_back(frame);
+      batch.frames.push_back(frames[found.query]);
     }
     detail::Job job;
     job.query = found.query;
@@ -94,6 +112,7 @@ struct Dispatcher::State {
   }
 
   void send(std::uint32_t core) noexcept {
+    const double before = measure ? detail::clock_seconds() : 0.0;
     pool.post(core, {[](void* context, std::uint32_t worker) {
                        State& state = *static_cast<State*>(context);
                        detail::Core& self = state.cores[worker];
@@ -102,12 +121,13 @@ struct Dispatcher::State {
                      this});
     filling[core].batch ^= 1U;
     filling[core].stale = true;
+    if (measure) aside_seconds += detail::clock_seconds() - before;
   }
 
   void prepare(View<const DispatchQuery> queries, PairLists& pairs, const DispatchOptions& options,
                std::uint32_t depth);
   DispatchEnd distribute(View<const DispatchQuery> queries, const DispatchOptions& options,
-                         DispatchReport& report);
+                         double begun, DispatchReport& report);
   DispatchEnd run_here(View<const DispatchQuery> queries, const DispatchOptions& options);
   void record(DispatchRecording& recording) const;
 
@@ -154,8 +174,10 @@ void Dispatcher::State::prepare(View<const DispatchQuery> queries, PairLists& pa
         std::max(stack_size, traversal_stack_size(query.a->tree_depth(), query.b->tree_depth()));
   }
   trees.clear();
+  models.clear();
   for (std::uint32_t body = 0; body < holdings.bodies(); ++body) {
     trees.push_back(view_of(holdings.index(body).tree()));
+    if (options.kernel == Kernel::fast) models.push_back(holdings.index(body).model());
   }
   pairs.begin(cores.size(), queries.size());
   stop.store(false, std::memory_order_relaxed);
@@ -165,67 +187,79 @@ void Dispatcher::State::prepare(View<const DispatchQuery> queries, PairLists& pa
     core.number = static_cast<std::uint32_t>(i);
     core.private_parts = copies;
     core.shared_trees = trees;
+    core.models = models;
     core.cancel = options.cancel;
     core.stop = &stop;
     core.found = &pairs.found_[i];
     if (core.stack.size() < stack_size) core.stack.resize(stack_size);
     core.work = {};
-    core.measure = options.recording != nullptr;
+    core.measure = measure;
     core.job_times.clear();
     core.batch_times.clear();
     core.next_batch = 0;
+    for (detail::Batch& batch : core.batches) batch.reserve(options.buffer);
     filling[i] = {};
   }
 }
 
 DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
-                                          const DispatchOptions& options, DispatchReport& report) {
+                                          const DispatchOptions& options, double begun,
+                                          DispatchReport& report) {
   PlacementPolicy& chosen = policy(options.policy);
   chosen.begin(pool.size(), options.seed);
   const bool copies = options.store == StoreMode::private_copy;
   detail::Placer<State> placer(*this, holdings, chosen, pool.size(),
-                               {options.buffer, options.store_bytes, options.queue_bytes, copies});
-  const bool measure = options.recording != nullptr;
-  double last = measure ? detail::thread_seconds() : 0.0;
+                               {options.buffer, options.store_bytes, options.queue_bytes, copies},
+                               waiting, waiting_found);
+  double last = measure ? detail::clock_seconds() : 0.0;
+  if (measure) options.recording->begin_seconds = last - begun;
+  aside_seconds = 0.0;
+  const bool estimates = chosen.window() > 1;
   DispatchEnd end = DispatchEnd::ok;
+  detail::FoundJob job;
+  frames.clear();
   for (std::size_t i = 0; i < queries.size() && end == DispatchEnd::ok; ++i) {
     const DispatchQuery& query = queries[i];
     const auto number = static_cast<std::uint32_t>(i);
-    frame = {number, query.b_in_a, box_transform(query.a->frame(), query.b->frame(), query.b_in_a)};
-    detail::FoundJob job;
+    frames.push_back(
+        {number, query.b_in_a, box_transform(query.a->frame(), query.b->frame(), query.b_in_a)});
+    const BoxTransform to = frames.back().to;
     job.query = number;
     job.body_a = holdings.body(*query.a, report.depth);
     job.body_b = holdings.body(*query.b, report.depth);
-    const bool done = detail::find_jobs(
-        *query.a, *query.b, frame.to, report.depth, stack, work,
-        [&](std::uint32_t node_a, std::uint32_t node_b) {
-          if (pool.failed()) return false;
-          if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
-            end = DispatchEnd::cancelled;
-            return false;
-          }
-          job.node_a = node_a;
-          job.node_b = node_b;
-          job.number = placer.placed();
-          if (!placer.place(job)) {
-            end = DispatchEnd::out_of_memory;
-            return false;
-          }
-          if (measure) {
-            const double now = detail::thread_seconds();
-            options.recording->jobs.push_back(
-                {number, job.body_a, job.body_b, node_a, node_b, 0, 0, now - last, 0.0});
-            last = now;
-          }
-          return true;
-        });
+    const auto take = [&](std::uint32_t node_a, std::uint32_t node_b) {
+      if (pool.failed()) return false;
+      if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
+        end = DispatchEnd::cancelled;
+        return false;
+      }
+      job.node_a = node_a;
+      job.node_b = node_b;
+      if (estimates) {
+        job.work = detail::estimate_work(query.a->nodes()[node_a], query.b->nodes()[node_b], to);
+      }
+      const bool placed = placer.add(job);
+      ++job.number;
+      if (!placed) {
+        end = DispatchEnd::out_of_memory;
+        return false;
+      }
+      if (measure) {
+        const double now = detail::clock_seconds();
+        options.recording->jobs.push_back({number, job.body_a, job.body_b, node_a, node_b, 0, 0,
+                                           job.work, now - last - aside_seconds, 0.0});
+        last = now;
+        aside_seconds = 0.0;
+      }
+      return true;
+    };
+    const bool done = detail::find_jobs(*query.a, *query.b, to, report.depth, stack, work, take);
     if (!done) break;
   }
-  if (end == DispatchEnd::ok && !pool.failed()) {
-    placer.send_rest();
-  } else {
-    stop.store(true, std::memory_order_relaxed);
+  if (end == DispatchEnd::ok && !pool.failed() && !placer.finish()) {
+    end = DispatchEnd::out_of_memory;
   }
+  if (end != DispatchEnd::ok || pool.failed()) stop.store(true, std::memory_order_relaxed);
   pool.wait_all();
   if (end == DispatchEnd::ok && options.cancel != nullptr &&
       options.cancel->load(std::memory_order_relaxed)) {
@@ -250,8 +284,8 @@ DispatchEnd Dispatcher::State::run_here(View<const DispatchQuery> queries,
     job.query = static_cast<std::uint32_t>(i);
     job.part_a = holdings.body(*query.a, 0);
     job.part_b = holdings.body(*query.b, 0);
-    frame = {job.query, query.b_in_a,
-             box_transform(query.a->frame(), query.b->frame(), query.b_in_a)};
+    const detail::QueryFrame frame{job.query, query.b_in_a,
+                                   box_transform(query.a->frame(), query.b->frame(), query.b_in_a)};
     core.run(job, frame, trees);
   }
   return DispatchEnd::ok;
@@ -266,13 +300,14 @@ void Dispatcher::State::record(DispatchRecording& recording) const {
   recording.batches.clear();
   for (const detail::Core& core : cores) {
     for (const detail::JobTime& time : core.job_times) {
+      if (time.number >= recording.jobs.size()) continue;  // a budget ended it there
       RecordedJob& job = recording.jobs[time.number];
       job.core = core.number;
       job.pairs = time.pairs;
       job.run_seconds = time.seconds;
     }
     for (const detail::BatchTime& time : core.batch_times) {
-      recording.batches.push_back({core.number, time.jobs, time.bytes, time.seconds});
+      recording.batches.push_back({core.number, time.jobs, time.parts, time.bytes, time.seconds});
     }
   }
 }
@@ -302,14 +337,18 @@ Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLi
   DispatchReport report;
   try {
     const Clock::time_point start = Clock::now();
-    report.depth = options.depth != auto_depth ? options.depth
-                                               : detail::choose_depth(queries, state.pool.size());
+    const bool measure = options.recording != nullptr;
+    state.measure = measure;
+    const double begun = measure ? detail::clock_seconds() : 0.0;
+    report.depth = options.depth != auto_depth
+                       ? options.depth
+                       : detail::choose_depth(queries, state.pool.size(), options);
     const bool here = state.pool.size() == 0 || report.depth == auto_depth;
     if (here) report.depth = auto_depth;
-    if (options.recording != nullptr) options.recording->jobs.clear();
+    if (measure) options.recording->jobs.clear();
     state.prepare(queries, pairs, options, report.depth);
     report.end =
-        here ? state.run_here(queries, options) : state.distribute(queries, options, report);
+        here ? state.run_here(queries, options) : state.distribute(queries, options, begun, report);
     pairs.finish();
     report.seconds = seconds_since(start);
     if (Status status = state.pool.take_failure(); !status) return status.error();
@@ -322,7 +361,7 @@ Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLi
     for (std::uint32_t body = 0; body < state.holdings.bodies(); ++body) {
       report.model_bytes += state.holdings.index(body).model_bytes();
     }
-    if (options.recording != nullptr) {
+    if (measure) {
       options.recording->depth = report.depth;
       state.record(*options.recording);
     }

@@ -52,6 +52,10 @@ public:
   std::uint64_t holders(std::uint32_t body, std::uint32_t node) const noexcept {
     return bodies_[body].holders[node];
   }
+  /// The same word, which stays in place until another body is added or made deeper.
+  const std::uint64_t* holders_of(std::uint32_t body, std::uint32_t node) const noexcept {
+    return &bodies_[body].holders[node];
+  }
   bool holds(std::uint32_t core, std::uint32_t body, std::uint32_t node) const noexcept {
     return ((holders(body, node) >> core) & 1U) != 0;
   }

@@ -17,25 +17,38 @@ IndexedNode indexed(const AabbTree& tree, std::uint32_t tree_node) {
 }  // namespace
 
 Result<PartIndex> PartIndex::make(const AabbTree& tree, std::uint32_t deepest) {
+  return make(tree, nullptr, deepest);
+}
+
+Result<PartIndex> PartIndex::make(const Model& model, std::uint32_t deepest) {
+  return make(model.tree, &model, deepest);
+}
+
+Result<PartIndex> PartIndex::make(const AabbTree& tree, const Model* model, std::uint32_t deepest) {
   if (tree.empty()) return make_error(ErrorCode::bad_input, "the tree has no nodes");
   if (deepest > max_distribution_depth) {
     return make_error(ErrorCode::usage, "parts lie at depth 16 at most");
   }
   PartIndex index;
   index.tree_ = &tree;
+  index.model_ = model;
   index.tree_depth_ = tree.depth;
   index.model_bytes_ = tree.bytes();
   index.frame_.axes = tree.axes;
   index.frame_.axes_are_world = tree.axes_are_world;
   index.frame_.nodes = {tree.nodes[0]};
 
+  const bool wide = model != nullptr && !model->wide.empty();
+  const auto uncut = [&](const Node& node) {
+    return node.is_leaf() || (wide && model->wide.lanes_of[node.first].lanes == 0);
+  };
   std::vector<IndexedNode>& nodes = index.nodes_;
   nodes.push_back(indexed(tree, 0));
   index.level_end_.push_back(1);
   for (std::uint32_t i = 0, depth = 0; depth < deepest; ++depth) {
     for (; i < index.level_end_[depth]; ++i) {
       const Node& node = tree.nodes[nodes[i].tree_node];
-      if (node.is_leaf()) continue;
+      if (uncut(node)) continue;
       nodes[i].left = static_cast<std::uint32_t>(nodes.size());
       for (const std::uint32_t child : {node.first, node.first + 1}) {
         nodes.push_back(indexed(tree, child));

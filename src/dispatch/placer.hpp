@@ -3,6 +3,7 @@
 #include "crashrank/dispatch/policy.hpp"
 #include "dispatch/holdings.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,6 +29,7 @@ struct FoundJob {
   std::uint32_t body_b = 0;
   std::uint32_t node_a = 0;
   std::uint32_t node_b = 0;
+  float work = 0.0F;  ///< estimated, in triangles to look at
 };
 
 /// The main thread's bookkeeping when it places jobs: one batch being filled per core, who is
@@ -41,40 +43,62 @@ struct FoundJob {
 template <class Cores> class Placer {
 public:
   Placer(Cores& cores, Holdings& holdings, PlacementPolicy& policy, std::uint32_t count,
-         const PlacerLimits& limits)
-      : cores_(cores), holdings_(holdings), policy_(policy), limits_(limits) {
+         const PlacerLimits& limits, std::vector<WaitingJob>& waiting, std::vector<FoundJob>& found)
+      : cores_(cores),
+        holdings_(holdings),
+        policy_(policy),
+        limits_(limits),
+        waiting_(waiting),
+        found_(found),
+        window_(std::max(1U, policy.window())) {
     at_.cores = count;
     at_.buffer = limits.buffer;
-    at_.unclaimed = count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+    at_.unclaimed = everyone(count);
     at_.batch = jobs_.data();
+    at_.batch_work = batch_work_.data();
+    at_.sent_work = sent_work_.data();
+    waiting_.clear();
+    found_.clear();
+    waiting_.reserve(window_);
+    found_.reserve(window_);
   }
 
-  /// Places a job; false when a budget does not allow it.
-  bool place(const FoundJob& job) {
-    release_idle();
-    at_.holds_a = holdings_.holders(job.body_a, job.node_a);
-    at_.holds_b = holdings_.holders(job.body_b, job.node_b);
-    const std::uint32_t core = policy_.choose(at_);
-    const bool need_a = ((at_.holds_a >> core) & 1U) == 0;
-    const bool same = job.body_a == job.body_b && job.node_a == job.node_b;
-    const bool need_b = ((at_.holds_b >> core) & 1U) == 0 && !same;
-    const std::uint64_t bytes = (need_a ? part_bytes(job.body_a, job.node_a) : 0) +
-                                (need_b ? part_bytes(job.body_b, job.node_b) : 0);
-    if (!affordable(core, bytes)) return false;
-    if (need_a) take_part(core, job.body_a, job.node_a);
-    if (need_b) take_part(core, job.body_b, job.node_b);
-    transferred_ += bytes;
-    cores_.append(core, job);
-    ++placed_;
-    if (++jobs_[core] == limits_.buffer) send(core);
-    return true;
+  /// Takes a job, and places as many as the policy does not want to wait; false when a budget does
+  /// not allow it.
+  bool add(const FoundJob& job) {
+    WaitingJob waiting;
+    waiting.holders_a = holdings_.holders_of(job.body_a, job.node_a);
+    waiting.holders_b = holdings_.holders_of(job.body_b, job.node_b);
+    waiting.bytes_a = static_cast<std::uint32_t>(part_bytes(job.body_a, job.node_a));
+    waiting.bytes_b = static_cast<std::uint32_t>(part_bytes(job.body_b, job.node_b));
+    waiting.work = job.work;
+    waiting_.push_back(waiting);
+    found_.push_back(job);
+    at_.waiting_work += job.work;
+    for (;;) {
+      at_.jobs = waiting_;
+      if (at_.jobs.empty()) return true;
+      if (at_.jobs.size() < window_) {
+        hear();
+        if (!policy_.in_haste(at_)) return true;
+      }
+      if (!place()) return false;
+    }
   }
 
-  /// Sends what is left in the batches.
-  void send_rest() {
+  /// Places all jobs that wait and sends what is in the batches; false when a budget does not allow
+  /// it.
+  bool finish() {
+    at_.all_found = true;
+    for (;;) {
+      at_.jobs = waiting_;
+      if (at_.jobs.empty()) break;
+      if (!place()) return false;
+    }
     for (std::uint32_t core = 0; core < at_.cores; ++core) {
       if (jobs_[core] != 0) send(core);
     }
+    return true;
   }
 
   std::uint64_t placed() const noexcept { return placed_; }
@@ -86,27 +110,64 @@ private:
   struct Queue {
     std::array<std::uint64_t, 2> sent{};  ///< bytes of the last two batches sent
     std::uint64_t filling = 0;
+    std::array<float, 2> work{};  ///< of the last two batches sent
   };
 
   std::uint64_t part_bytes(std::uint32_t body, std::uint32_t node) const {
     return holdings_.index(body).nodes()[node].bytes();
   }
 
-  /// Cores whose batch was out of their hands stop being claimed; waits until there is one.
-  void release_idle() {
-    const std::uint64_t all =
-        at_.cores == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << at_.cores) - 1;
-    if (at_.unclaimed == all) return;
+  static std::uint64_t everyone(std::uint32_t cores) noexcept {
+    return cores == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << cores) - 1;
+  }
+
+  /// Learns which batches are done. Cores that have one left at most are claimed no longer.
+  void hear() {
+    for (std::uint32_t core = 0; core < at_.cores; ++core) {
+      if (known_out_[core] == 0) continue;
+      const std::uint32_t out = cores_.outstanding(core);
+      if (out == known_out_[core]) continue;
+      known_out_[core] = out;
+      sent_work_[core] = out == 0 ? 0.0F : queue_[core].work[0];
+      at_.unclaimed |= std::uint64_t{1} << core;
+    }
+  }
+
+  void wait_for_unclaimed() {
     for (;;) {
       const std::uint32_t seen = cores_.seen();
-      for (std::uint32_t core = 0; core < at_.cores; ++core) {
-        if (!at_.is_unclaimed(core) && cores_.outstanding(core) < 2) {
-          at_.unclaimed |= std::uint64_t{1} << core;
-        }
-      }
+      hear();
       if (at_.unclaimed != 0) return;
       cores_.wait(seen);
     }
+  }
+
+  /// Places one job that waits.
+  bool place() {
+    wait_for_unclaimed();
+    const PlacementPolicy::Choice choice = policy_.choose(at_);
+    const FoundJob job = found_[choice.job];
+    const std::uint32_t core = choice.core;
+    const bool need_a = !holdings_.holds(core, job.body_a, job.node_a);
+    const bool same = job.body_a == job.body_b && job.node_a == job.node_b;
+    const bool need_b = !holdings_.holds(core, job.body_b, job.node_b) && !same;
+    const std::uint64_t bytes = (need_a ? part_bytes(job.body_a, job.node_a) : 0) +
+                                (need_b ? part_bytes(job.body_b, job.node_b) : 0);
+    if (!affordable(core, bytes)) return false;
+    if (need_a) take_part(core, job.body_a, job.node_a);
+    if (need_b) take_part(core, job.body_b, job.node_b);
+    transferred_ += bytes;
+    cores_.append(core, job);
+    ++placed_;
+    batch_work_[core] += job.work;
+    at_.waiting_work -= job.work;
+    const auto offset = static_cast<std::ptrdiff_t>(choice.job);
+    waiting_.erase(waiting_.begin() + offset);
+    found_.erase(found_.begin() + offset);
+    at_.jobs = waiting_;
+    if (waiting_.empty()) at_.waiting_work = 0.0F;  // whatever rounding left
+    if (++jobs_[core] == limits_.buffer || policy_.send_early(at_, core)) send(core);
+    return true;
   }
 
   bool affordable(std::uint32_t core, std::uint64_t bytes) {
@@ -134,18 +195,28 @@ private:
     queue.sent[1] = queue.sent[0];
     queue.sent[0] = queue.filling;
     queue.filling = 0;
+    queue.work[1] = queue.work[0];
+    queue.work[0] = batch_work_[core];
+    sent_work_[core] += batch_work_[core];
+    batch_work_[core] = 0.0F;
     jobs_[core] = 0;
     ++batches_;
     cores_.send(core);
-    if (cores_.outstanding(core) == 2) at_.unclaimed &= ~(std::uint64_t{1} << core);
+    if (++known_out_[core] == 2) at_.unclaimed &= ~(std::uint64_t{1} << core);
   }
 
   Cores& cores_;
   Holdings& holdings_;
   PlacementPolicy& policy_;
   PlacerLimits limits_;
+  std::vector<WaitingJob>& waiting_;
+  std::vector<FoundJob>& found_;
+  std::uint32_t window_;
   Placement at_;
-  std::array<std::uint32_t, 64> jobs_{};
+  std::array<std::uint32_t, 64> jobs_{};       ///< in the batch being filled
+  std::array<float, 64> batch_work_{};         ///< of those
+  std::array<float, 64> sent_work_{};          ///< of batches sent and not known to be done
+  std::array<std::uint32_t, 64> known_out_{};  ///< batches sent and not known to be done
   std::array<Queue, 64> queue_{};
   std::uint64_t placed_ = 0;
   std::uint64_t batches_ = 0;

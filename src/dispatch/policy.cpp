@@ -1,5 +1,6 @@
 #include "crashrank/dispatch/policy.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <random>
@@ -20,12 +21,13 @@ template <class Better> std::uint32_t best_unclaimed(const Placement& at, Better
 
 class BestMatch final : public PlacementPolicy {
 public:
-  std::uint32_t choose(const Placement& at) noexcept override {
-    return best_unclaimed(at, [&](std::uint32_t core, std::uint32_t best) {
-      const std::uint32_t mine = at.similarity(core);
-      const std::uint32_t theirs = at.similarity(best);
-      return mine != theirs ? mine > theirs : at.batch[core] < at.batch[best];
-    });
+  Choice choose(const Placement& at) noexcept override {
+    const WaitingJob& job = at.jobs[0];
+    return {0, best_unclaimed(at, [&](std::uint32_t core, std::uint32_t best) {
+              const std::uint32_t mine = job.similarity(core);
+              const std::uint32_t theirs = job.similarity(best);
+              return mine != theirs ? mine > theirs : at.batch[core] < at.batch[best];
+            })};
   }
 };
 
@@ -36,15 +38,15 @@ public:
     random_.seed(seed);
   }
 
-  std::uint32_t choose(const Placement& at) noexcept override {
+  Choice choose(const Placement& at) noexcept override {
     std::uint32_t count = 0;
     for (std::uint32_t core = 0; core < at.cores; ++core) count += at.is_unclaimed(core) ? 1U : 0U;
     auto skip = static_cast<std::uint32_t>(((random_() >> 32U) * count) >> 32U);
-    return best_unclaimed(at, [&](std::uint32_t, std::uint32_t) {
-      if (skip == 0) return false;
-      --skip;
-      return true;
-    });
+    return {0, best_unclaimed(at, [&](std::uint32_t, std::uint32_t) {
+              if (skip == 0) return false;
+              --skip;
+              return true;
+            })};
   }
 
 private:
@@ -53,22 +55,81 @@ private:
 
 class Lowest final : public PlacementPolicy {
 public:
-  std::uint32_t choose(const Placement& at) noexcept override {
-    return best_unclaimed(at, [&](std::uint32_t core, std::uint32_t best) {
-      const std::uint32_t mine = at.similarity(core);
-      const std::uint32_t theirs = at.similarity(best);
-      return mine != theirs ? mine < theirs : at.batch[core] < at.batch[best];
-    });
+  Choice choose(const Placement& at) noexcept override {
+    const WaitingJob& job = at.jobs[0];
+    return {0, best_unclaimed(at, [&](std::uint32_t core, std::uint32_t best) {
+              const std::uint32_t mine = job.similarity(core);
+              const std::uint32_t theirs = job.similarity(best);
+              return mine != theirs ? mine < theirs : at.batch[core] < at.batch[best];
+            })};
   }
 };
 
 class BestMatchLoad final : public PlacementPolicy {
 public:
-  std::uint32_t choose(const Placement& at) noexcept override {
-    return best_unclaimed(at, [&](std::uint32_t core, std::uint32_t best) {
-      if (at.batch[core] != at.batch[best]) return at.batch[core] < at.batch[best];
-      return at.similarity(core) > at.similarity(best);
+  Choice choose(const Placement& at) noexcept override {
+    const WaitingJob& job = at.jobs[0];
+    return {0, best_unclaimed(at, [&](std::uint32_t core, std::uint32_t best) {
+              if (at.batch[core] != at.batch[best]) return at.batch[core] < at.batch[best];
+              return job.similarity(core) > job.similarity(best);
+            })};
+  }
+};
+
+/// Binds jobs to cores as late as it can. The core with the least work before it takes, of all jobs
+/// that wait, the one whose parts it holds and the others do not; a batch is sent once it holds the
+/// core's share of the work that is left, so batches shrink towards the end and no core is left
+/// with a long one.
+class LateMatch final : public PlacementPolicy {
+public:
+  /// Enough for all jobs of one query near its best depth, and little enough to look through a
+  /// window per job.
+  std::uint32_t window() const noexcept override { return 128; }
+
+  /// A core without work does not wait for a better choice.
+  bool in_haste(const Placement& at) const noexcept override {
+    if (at.jobs.size() < at.cores) return false;
+    for (std::uint32_t core = 0; core < at.cores; ++core) {
+      if (at.sent_work[core] == 0.0F) return true;
+    }
+    return false;
+  }
+
+  Choice choose(const Placement& at) noexcept override {
+    const std::uint32_t core = best_unclaimed(at, [&](std::uint32_t one, std::uint32_t best) {
+      return at.batch_work[one] + at.sent_work[one] < at.batch_work[best] + at.sent_work[best];
     });
+    std::uint32_t chosen = 0;
+    std::int64_t most = advantage(at.jobs[0], core);
+    for (std::uint32_t i = 1; i < at.jobs.size(); ++i) {
+      const std::int64_t here = advantage(at.jobs[i], core);
+      if (here > most) {
+        most = here;
+        chosen = i;
+      }
+    }
+    return {chosen, core};
+  }
+
+  bool send_early(const Placement& at, std::uint32_t core) const noexcept override {
+    float left = at.waiting_work;
+    for (std::uint32_t other = 0; other < at.cores; ++other) left += at.batch_work[other];
+    return at.batch_work[core] * static_cast<float>(at.cores) >= left;
+  }
+
+private:
+  /// Bytes that need not be sent if this core takes the job, less those if the best other one does.
+  static std::int64_t advantage(const WaitingJob& job, std::uint32_t core) noexcept {
+    const std::uint64_t mine = std::uint64_t{1} << core;
+    const std::uint64_t a = *job.holders_a;
+    const std::uint64_t b = *job.holders_b;
+    const std::int64_t bytes_a = job.bytes_a;
+    const std::int64_t bytes_b = job.bytes_b;
+    const std::int64_t saved = ((a & mine) != 0 ? bytes_a : 0) + ((b & mine) != 0 ? bytes_b : 0);
+    const std::uint64_t others_a = a & ~mine;
+    const std::uint64_t others_b = b & ~mine;
+    if ((others_a & others_b) != 0) return saved - bytes_a - bytes_b;
+    return saved - std::max(others_a != 0 ? bytes_a : 0, others_b != 0 ? bytes_b : 0);
   }
 };
 
@@ -77,12 +138,13 @@ struct Entry {
   const char* name;
 };
 
-constexpr std::array<Entry, 4> entries{{{Policy::best_match, "best-match"},
+constexpr std::array<Entry, 5> entries{{{Policy::best_match, "best-match"},
                                         {Policy::random, "random"},
                                         {Policy::lowest, "lowest"},
-                                        {Policy::best_match_load, "best-match-load"}}};
-constexpr std::array<Policy, 4> policies{entries[0].policy, entries[1].policy, entries[2].policy,
-                                         entries[3].policy};
+                                        {Policy::best_match_load, "best-match-load"},
+                                        {Policy::late_match, "late-match"}}};
+constexpr std::array<Policy, 5> policies{entries[0].policy, entries[1].policy, entries[2].policy,
+                                         entries[3].policy, entries[4].policy};
 
 }  // namespace
 
@@ -115,6 +177,8 @@ std::unique_ptr<PlacementPolicy> make_policy(Policy policy) {
       return std::make_unique<Lowest>();
     case Policy::best_match_load:
       return std::make_unique<BestMatchLoad>();
+    case Policy::late_match:
+      return std::make_unique<LateMatch>();
   }
   return std::make_unique<BestMatch>();
 }

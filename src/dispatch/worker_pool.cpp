@@ -150,6 +150,10 @@ std::uint32_t WorkerPool::size() const noexcept {
   return static_cast<std::uint32_t>(state_->mailboxes.size());
 }
 
+double WorkerPool::spin_seconds() const noexcept {
+  return std::chrono::duration<double>(state_->spin).count();
+}
+
 std::uint32_t WorkerPool::outstanding(std::uint32_t worker) const noexcept {
   const Mailbox& mail = state_->mailboxes[worker];
   return mail.posted.load(std::memory_order_relaxed) -

@@ -77,6 +77,13 @@ TEST(Dispatcher, RefusesOptionsWithoutMeaning) {
   EXPECT_FALSE(dispatcher->run({}, lists, options).ok());
   const std::vector<DispatchQuery> nothing(1);
   EXPECT_FALSE(dispatcher->run(nothing, lists).ok());
+  const Body ego(test::hull(10, 10, 1));
+  const std::vector<DispatchQuery> scalar = test::queries_for(ego, ego, test::crash_poses(1, 1, 1));
+  options = {};
+  options.kernel = Kernel::fast;
+  EXPECT_FALSE(dispatcher->run(scalar, lists, options).ok());
+  options.store = StoreMode::private_copy;
+  EXPECT_FALSE(dispatcher->run(scalar, lists, options).ok());
   EXPECT_TRUE(dispatcher->run({}, lists).ok());
   EXPECT_EQ(lists.queries(), 0U);
 }

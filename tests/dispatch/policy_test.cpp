@@ -10,31 +10,45 @@
 namespace crashrank {
 namespace {
 
-/// Four cores with a state each, in the words of the definitions.
+/// Four cores with a state each, in the words of the definitions, and one job that waits.
 struct Cores {
   std::array<std::uint32_t, 4> batch{};
   std::array<std::uint32_t, 4> similarity{};
   std::array<bool, 4> claimed{};
+};
 
-  Placement placement() const {
-    Placement at;
+/// A placement whose parts stay together.
+struct State {
+  explicit State(const Cores& cores) : batch(cores.batch) {
+    for (std::uint32_t core = 0; core < 4; ++core) {
+      const std::uint64_t bit = std::uint64_t{1} << core;
+      if (cores.similarity[core] >= 1) holders_a |= bit;
+      if (cores.similarity[core] >= 2) holders_b |= bit;
+      if (!cores.claimed[core]) at.unclaimed |= bit;
+    }
+    job.holders_a = &holders_a;
+    job.holders_b = &holders_b;
     at.cores = 4;
     at.buffer = 8;
     at.batch = batch.data();
-    for (std::uint32_t core = 0; core < 4; ++core) {
-      const std::uint64_t bit = std::uint64_t{1} << core;
-      if (similarity[core] >= 1) at.holds_a |= bit;
-      if (similarity[core] >= 2) at.holds_b |= bit;
-      if (!claimed[core]) at.unclaimed |= bit;
-    }
-    return at;
+    at.batch_work = work.data();
+    at.sent_work = work.data();
+    at.jobs = {&job, 1};
   }
+
+  std::array<std::uint32_t, 4> batch;
+  std::array<float, 4> work{};
+  std::uint64_t holders_a = 0;
+  std::uint64_t holders_b = 0;
+  WaitingJob job;
+  Placement at;
 };
 
 std::uint32_t choice(Policy policy, const Cores& cores) {
   const std::unique_ptr<PlacementPolicy> made = make_policy(policy);
   made->begin(4, 1);
-  return made->choose(cores.placement());
+  const State state(cores);
+  return made->choose(state.at).core;
 }
 
 TEST(Policy, BestMatchTakesTheMostSimilarThenTheLeastLoadedThenTheLowestNumber) {
@@ -61,6 +75,7 @@ TEST(Policy, BestMatchLoadTakesTheLeastLoadedThenTheMostSimilarThenTheLowestNumb
 
 TEST(Policy, RandomTakesEveryUnclaimedCoreAboutEquallyOftenAndRepeatsWithItsSeed) {
   const Cores cores{{0, 3, 0, 0}, {2, 0, 0, 1}, {false, false, true, false}};
+  const State state(cores);
   const std::unique_ptr<PlacementPolicy> policy = make_policy(Policy::random);
   std::vector<std::uint32_t> first;
   for (const std::uint64_t seed : {5U, 5U, 6U}) {
@@ -68,7 +83,7 @@ TEST(Policy, RandomTakesEveryUnclaimedCoreAboutEquallyOftenAndRepeatsWithItsSeed
     std::vector<std::uint32_t> choices;
     std::array<int, 4> times{};
     for (int i = 0; i < 3000; ++i) {
-      choices.push_back(policy->choose(cores.placement()));
+      choices.push_back(policy->choose(state.at).core);
       ++times[choices.back()];
     }
     EXPECT_EQ(times[2], 0);
@@ -86,9 +101,83 @@ TEST(Policy, NoTwoAreAlike) {
   EXPECT_EQ(choice(Policy::best_match_load, cores), 2U);
   const std::unique_ptr<PlacementPolicy> random = make_policy(Policy::random);
   random->begin(4, 1);
+  const State state(cores);
   std::set<std::uint32_t> taken;
-  for (int i = 0; i < 200; ++i) taken.insert(random->choose(cores.placement()));
+  for (int i = 0; i < 200; ++i) taken.insert(random->choose(state.at).core);
   EXPECT_EQ(taken.size(), 4U);
+}
+
+/// Jobs that wait for two cores, by who holds their parts.
+struct TwoCores {
+  explicit TwoCores(const std::vector<std::array<std::uint64_t, 2>>& parts_held_by)
+      : held(parts_held_by) {
+    for (const std::array<std::uint64_t, 2>& by : held) {
+      jobs.push_back({&by[0], &by[1], 1000, 1000, 10.0F});
+      at.waiting_work += 10.0F;
+    }
+    at.cores = 2;
+    at.buffer = 8;
+    at.unclaimed = 3;
+    at.batch = batch.data();
+    at.batch_work = batch_work.data();
+    at.sent_work = sent_work.data();
+    at.jobs = jobs;
+  }
+
+  std::vector<std::array<std::uint64_t, 2>> held;
+  std::vector<WaitingJob> jobs;
+  std::array<std::uint32_t, 2> batch{};
+  std::array<float, 2> batch_work{};
+  std::array<float, 2> sent_work{};
+  Placement at;
+};
+
+TEST(Policy, LateMatchGivesTheCoreWithLeastWorkTheJobItIsNearestTo) {
+  const std::unique_ptr<PlacementPolicy> late = make_policy(Policy::late_match);
+  late->begin(2, 1);
+  // Held by: core 1 half; both cores; nobody; core 0 half; core 0 whole.
+  TwoCores two({{2, 0}, {3, 3}, {0, 0}, {1, 0}, {1, 1}});
+  EXPECT_EQ(late->choose(two.at).core, 0U);
+  EXPECT_EQ(late->choose(two.at).job, 4U);
+  two.sent_work = {30.0F, 0.0F};
+  EXPECT_EQ(late->choose(two.at).core, 1U);
+  EXPECT_EQ(late->choose(two.at).job, 0U);
+  two.batch_work = {0.0F, 40.0F};
+  EXPECT_EQ(late->choose(two.at).core, 0U);
+  two.at.unclaimed = 2;
+  EXPECT_EQ(late->choose(two.at).core, 1U);
+}
+
+TEST(Policy, LateMatchTakesOfEquallyNearJobsTheFirst) {
+  const std::unique_ptr<PlacementPolicy> late = make_policy(Policy::late_match);
+  late->begin(2, 1);
+  const TwoCores two({{2, 2}, {3, 3}, {0, 0}});
+  EXPECT_EQ(late->choose(two.at).core, 0U);
+  EXPECT_EQ(late->choose(two.at).job, 1U);
+}
+
+TEST(Policy, LateMatchWaitsForMoreJobsUnlessACoreIsIdle) {
+  const std::unique_ptr<PlacementPolicy> late = make_policy(Policy::late_match);
+  late->begin(2, 1);
+  EXPECT_GT(late->window(), 1U);
+  TwoCores two({{0, 0}, {0, 0}});
+  EXPECT_TRUE(late->in_haste(two.at));
+  two.sent_work = {5.0F, 5.0F};
+  EXPECT_FALSE(late->in_haste(two.at));
+}
+
+TEST(Policy, LateMatchSendsBatchesThatShrinkTowardsTheEnd) {
+  const std::unique_ptr<PlacementPolicy> late = make_policy(Policy::late_match);
+  late->begin(2, 1);
+  TwoCores two({{0, 0}, {0, 0}, {0, 0}, {0, 0}});  // 40 wait
+  two.batch_work = {30.0F, 0.0F};
+  EXPECT_FALSE(late->send_early(two.at, 0));  // half of 70 is 35
+  two.batch_work = {40.0F, 0.0F};
+  EXPECT_TRUE(late->send_early(two.at, 0));
+  two.at.waiting_work = 0.0F;
+  two.batch_work = {1.0F, 0.5F};
+  EXPECT_TRUE(late->send_early(two.at, 0));
+  EXPECT_FALSE(late->send_early(two.at, 1));
 }
 
 TEST(Policy, NamesAreReadBack) {

@@ -4,7 +4,7 @@
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
-#include "crashrank/tree/build.hpp"
+#include "crashrank/tree/model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,17 +60,21 @@ inline std::vector<Pose> crash_poses(std::size_t count, double depth_m, std::uin
   return poses;
 }
 
-/// A tree and its part index, which stay where they are.
+/// A model and its part indices for the scalar and the fast kernel, which stay where they are.
 struct Body {
-  explicit Body(const TriangleMesh& mesh, std::uint32_t deepest = max_distribution_depth)
-      : tree(std::move(build_tree(mesh).value())),
-        index(std::move(PartIndex::make(tree, deepest).value())) {}
+  explicit Body(const TriangleMesh& mesh)
+      : model(std::move(make_model(mesh).value())),
+        tree(model.tree),
+        index(std::move(PartIndex::make(tree).value())),
+        fast_index(std::move(PartIndex::make(model).value())) {}
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
   ~Body() = default;
 
-  AabbTree tree;
+  Model model;
+  const AabbTree& tree;
   PartIndex index;
+  PartIndex fast_index;
 };
 
 /// The answer that every dispatch has to give.
@@ -82,9 +86,13 @@ inline std::vector<Pair> expected_pairs(const Body& a, const Body& b, const Pose
 }
 
 inline std::vector<DispatchQuery> queries_for(const Body& a, const Body& b,
-                                              const std::vector<Pose>& poses) {
+                                              const std::vector<Pose>& poses,
+                                              Kernel kernel = Kernel::scalar) {
   std::vector<DispatchQuery> queries;
-  for (const Pose& pose : poses) queries.push_back({&a.index, &b.index, pose});
+  for (const Pose& pose : poses) {
+    queries.push_back(kernel == Kernel::fast ? DispatchQuery{&a.fast_index, &b.fast_index, pose}
+                                             : DispatchQuery{&a.index, &b.index, pose});
+  }
   return queries;
 }
 

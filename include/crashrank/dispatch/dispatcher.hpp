@@ -27,13 +27,14 @@ enum class StoreMode {
 /// Which engine works on a job.
 enum class Kernel {
   scalar,  ///< the header-only engine
+  fast,    ///< the vector engine; shared trees, and part indices made from models
 };
 
 /// `depth` that lets the dispatcher choose, also that the calling thread does all.
 inline constexpr std::uint32_t auto_depth = 0;
 
 struct DispatchOptions {
-  Policy policy = Policy::best_match;
+  Policy policy = Policy::late_match;
   std::uint32_t depth = auto_depth;  ///< distribution depth, 1 to `max_distribution_depth`
   StoreMode store = StoreMode::shared;
   Kernel kernel = Kernel::scalar;
@@ -42,11 +43,14 @@ struct DispatchOptions {
   std::size_t queue_bytes = 0;  ///< per core, batches not yet worked off: jobs, and parts that
                                 ///< travel with them; 0: no limit
   std::uint64_t seed = 1;       ///< of the random policy
-  bool keep_parts = false;      ///< private: cores still hold what the dispatch before sent them
-  bool sorted = false;          ///< every query's pairs in one run, sorted by a, then b
+  /// Cores still hold what the dispatch before sent them: for callers whose part indices and trees
+  /// are the same objects, unchanged. Has no effect after a dispatch that did not end well.
+  bool keep_parts = false;
+  bool sorted = false;  ///< every query's pairs in one run, sorted by a, then b
   /// Set from any thread to end the dispatch early.
   const std::atomic<bool>* cancel = nullptr;
-  /// Filled with what every job took, for `replay`; measuring costs about half a microsecond a job.
+  /// Filled with what every job took, for `replay`; measuring costs about a tenth of a microsecond a
+  /// job. Estimates of work are recorded only under a policy that asks for them (late_match).
   DispatchRecording* recording = nullptr;
 };
 
@@ -101,7 +105,8 @@ public:
 
   /// Answers all queries in one dispatch: parts stay where they are from query to query. With no
   /// workers, or where `auto_depth` finds the work too small to share, the calling thread does all.
-  /// Errors: usage for options out of range or a query without models; internal when a worker
+  /// Errors: usage for options out of range or that exclude each other, or a query without models;
+  /// internal when a worker
   /// failed (out of memory, say). The dispatcher can be used again after any of them.
   Result<DispatchReport> run(View<const DispatchQuery> queries, PairLists& pairs,
                              const DispatchOptions& options = {});

@@ -4,6 +4,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
+#include "crashrank/tree/model.hpp"
 #include "crashrank/tree/tree_view.hpp"
 
 #include <cstddef>
@@ -44,9 +45,14 @@ public:
   /// usage for a depth above `max_distribution_depth`.
   static Result<PartIndex> make(const AabbTree& tree,
                                 std::uint32_t deepest = max_distribution_depth);
+  /// The same for the vector engine, whose smallest pieces are clusters of up to eight triangles:
+  /// nodes are not cut below those. The model has to stay where it is.
+  static Result<PartIndex> make(const Model& model, std::uint32_t deepest = max_distribution_depth);
 
   View<const IndexedNode> nodes() const noexcept { return nodes_; }
   const AabbTree& tree() const noexcept { return *tree_; }
+  /// The model it was made from, null where it was made from a tree.
+  const Model* model() const noexcept { return model_; }
   std::uint32_t deepest() const noexcept { return deepest_; }
   /// Number of nodes at depths 0 to `depth`.
   std::uint32_t nodes_down_to(std::uint32_t depth) const noexcept;
@@ -64,7 +70,10 @@ public:
 private:
   PartIndex() = default;
 
+  static Result<PartIndex> make(const AabbTree& tree, const Model* model, std::uint32_t deepest);
+
   const AabbTree* tree_ = nullptr;
+  const Model* model_ = nullptr;
   std::uint32_t deepest_ = 0;
   std::uint32_t tree_depth_ = 0;
   std::size_t model_bytes_ = 0;

@@ -11,50 +11,85 @@
 
 namespace crashrank {
 
-/// The schemes by which a job finds its core.
+/// The schemes by which a job finds its core: four of Wiseman & Grinberg 2016, section 4, and one
+/// of our own.
 enum class Policy {
   best_match,       ///< the core that holds most of the job's parts
   random,           ///< any unclaimed core
   lowest,           ///< the core that holds least of the job's parts
   best_match_load,  ///< the least loaded core, then the one that holds most
+  late_match,       ///< jobs wait unassigned; the core with least work before it takes the job it
+                    ///< is nearest to, in batches that shrink towards the end
 };
 
 /// All policies, in the order of the enum.
 CRASHRANK_API View<const Policy> all_policies() noexcept;
-/// "best-match", "random", "lowest", "best-match-load".
+/// "best-match", "random", "lowest", "best-match-load", "late-match".
 CRASHRANK_API const char* policy_name(Policy policy) noexcept;
 /// Errors: usage, naming the ones there are.
 CRASHRANK_API Result<Policy> policy_from_name(const std::string& name);
 
-/// What a policy knows when it places a job. Bit c of a word stands for core c.
-struct Placement {
-  std::uint32_t cores = 0;
-  std::uint32_t buffer = 0;     ///< K: jobs a batch can take
-  std::uint64_t unclaimed = 0;  ///< cores that can take the job; never 0
-  std::uint64_t holds_a = 0;    ///< cores that hold the part of A, or will with their batch
-  std::uint64_t holds_b = 0;    ///< the same for B
-  const std::uint32_t* batch = nullptr;  ///< by core: jobs in the batch that is being filled
+/// A job that has no core yet. Bit c of a word stands for core c.
+struct WaitingJob {
+  const std::uint64_t* holders_a = nullptr;  ///< cores that hold A's part, or will with their batch
+  const std::uint64_t* holders_b = nullptr;  ///< the same for B
+  std::uint32_t bytes_a = 0;
+  std::uint32_t bytes_b = 0;
+  float work = 0.0F;  ///< estimated, in triangles to look at
 
-  bool is_unclaimed(std::uint32_t core) const noexcept { return ((unclaimed >> core) & 1U) != 0; }
+  bool holds_a(std::uint32_t core) const noexcept { return ((*holders_a >> core) & 1U) != 0; }
+  bool holds_b(std::uint32_t core) const noexcept { return ((*holders_b >> core) & 1U) != 0; }
   /// Parts of the job that the core holds: 0, 1 or 2.
   std::uint32_t similarity(std::uint32_t core) const noexcept {
-    return static_cast<std::uint32_t>((holds_a >> core) & 1U) +
-           static_cast<std::uint32_t>((holds_b >> core) & 1U);
+    return (holds_a(core) ? 1U : 0U) + (holds_b(core) ? 1U : 0U);
   }
 };
 
+/// What a policy knows when it places a job.
+struct Placement {
+  std::uint32_t cores = 0;
+  std::uint32_t buffer = 0;              ///< K: jobs a batch can take
+  std::uint64_t unclaimed = 0;           ///< cores that can take a job; never 0 in `choose`
+  const std::uint32_t* batch = nullptr;  ///< by core: jobs in the batch that is being filled
+  const float* batch_work = nullptr;     ///< by core: their estimated work
+  const float* sent_work = nullptr;      ///< by core: of batches sent and not known to be done
+  View<const WaitingJob> jobs;           ///< in the order found; never empty in `choose`
+  float waiting_work = 0.0F;             ///< their estimated work
+  bool all_found = false;                ///< no more will come
+
+  bool is_unclaimed(std::uint32_t core) const noexcept { return ((unclaimed >> core) & 1U) != 0; }
+};
+
 /// Decides where jobs go. Called by the main thread once per job, so an indirect call is cheap
-/// against the rest; keep `choose` below a microsecond and free of allocation.
+/// against the rest; keep the members below a microsecond and free of allocation.
 class CRASHRANK_API PlacementPolicy {
 public:
+  struct Choice {
+    std::uint32_t job = 0;  ///< index in `Placement::jobs`
+    std::uint32_t core = 0;
+  };
+
   virtual ~PlacementPolicy() = default;
   /// Before the first job of a dispatch.
   virtual void begin(std::uint32_t cores, std::uint64_t seed) {
     static_cast<void>(cores);
     static_cast<void>(seed);
   }
-  /// The core for the next job: one whose bit is set in `at.unclaimed`.
-  virtual std::uint32_t choose(const Placement& at) noexcept = 0;
+  /// Jobs that the main thread may find ahead of placing them; 1: each is placed when found.
+  virtual std::uint32_t window() const noexcept { return 1; }
+  /// Whether to place a job now, though more can be found and the window has room.
+  virtual bool in_haste(const Placement& at) const noexcept {
+    static_cast<void>(at);
+    return false;
+  }
+  /// A job, and a core whose bit is set in `at.unclaimed`.
+  virtual Choice choose(const Placement& at) noexcept = 0;
+  /// Whether to send this core's batch although it is not full.
+  virtual bool send_early(const Placement& at, std::uint32_t core) const noexcept {
+    static_cast<void>(at);
+    static_cast<void>(core);
+    return false;
+  }
 
 protected:
   PlacementPolicy() = default;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/base/export.hpp"
 #include "crashrank/dispatch/part_index.hpp"
 
 #include <cstdint>
@@ -7,8 +8,9 @@
 
 namespace crashrank {
 
-/// One job as it went: where it came from and what it took. Seconds are processor time of the
-/// thread that spent them, so other programs on the machine do not count.
+/// One job as it went: where it came from and what it took. Seconds are of the steady clock, read
+/// by the thread that did the work: `keep_smaller` of repeated recordings leaves out what other
+/// programs on the machine took meanwhile.
 struct RecordedJob {
   std::uint32_t query = 0;
   std::uint32_t body_a = 0;  ///< index in `DispatchRecording::bodies`
@@ -17,6 +19,7 @@ struct RecordedJob {
   std::uint32_t node_b = 0;
   std::uint32_t core = 0;
   std::uint32_t pairs = 0;
+  float work = 0.0F;  ///< as estimated before it was done, in triangles to look at
   double find_seconds =
       0.0;                   ///< main thread, from the job before this one to the end of placing it
   double run_seconds = 0.0;  ///< core, without copying parts
@@ -26,6 +29,7 @@ struct RecordedJob {
 struct RecordedBatch {
   std::uint32_t core = 0;
   std::uint32_t jobs = 0;
+  std::uint32_t copied_parts = 0;
   std::uint64_t copied_bytes = 0;
   double copy_seconds = 0.0;
 };
@@ -37,7 +41,13 @@ struct DispatchRecording {
   std::vector<const PartIndex*> bodies;
   std::vector<RecordedJob> jobs;
   std::vector<RecordedBatch> batches;
-  double finish_seconds = 0.0;  ///< main thread, after the last job was done
+  double begin_seconds = 0.0;   ///< main thread, before it looked for the first job
+  double finish_seconds = 0.0;  ///< main thread, after the last batch was done
 };
+
+/// Keeps, for every job and batch, the smaller of the times of two recordings of the same dispatch.
+/// Jobs are found in the same order every time; batches are the same with one worker only, and are
+/// left alone where their number differs. Returns false, and does nothing, where the jobs differ.
+CRASHRANK_API bool keep_smaller(DispatchRecording& best, const DispatchRecording& again);
 
 }  // namespace crashrank

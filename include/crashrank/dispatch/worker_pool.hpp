@@ -41,6 +41,8 @@ public:
   ~WorkerPool();
 
   std::uint32_t size() const noexcept;
+  /// How long idle threads spin before they sleep, s.
+  double spin_seconds() const noexcept;
   /// Tasks posted to a worker and not finished: 0, 1 or 2.
   std::uint32_t outstanding(std::uint32_t worker) const noexcept;
   /// Hands a task over; `outstanding(worker)` has to be below 2.

@@ -1,0 +1,311 @@
+#include "command.hpp"
+#include "console.hpp"
+#include "json.hpp"
+#include "mesh_arguments.hpp"
+#include "poses.hpp"
+#include "streams.hpp"
+#include "sweep_plot.hpp"
+#include "tree_arguments.hpp"
+
+#include "crashrank/dispatch/sweep.hpp"
+#include "crashrank/report/table.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crashrank::cli {
+namespace {
+
+struct Options {
+  std::string a;
+  std::string b;
+  MeshArguments mesh;
+  TreeArguments tree;
+  std::string poses_file;
+  std::string depths = "1:16";
+  std::string policies = "all";
+  std::string store = "private";
+  std::string kernel = "scalar";
+  std::string plot;
+  std::uint32_t workers = 4;
+  std::uint32_t buffer = 8;
+  std::size_t memory = 0;
+  std::uint32_t repeat = 5;
+  bool batch = false;
+  bool json = false;
+  bool csv = false;
+};
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == at) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+std::optional<std::uint32_t> whole_number(const std::string& text) {
+  std::uint32_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+/// "1:16", "8", or a list of such, separated by commas.
+Result<std::vector<std::uint32_t>> parse_depths(const std::string& text) {
+  std::vector<std::uint32_t> depths;
+  for (const std::string& part : split(text, ',')) {
+    const std::vector<std::string> ends = split(part, ':');
+    const std::optional<std::uint32_t> first = whole_number(ends.front());
+    const std::optional<std::uint32_t> last = whole_number(ends.back());
+    if (ends.size() > 2 || !first || !last || *first < 1 || *first > *last ||
+        *last > max_distribution_depth) {
+      return make_error(ErrorCode::usage, "--depths: '" + part + "' is no depth or range of depths",
+                        "write FIRST:LAST or a list, 1 to 16");
+    }
+    for (std::uint32_t depth = *first; depth <= *last; ++depth) depths.push_back(depth);
+  }
+  std::sort(depths.begin(), depths.end());
+  depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+  return depths;
+}
+
+Result<std::vector<Policy>> parse_policies(const std::string& text) {
+  std::vector<Policy> policies;
+  if (text == "all") return policies;
+  for (const std::string& name : split(text, ',')) {
+    const Result<Policy> policy = policy_from_name(name);
+    if (!policy) return policy.error();
+    if (std::find(policies.begin(), policies.end(), *policy) == policies.end()) {
+      policies.push_back(*policy);
+    }
+  }
+  return policies;
+}
+
+Result<SweepOptions> sweep_options(const Options& options) {
+  if (const Status single = one_standard_input({options.a, options.b, options.poses_file});
+      !single) {
+    return single.error();
+  }
+  if (options.json && options.csv) {
+    return make_error(ErrorCode::usage, "--json and --csv exclude each other");
+  }
+  if (is_standard(options.plot)) {
+    return make_error(ErrorCode::usage, "--plot needs a file: the rows go to standard output");
+  }
+  SweepOptions how;
+  const Result<std::vector<std::uint32_t>> depths = parse_depths(options.depths);
+  if (!depths) return depths.error();
+  how.depths = *depths;
+  const Result<std::vector<Policy>> policies = parse_policies(options.policies);
+  if (!policies) return policies.error();
+  how.policies = *policies;
+  how.workers = options.workers;
+  how.buffer = options.buffer;
+  how.store = options.store == "shared" ? StoreMode::shared : StoreMode::private_copy;
+  how.kernel = options.kernel == "fast" ? Kernel::fast : Kernel::scalar;
+  how.store_bytes = options.memory;
+  how.batch = options.batch;
+  how.repeat = options.repeat;
+  return how;
+}
+
+Result<Model> load_model(const std::string& path, const Options& options) {
+  Result<ImportedMesh> imported = load_mesh(path, options.mesh, true);
+  if (!imported) return imported.error();
+  const Result<BuildOptions> build = options.tree.build_options();
+  if (!build) return build.error();
+  Result<Model> model = make_model(std::move(imported->mesh), *build);
+  if (!model) {
+    Error error = model.error();
+    if (error.file.empty()) error.file = path;
+    return error;
+  }
+  return std::move(*model);
+}
+
+const char* status_of(const SweepRow& row) {
+  return row.end == DispatchEnd::out_of_memory ? "out_of_memory" : "ok";
+}
+
+Json to_json(const Options& options, const Sweep& sweep) {
+  Json rows = Json::array();
+  for (const SweepRow& row : sweep.rows) {
+    rows.push_back({{"depth", row.depth},
+                    {"policy", policy_name(row.policy)},
+                    {"jobs", row.jobs},
+                    {"seconds", row.seconds},
+                    {"serial_seconds", row.serial_seconds},
+                    {"speedup", row.speedup},
+                    {"replayed_seconds", row.replayed_seconds},
+                    {"replayed_speedup", row.replayed_speedup},
+                    {"relative_transfer", row.relative_transfer},
+                    {"replayed_relative_transfer", row.replayed_relative_transfer},
+                    {"transferred_bytes", row.transferred_bytes},
+                    {"peak_part_bytes", row.peak_part_bytes},
+                    {"status", status_of(row)}});
+  }
+  const VirtualMachine& machine = sweep.machine;
+  return {{"rows", std::move(rows)},
+          {"a", options.a},
+          {"b", options.b},
+          {"workers", options.workers},
+          {"processors", sweep.processors},
+          {"buffer", options.buffer},
+          {"store", options.store},
+          {"kernel", options.kernel},
+          {"batch", options.batch},
+          {"repeat", options.repeat},
+          {"replay",
+           {{"processors", machine.processors},
+            {"send_s", machine.send_s},
+            {"wake_s", machine.wake_s},
+            {"main_wake_s", machine.main_wake_s},
+            {"copy_part_s", machine.copy_part_s},
+            {"copy_bytes_per_s", machine.copy_bytes_per_s}}}};
+}
+
+std::string to_csv(const Sweep& sweep) {
+  std::string text =
+      "depth,policy,jobs,seconds,serial_seconds,speedup,replayed_seconds,replayed_speedup,"
+      "relative_transfer,replayed_relative_transfer,transferred_bytes,peak_part_bytes,status\n";
+  for (const SweepRow& row : sweep.rows) {
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.depth, policy_name(row.policy),
+                    row.jobs, row.seconds, row.serial_seconds, row.speedup, row.replayed_seconds,
+                    row.replayed_speedup, row.relative_transfer, row.replayed_relative_transfer,
+                    row.transferred_bytes, row.peak_part_bytes, status_of(row));
+  }
+  return text;
+}
+
+std::string to_text(const Options& options, const Sweep& sweep) {
+  Table table({{"depth", true},
+               {"policy"},
+               {"jobs", true},
+               {"serial us", true},
+               {"us", true},
+               {"speedup", true},
+               {"replayed", true},
+               {"transfer", true},
+               {"replayed", true},
+               {"status"}});
+  for (const SweepRow& row : sweep.rows) {
+    table.add_row({std::to_string(row.depth), policy_name(row.policy),
+                   fmt::format("{:.0f}", row.jobs), fmt::format("{:.1f}", row.serial_seconds * 1e6),
+                   fmt::format("{:.1f}", row.seconds * 1e6), fmt::format("{:.2f}", row.speedup),
+                   fmt::format("{:.2f}", row.replayed_speedup),
+                   fmt::format("{:.3f}", row.relative_transfer),
+                   fmt::format("{:.3f}", row.replayed_relative_transfer), status_of(row)});
+  }
+  return table.text(colours_wanted()) +
+         fmt::format("{} workers on {} processors; replayed on {} virtual cores.\n",
+                     options.workers, sweep.processors, options.workers);
+}
+
+int run(const Options& options) {
+  Result<SweepOptions> how = sweep_options(options);
+  if (!how) return fail(how.error());
+  if (const Result<ImportTransform> transform = options.mesh.transform(); !transform) {
+    return fail(transform.error());
+  }
+  const Result<std::vector<Pose>> poses = read_poses(options.poses_file);
+  if (!poses) return fail(poses.error());
+  const Result<Model> a = load_model(options.a, options);
+  if (!a) return fail(a.error());
+  const Result<Model> b = load_model(options.b, options);
+  if (!b) return fail(b.error());
+  const auto progress = std::make_shared<Progress>("sweeping", how->depths.size());
+  how->progress = [progress](std::size_t done, std::size_t) { progress->update(done); };
+  const Result<Sweep> swept = sweep(*a, *b, *poses, *how);
+  if (!swept) return fail(swept.error());
+  if (!options.plot.empty()) {
+    Result<OutputFile> out = OutputFile::open(options.plot);
+    if (!out) return fail(out.error());
+    const auto name = [](const std::string& path) {
+      return std::filesystem::path(path).filename().string();
+    };
+    const std::string title = fmt::format(
+        "{} and {}, {} poses{}, {} stores, {} kernel", name(options.a), name(options.b),
+        poses->size(), options.batch ? " in one dispatch" : "", options.store, options.kernel);
+    out->write(sweep_plot(*swept, title, options.workers));
+    if (const Status closed = out->close(); !closed) return fail(closed.error());
+  }
+  if (options.json) {
+    print_json(to_json(options, *swept));
+  } else if (options.csv) {
+    print(to_csv(*swept));
+  } else {
+    print(to_text(options, *swept));
+  }
+  return exit_done;
+}
+
+constexpr const char* epilogue =
+    R"(Every pose is a query of its own with empty stores; --batch makes them one dispatch. A row's
+numbers are means over the poses. speedup is measured here; replayed_speedup is that of the recorded
+jobs on as many virtual cores as workers, with wake-ups and copying charged as measured. A row whose
+cores ran out of memory has status out_of_memory and is a gap in the plot.
+
+Examples:
+  crashrank sweep car.obj car.obj --poses poses.txt --plot sweep.svg
+  crashrank sweep a.obj b.obj --poses poses.txt --batch --store shared --depths 2:8 --json)";
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "sweep", "Compare the policies that hand a query's node pairs to cores, depth by depth");
+  command->add_option("A", options->a, "Mesh file of body A; - is standard input")->required();
+  command->add_option("B", options->b, "Mesh file of body B")->required();
+  command
+      ->add_option("--poses", options->poses_file,
+                   "File with one row-major 4x4 matrix of B in A a line; - is standard input")
+      ->required();
+  command->add_option("--depths", options->depths, "Distribution depths, FIRST:LAST or a list")
+      ->capture_default_str();
+  command->add_option("--policies", options->policies, "all, or a list separated by commas")
+      ->capture_default_str();
+  command->add_option("--workers", options->workers, "Worker threads, and virtual cores")
+      ->check(CLI::Range(1U, max_workers))
+      ->capture_default_str();
+  command->add_option("--buffer", options->buffer, "Jobs that are sent to a core en masse")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  command->add_option("--store", options->store, "private: cores copy parts; shared: they do not")
+      ->check(CLI::IsMember({"private", "shared"}))
+      ->capture_default_str();
+  command->add_option("--memory", options->memory, "Bytes of each core's store; 0: no limit");
+  command->add_flag("--batch", options->batch, "All poses in one dispatch");
+  command->add_option("--kernel", options->kernel, "Engine that works on the jobs")
+      ->check(CLI::IsMember({"scalar", "fast"}))
+      ->capture_default_str();
+  command->add_option("--repeat", options->repeat, "Measurements; the median is told")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->add_option("--plot", options->plot, "Draw the curves into this SVG file");
+  command->add_flag("--json", options->json, "Answer in JSON");
+  command->add_flag("--csv", options->csv, "Answer in CSV");
+  options->tree.add_to(*command);
+  options->mesh.add_to(*command);
+  command->footer(epilogue);
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace crashrank::cli

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
+#include "crashrank/dispatch/policy.hpp"
+#include "crashrank/dispatch/recording.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace crashrank {
+
+/// The machine on which recorded jobs are replayed. Seconds and bytes per second.
+///
+/// Model. The main thread and the workers are threads on `processors` equal processors. The main
+/// thread, when it has something to do, has a processor to itself; workers that have something to
+/// do share the others equally. The main thread finds and places jobs in the recorded order, each
+/// at the time recorded for it, decides by the same code as the real one, and waits as the real one
+/// when all cores are claimed. A batch costs its core the copying of its parts, at `copy_part_s` a
+/// part and `copy_bytes_per_s`, and its jobs' recorded times. Sending to a core that has had
+/// nothing to do for longer than `spin_s` costs the main thread `send_s`, and the core starts
+/// `wake_s` later; a main thread that waited goes on `main_wake_s` after a batch was done. With a
+/// link, copying costs the core nothing, but every batch (parts and jobs) passes one link, first
+/// come first served, and arrives `link_latency_s` later; results (pairs) go back over a second
+/// such link, and the main thread hears of a finished batch that much later.
+/// Not modelled: caches and memory that cores share, beyond what the recorded times hold.
+struct VirtualMachine {
+  std::uint32_t processors = 4;
+  std::uint32_t workers = 4;
+  double spin_s = 0.0;
+  double send_s = 2e-6;
+  double wake_s = 8e-6;
+  double main_wake_s = 10e-6;
+  double copy_part_s = 50e-9;
+  double copy_bytes_per_s = 8e9;
+  double link_bytes_per_s = 0.0;  ///< 0: cores copy from shared memory themselves
+  double link_latency_s = 0.0;
+};
+
+/// Measures what waking threads costs on this machine, on an idle pool of at least one worker: the
+/// medians of 200 tries, about 0.1 s. Fills the pool's side of `machine` (spin, send and wake
+/// times). Errors as `WorkerPool::take_failure`.
+CRASHRANK_API Status measure_waking(WorkerPool& pool, VirtualMachine& machine);
+
+/// Sets the copying times of `machine` to those that fit the batches of private recordings best
+/// (least squares); leaves them alone where nothing was copied.
+CRASHRANK_API void fit_copying(View<const DispatchRecording> recordings, VirtualMachine& machine);
+
+struct ReplayOptions {
+  Policy policy = Policy::best_match;
+  StoreMode store = StoreMode::shared;
+  std::uint32_t buffer = 8;
+  std::size_t store_bytes = 0;
+  std::size_t queue_bytes = 0;
+  std::uint64_t seed = 1;
+  VirtualMachine machine;
+};
+
+struct ReplayReport {
+  DispatchEnd end = DispatchEnd::ok;
+  double seconds = 0.0;  ///< from the call to all pairs there
+  std::uint64_t jobs = 0;
+  std::uint64_t batches = 0;
+  std::uint64_t transferred_bytes = 0;
+  std::uint64_t peak_part_bytes = 0;
+  double main_seconds = 0.0;  ///< main thread at work
+  double idle_seconds = 0.0;  ///< workers without a batch, summed over them
+  double relative_transfer = 0.0;
+};
+
+/// Replays a recording on a virtual machine, under any policy. The part indices that the recording
+/// names have to exist still. O(jobs · workers). Errors: usage for numbers out of range or an empty
+/// recording; throws nothing.
+CRASHRANK_API Result<ReplayReport> replay(const DispatchRecording& recording,
+                                          const ReplayOptions& options);
+
+}  // namespace crashrank

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "crashrank/collide/box_test.hpp"
+#include "crashrank/dispatch/part_index.hpp"
+
+#include <algorithm>
+
+namespace crashrank::detail {
+
+/// Part of a box's length along each axis that an interval around `center` covers, multiplied.
+inline float covered(const Box& box, const Eigen::Vector3f& center, const Eigen::Vector3f& half) {
+  float share = 1.0F;
+  for (int i = 0; i < 3; ++i) {
+    const float length = box.max[i] - box.min[i];
+    if (!(length > 0.0F)) continue;
+    const float overlap =
+        std::min(box.max[i], center[i] + half[i]) - std::max(box.min[i], center[i] - half[i]);
+    share *= std::clamp(overlap / length, 0.0F, 1.0F);
+  }
+  return share;
+}
+
+/// What a job will cost, in triangles to look at: each part's triangles times the share of its box
+/// that the other's box covers, and one for the job itself. A guess; nothing but balance rests on
+/// it.
+inline float estimate_work(const IndexedNode& a, const IndexedNode& b, const BoxTransform& to) {
+  const Eigen::Matrix3f rotation = to.rotation.cast<float>();
+  const Eigen::Matrix3f spread = to.abs_rotation.cast<float>();
+  const Eigen::Vector3f translation = to.translation.cast<float>();
+  const Eigen::Vector3f b_in_a = rotation * b.box.center() + translation;
+  const Eigen::Vector3f a_in_b = rotation.transpose() * (a.box.center() - translation);
+  const float of_a = covered(a.box, b_in_a, spread * (0.5F * b.box.extent()));
+  const float of_b = covered(b.box, a_in_b, spread.transpose() * (0.5F * a.box.extent()));
+  return 1.0F + of_a * static_cast<float>(a.slots.count) + of_b * static_cast<float>(b.slots.count);
+}
+
+}  // namespace crashrank::detail

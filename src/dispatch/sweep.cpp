@@ -1,0 +1,279 @@
+#include "crashrank/dispatch/sweep.hpp"
+
+#include "crashrank/collide/pair.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace crashrank {
+
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// What was measured of one policy at one depth on one query (or on the batch).
+struct Measured {
+  std::vector<double> seconds;
+  std::vector<double> relative_transfer;
+  std::vector<double> transferred_bytes;
+  double peak_part_bytes = 0.0;
+  double jobs = 0.0;
+  DispatchEnd end = DispatchEnd::ok;
+  bool recorded = false;
+  DispatchRecording recording;
+};
+
+/// The calling thread alone.
+struct Serial {
+  std::vector<double> seconds;
+  std::size_t pairs = 0;
+};
+
+class Sweeper {
+public:
+  Sweeper(const PartIndex& a, const PartIndex& b, View<const Pose> poses,
+          const SweepOptions& options, Dispatcher here, Dispatcher one, Dispatcher many)
+      : options_(options), here_(std::move(here)), one_(std::move(one)), many_(std::move(many)) {
+    for (const Pose& pose : poses) queries_.push_back({&a, &b, pose});
+    if (options.batch) {
+      asked_.emplace_back(queries_.data(), queries_.size());
+    } else {
+      for (const DispatchQuery& query : queries_) asked_.emplace_back(&query, 1);
+    }
+  }
+
+  Result<Sweep> run() {
+    Sweep result;
+    result.processors = std::max(1U, std::thread::hardware_concurrency());
+    result.machine.processors = options_.workers;
+    result.machine.workers = options_.workers;
+    if (Status status = measure_waking(one_.pool(), result.machine); !status) {
+      return status.error();
+    }
+    result.machine.spin_s = 0.0;  // as many cores as workers: the main thread needs one of them
+    for (std::size_t i = 0; i < options_.depths.size(); ++i) {
+      if (Status status = measure(options_.depths[i]); !status) return status.error();
+      if (options_.progress) options_.progress(i + 1, options_.depths.size());
+    }
+    fit(result.machine);
+    for (std::size_t i = 0; i < measured_.size(); ++i) {
+      const std::size_t level = i / options_.policies.size();
+      const Policy policy = options_.policies[i % options_.policies.size()];
+      Result<SweepRow> row = summary(level, policy, measured_[i], result.machine);
+      if (!row) return row.error();
+      result.rows.push_back(*row);
+    }
+    return result;
+  }
+
+private:
+  using PerQuery = std::vector<Measured>;
+
+  Status measure(std::uint32_t depth) {
+    const std::size_t first = measured_.size();
+    measured_.resize(first + options_.policies.size(), PerQuery(asked_.size()));
+    serial_.emplace_back(asked_.size());
+    for (std::uint32_t turn = 0; turn < options_.repeat; ++turn) {
+      for (std::size_t i = 0; i < asked_.size(); ++i) {
+        if (Status status = serial(i); !status) return status;
+        for (std::size_t p = 0; p < options_.policies.size(); ++p) {
+          Measured& into = measured_[first + p][i];
+          if (into.end != DispatchEnd::ok) continue;
+          const std::uint64_t seed = options_.seed + turn;
+          if (Status status = dispatch(depth, options_.policies[p], seed, i, into); !status) {
+            return status;
+          }
+          if (Status status = record(depth, options_.policies[p], i, into); !status) return status;
+        }
+      }
+    }
+    return Success{};
+  }
+
+  DispatchOptions with(std::uint32_t depth, Policy policy) const {
+    DispatchOptions how;
+    how.depth = depth;
+    how.policy = policy;
+    how.store = options_.store;
+    how.kernel = options_.kernel;
+    how.buffer = options_.buffer;
+    return how;
+  }
+
+  Status serial(std::size_t i) {
+    DispatchOptions how;
+    how.kernel = options_.kernel;
+    const Result<DispatchReport> report = here_.run(asked_[i], lists_, how);
+    if (!report) return report.error();
+    serial_.back()[i].seconds.push_back(report->seconds);
+    serial_.back()[i].pairs = lists_.total();
+    return Success{};
+  }
+
+  Status dispatch(std::uint32_t depth, Policy policy, std::uint64_t seed, std::size_t i,
+                  Measured& into) {
+    DispatchOptions how = with(depth, policy);
+    how.store_bytes = options_.store_bytes;
+    how.seed = seed;
+    const Result<DispatchReport> report = many_.run(asked_[i], lists_, how);
+    if (!report) return report.error();
+    into.end = report->end;
+    into.seconds.push_back(report->seconds);
+    into.relative_transfer.push_back(report->relative_transfer());
+    into.transferred_bytes.push_back(static_cast<double>(report->transferred_bytes));
+    into.peak_part_bytes =
+        std::max(into.peak_part_bytes, static_cast<double>(report->peak_part_bytes));
+    if (report->end != DispatchEnd::ok) return Success{};
+    into.jobs = static_cast<double>(report->jobs);
+    return same_answer(i);
+  }
+
+  /// On one worker, where batches are the same every time.
+  Status record(std::uint32_t depth, Policy policy, std::size_t i, Measured& into) {
+    DispatchOptions how = with(depth, policy);
+    how.recording = &again_;
+    const Result<DispatchReport> report = one_.run(asked_[i], lists_, how);
+    if (!report) return report.error();
+    if (!into.recorded) {
+      into.recording = again_;
+    } else {
+      keep_smaller(into.recording, again_);
+    }
+    into.recorded = true;
+    return same_answer(i);
+  }
+
+  Status same_answer(std::size_t i) const {
+    const std::size_t expected = serial_.back()[i].pairs;
+    if (lists_.total() == expected) return Success{};
+    return make_error(ErrorCode::internal, "a dispatch found " + std::to_string(lists_.total()) +
+                                               " pairs where the calling thread alone found " +
+                                               std::to_string(expected));
+  }
+
+  void fit(VirtualMachine& machine) const {
+    std::vector<DispatchRecording> all;
+    for (const PerQuery& queries : measured_) {
+      for (const Measured& measured : queries) {
+        DispatchRecording batches;
+        batches.batches = measured.recording.batches;
+        all.push_back(std::move(batches));
+      }
+    }
+    fit_copying(all, machine);
+  }
+
+  Result<SweepRow> summary(std::size_t level, Policy policy, const PerQuery& queries,
+                           const VirtualMachine& machine) const {
+    SweepRow row;
+    row.depth = options_.depths[level];
+    row.policy = policy;
+    const double share = 1.0 / static_cast<double>(queries.size());
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const Measured& measured = queries[i];
+      const double seconds = median(measured.seconds);
+      const std::vector<double>& alone = serial_[level][i].seconds;
+      const double serial = median(alone);
+      row.jobs += share * measured.jobs;
+      row.seconds += share * seconds;
+      row.serial_seconds += share * serial;
+      row.speedup += share * serial / seconds;
+      row.relative_transfer += share * median(measured.relative_transfer);
+      row.transferred_bytes += share * median(measured.transferred_bytes);
+      row.peak_part_bytes += share * measured.peak_part_bytes;
+      if (measured.end != DispatchEnd::ok) row.end = measured.end;
+      if (!measured.recorded || measured.recording.jobs.empty()) continue;
+      ReplayOptions how;
+      how.policy = policy;
+      how.store = options_.store;
+      how.buffer = options_.buffer;
+      how.store_bytes = options_.store_bytes;
+      how.seed = options_.seed;
+      how.machine = machine;
+      const Result<ReplayReport> replayed = replay(measured.recording, how);
+      if (!replayed) return replayed.error();
+      if (replayed->end != DispatchEnd::ok) row.end = replayed->end;
+      row.replayed_seconds += share * replayed->seconds;
+      // Recorded times are the smallest of all turns, so the serial time beside them is too.
+      row.replayed_speedup +=
+          share * *std::min_element(alone.begin(), alone.end()) / replayed->seconds;
+      row.replayed_relative_transfer += share * replayed->relative_transfer;
+    }
+    return row;
+  }
+
+  const SweepOptions& options_;
+  Dispatcher here_;  ///< no workers
+  Dispatcher one_;
+  Dispatcher many_;
+  std::vector<DispatchQuery> queries_;
+  std::vector<View<const DispatchQuery>> asked_;  ///< what is dispatched together
+  std::vector<std::vector<Serial>> serial_;       ///< by depth, then what is dispatched together
+  std::vector<PerQuery> measured_;                ///< by depth, then policy
+  PairLists lists_;
+  DispatchRecording again_;
+};
+
+Result<SweepOptions> completed(const SweepOptions& options, View<const Pose> poses) {
+  SweepOptions all = options;
+  if (all.depths.empty()) {
+    all.depths.resize(max_distribution_depth);
+    std::iota(all.depths.begin(), all.depths.end(), 1U);
+  }
+  if (all.policies.empty()) all.policies.assign(all_policies().begin(), all_policies().end());
+  for (const std::uint32_t depth : all.depths) {
+    if (depth < 1 || depth > max_distribution_depth) {
+      return make_error(ErrorCode::usage, "depths are 1 to 16");
+    }
+  }
+  if (all.workers < 1 || all.workers > max_workers) {
+    return make_error(ErrorCode::usage, "a sweep needs 1 to 64 workers");
+  }
+  if (all.repeat < 1) return make_error(ErrorCode::usage, "a sweep measures at least once");
+  if (poses.empty()) return make_error(ErrorCode::usage, "a sweep needs at least one pose");
+  return all;
+}
+
+Result<Dispatcher> with_workers(std::uint32_t workers) {
+  PoolOptions pool;
+  pool.workers = workers;
+  return Dispatcher::start(pool);
+}
+
+}  // namespace
+
+Result<Sweep> sweep(const Model& a, const Model& b, View<const Pose> poses,
+                    const SweepOptions& options) {
+  try {
+    const Result<SweepOptions> all = completed(options, poses);
+    if (!all) return all.error();
+    const bool fast = options.kernel == Kernel::fast;
+    const Result<PartIndex> index_a = fast ? PartIndex::make(a) : PartIndex::make(a.tree);
+    if (!index_a) return index_a.error();
+    const Result<PartIndex> index_b = fast ? PartIndex::make(b) : PartIndex::make(b.tree);
+    if (!index_b) return index_b.error();
+    Result<Dispatcher> here = with_workers(0);
+    if (!here) return here.error();
+    Result<Dispatcher> one = with_workers(1);
+    if (!one) return one.error();
+    Result<Dispatcher> many = with_workers(all->workers);
+    if (!many) return many.error();
+    return Sweeper(*index_a, *index_b, poses, *all, std::move(*here), std::move(*one),
+                   std::move(*many))
+        .run();
+  } catch (const std::exception& error) {
+    return make_error(ErrorCode::internal, std::string("the sweep failed: ") + error.what());
+  }
+}
+
+}  // namespace crashrank

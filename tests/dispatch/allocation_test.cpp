@@ -1,0 +1,108 @@
+#include "dispatch/sample_bodies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <thread>
+#include <vector>
+
+namespace {
+
+std::atomic<long> allocations{0};
+/// Allocations by threads other than this one fail while `failing` is set.
+std::atomic<bool> failing{false};
+const std::thread::id main_thread = std::this_thread::get_id();
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  if (failing.load(std::memory_order_relaxed) && std::this_thread::get_id() != main_thread) {
+    throw std::bad_alloc();
+  }
+  const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+  void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new[](std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace crashrank {
+namespace {
+
+using test::Body;
+
+PoolOptions with_workers(std::uint32_t workers) {
+  PoolOptions options;
+  options.workers = workers;
+  return options;
+}
+
+TEST(Allocation, AWarmDispatchAllocatesNothing) {
+  const Body ego(test::hull(40, 50, 1));
+  const Body other(test::hull(30, 70, 2));
+  const std::vector<DispatchQuery> queries =
+      test::queries_for(ego, other, test::crash_poses(6, 0.8, 3));
+  // One worker: which core gets what is the same every time.
+  Result<Dispatcher> dispatcher = Dispatcher::start(with_workers(1));
+  ASSERT_TRUE(dispatcher.ok());
+  PairLists lists;
+  for (const StoreMode store : {StoreMode::shared, StoreMode::private_copy}) {
+    for (const Policy policy : all_policies()) {
+      DispatchOptions options;
+      options.policy = policy;
+      options.store = store;
+      options.depth = 9;
+      // Which job shares a batch with which depends on timing, and what is warm on how often.
+      long before = 0;
+      for (int i = 0; i < 40; ++i) {
+        if (i == 30) before = allocations.load();
+        ASSERT_TRUE(dispatcher->run(queries, lists, options).ok());
+      }
+      EXPECT_EQ(allocations.load() - before, 0) << policy_name(policy);
+    }
+  }
+}
+
+TEST(Allocation, AFailureInAWorkerIsOneErrorAndTheNextRunWorks) {
+  const Body ego(test::hull(40, 50, 1));
+  const Body other(test::hull(30, 70, 2));
+  const std::vector<Pose> poses = test::crash_poses(6, 0.8, 3);
+  const std::vector<DispatchQuery> queries = test::queries_for(ego, other, poses);
+  for (const StoreMode store : {StoreMode::shared, StoreMode::private_copy}) {
+    Result<Dispatcher> dispatcher = Dispatcher::start(with_workers(4));
+    ASSERT_TRUE(dispatcher.ok());
+    PairLists lists;
+    DispatchOptions options;
+    options.store = store;
+    options.depth = 9;
+    failing = true;
+    const Result<DispatchReport> report = dispatcher->run(queries, lists, options);
+    failing = false;
+    ASSERT_FALSE(report.ok());
+    EXPECT_EQ(report.error().code, ErrorCode::internal);
+    EXPECT_NE(report.error().reason.find("out of memory"), std::string::npos);
+    ASSERT_TRUE(dispatcher->run(queries, lists, options).ok());
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      lists.gather_sorted(i, pairs);
+      EXPECT_EQ(pairs, test::expected_pairs(ego, other, poses[i]));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace crashrank

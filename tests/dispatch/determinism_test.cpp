@@ -1,0 +1,117 @@
+#include "dispatch/sample_bodies.hpp"
+
+#include "crashrank/collide/pair_hash.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using test::Body;
+
+/// Threads that work and sleep by turns of random length, so that workers are held up at places
+/// that differ from run to run.
+class Disturbance {
+public:
+  explicit Disturbance(int threads) {
+    for (int i = 0; i < threads; ++i) {
+      threads_.emplace_back([this, i] {
+        std::mt19937_64 random(static_cast<std::uint64_t>(i) + 1);
+        while (!stop_.load()) {
+          const auto until =
+              std::chrono::steady_clock::now() + std::chrono::microseconds(random() % 200);
+          while (std::chrono::steady_clock::now() < until) {
+          }
+          std::this_thread::sleep_for(std::chrono::microseconds(random() % 200));
+        }
+      });
+    }
+  }
+  Disturbance(const Disturbance&) = delete;
+  Disturbance& operator=(const Disturbance&) = delete;
+  ~Disturbance() {
+    stop_.store(true);
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+private:
+  std::atomic<bool> stop_{false};
+  std::vector<std::thread> threads_;
+};
+
+std::string hash_of(const PairLists& lists, std::vector<Pair>& pairs) {
+  std::string all;
+  for (std::size_t query = 0; query < lists.queries(); ++query) {
+    lists.gather_sorted(query, pairs);
+    all += pairs_hash(pairs) + " ";
+  }
+  return all;
+}
+
+// Policies x depths x buffers x workers x stores and kernels.
+TEST(Determinism, OneHashForEveryCombinationUnderShuffledTiming) {
+  const Body ego(test::hull(24, 32, 1));
+  const Body other(test::hull(20, 36, 2));
+  const std::vector<Pose> poses = test::crash_poses(3, 0.7, 9);
+  struct Engine {
+    Kernel kernel;
+    StoreMode store;
+    std::vector<DispatchQuery> queries;
+  };
+  const Engine engines[] = {
+      {Kernel::scalar, StoreMode::shared, test::queries_for(ego, other, poses)},
+      {Kernel::scalar, StoreMode::private_copy, test::queries_for(ego, other, poses)},
+      {Kernel::fast, StoreMode::shared, test::queries_for(ego, other, poses, Kernel::fast)}};
+  std::vector<Pair> pairs;
+  std::string expected;
+  for (const Pose& pose : poses) {
+    pairs = test::expected_pairs(ego, other, pose);
+    ASSERT_GT(pairs.size(), 20U);
+    expected += pairs_hash(pairs) + " ";
+  }
+  const Disturbance disturbance(2);
+  PairLists lists;
+  std::size_t combinations = 0;
+  for (const std::uint32_t workers : {1U, 2U, 4U, 7U}) {
+    PoolOptions pool;
+    pool.workers = workers;
+    Result<Dispatcher> dispatcher = Dispatcher::start(pool);
+    ASSERT_TRUE(dispatcher.ok());
+    for (const Policy policy : all_policies()) {
+      for (std::uint32_t depth = auto_depth; depth <= max_distribution_depth; ++depth) {
+        for (const std::uint32_t buffer : {1U, 3U, 8U, 64U}) {
+          for (const Engine& engine : engines) {
+            DispatchOptions options;
+            options.policy = policy;
+            options.depth = depth;
+            options.buffer = buffer;
+            options.store = engine.store;
+            options.kernel = engine.kernel;
+            options.seed = combinations;
+            ++combinations;
+            const Result<DispatchReport> report = dispatcher->run(engine.queries, lists, options);
+            ASSERT_TRUE(report.ok());
+            ASSERT_EQ(report.value().end, DispatchEnd::ok);
+            ASSERT_EQ(hash_of(lists, pairs), expected)
+                << policy_name(policy) << " depth " << depth << " buffer " << buffer << " workers "
+                << workers << " store " << static_cast<int>(engine.store) << " kernel "
+                << static_cast<int>(engine.kernel);
+          }
+        }
+      }
+    }
+  }
+  RecordProperty("combinations", std::to_string(combinations));
+  EXPECT_EQ(combinations, 4U * 5U * 17U * 4U * 3U);
+}
+
+}  // namespace
+}  // namespace crashrank
