@@ -233,7 +233,7 @@ ContactFacts contact_facts(const Model& a, const Motion& motion_a, const Model& 
   facts.normal_source = normal.source;
   facts.relative_velocity_mps = now.relative_velocity(facts.point_m);
   facts.relative_speed_mps = facts.relative_velocity_mps.norm();
-  facts.closing_speed_mps = facts.relative_velocity_mps.dot(facts.normal);
+  facts.normal_speed_mps = facts.relative_velocity_mps.dot(facts.normal);
   if (curve.length > 0.0) {
     fill_region(now, workspace, facts);
     if (facts.normal_source == NormalSource::region) facts.overlap_area_m2 = curve.area.norm();

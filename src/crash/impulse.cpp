@@ -184,8 +184,8 @@ ImpulseResult impulse(const RigidBody& a, const RigidBody& b, const Vector3d& po
     if (c.n.norm() < 1e-6) return result;
     c.n.normalize();
   }
-  result.closing_speed_mps = c.n.dot(c.approach);
-  if (!(result.closing_speed_mps > 0.0) || (!a.movable() && !b.movable())) return result;
+  result.normal_speed_mps = c.n.dot(c.approach);
+  if (!(result.normal_speed_mps > 0.0) || (!a.movable() && !b.movable())) return result;
 
   Push push = solve(c, options.restitution);
   if (energy_change(c, push.impulse) > 0.0) {

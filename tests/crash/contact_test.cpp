@@ -53,7 +53,7 @@ TEST_F(Contact, AnOffsetFrontalHasTheSharedWidthAndHeight) {
   EXPECT_EQ(f.normal_source, NormalSource::region);
   // Both fronts and two corners bound the curve: it leans by the depth over the width and height.
   EXPECT_NEAR((f.normal - Vector3d(1, 0, 0)).norm(), 0, 0.04);
-  EXPECT_NEAR(f.closing_speed_mps, 25, 0.03);
+  EXPECT_NEAR(f.normal_speed_mps, 25, 0.03);
   EXPECT_NEAR(f.relative_speed_mps, 25, 1e-9);
   EXPECT_NEAR(f.overlap_width_m, 0.72, 1e-3);
   EXPECT_NEAR(f.overlap_height_m, 1.2 - 0.4, 1e-3);
@@ -79,7 +79,7 @@ TEST_F(Contact, TheNormalOfAnObliqueHitIsThatOfTheFace) {
   const Motion flying = FreeMotion{start, {-8 * out + Vector3d(1, 0, 0), {0, 0, 0}}};
   const ContactFacts f = facts(car, parked, pole, flying);
   EXPECT_NEAR((f.normal - out).norm(), 0, 1e-3);
-  EXPECT_NEAR(f.closing_speed_mps, 8 + std::sin(turn), 1e-2);
+  EXPECT_NEAR(f.normal_speed_mps, 8 + std::sin(turn), 1e-2);
   EXPECT_GT(f.overlap_width_m, 0.15);
   EXPECT_LT(f.overlap_width_m, 0.4);
 }
@@ -120,7 +120,7 @@ TEST_F(Contact, InsideAnotherThereIsNoRegion) {
   EXPECT_EQ(f.normal_source, NormalSource::motion);
   EXPECT_NEAR((f.point_m - Vector3d(0.1, 0, 0)).norm(), 0, 1e-6);
   EXPECT_NEAR((f.normal - Vector3d(0, -1, 0)).norm(), 0, 1e-12);
-  EXPECT_NEAR(f.closing_speed_mps, 4, 1e-12);
+  EXPECT_NEAR(f.normal_speed_mps, 4, 1e-12);
   EXPECT_TRUE(f.region_a.empty());
 }
 

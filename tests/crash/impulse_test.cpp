@@ -136,7 +136,7 @@ TEST(Impulse, CentralImpactHasItsClosedForm) {
   const RigidBody a = ball(1500, {-1, 0, 0}, {20, 0, 0});
   const RigidBody b = ball(1000, {1, 0, 0}, {-10, 0, 0});
   const ImpulseResult r = impulse(a, b, {0, 0, 0}, {1, 0, 0}, {0.2, 0.3, ImpulseSpace::planar});
-  EXPECT_DOUBLE_EQ(r.closing_speed_mps, 30.0);
+  EXPECT_DOUBLE_EQ(r.normal_speed_mps, 30.0);
   const double p = 1.2 * 30 * (1500.0 * 1000 / 2500);
   EXPECT_NEAR(r.b.impulse_ns.x(), p, 1e-9);
   EXPECT_NEAR(r.a.delta_v_mps.x(), -p / 1500, 1e-12);
@@ -261,7 +261,7 @@ TEST(ImpulseProperty, MomentumIsConservedAndEnergyNeverGained) {
     const ImpulseResult r = impulse(a, b, point, normal, {restitution, friction, space});
     SCOPED_TRACE("seed " + std::to_string(seed) + ", case " + std::to_string(i));
     if (!r.acts) {
-      ASSERT_LE(r.closing_speed_mps, 0.0);
+      ASSERT_LE(r.normal_speed_mps, 0.0);
       continue;
     }
     (r.slides ? sliding : full) += 1;
@@ -284,8 +284,8 @@ TEST(ImpulseProperty, MomentumIsConservedAndEnergyNeverGained) {
     ASSERT_NEAR(-change, r.dissipated_j, 1e-10 * had);
     // The law itself.
     ASSERT_GE(normal.dot(r.b.impulse_ns), -1e-9 * r.b.impulse_ns.norm());
-    ASSERT_NEAR(r.separation_speed_mps, r.restitution * r.closing_speed_mps,
-                1e-9 * (1 + r.closing_speed_mps));
+    ASSERT_NEAR(r.separation_speed_mps, r.restitution * r.normal_speed_mps,
+                1e-9 * (1 + r.normal_speed_mps));
     const double normal_part = normal.dot(r.b.impulse_ns);
     const double across = (r.b.impulse_ns - normal_part * normal).norm();
     if (r.slides) {
@@ -295,7 +295,7 @@ TEST(ImpulseProperty, MomentumIsConservedAndEnergyNeverGained) {
                   friction == infinity ? normal_part : friction * normal_part,
                   1e-9 * r.b.impulse_ns.norm());
     } else {
-      ASSERT_NEAR(r.sliding_speed_mps, 0.0, 1e-9 * (1 + r.closing_speed_mps));
+      ASSERT_NEAR(r.sliding_speed_mps, 0.0, 1e-9 * (1 + r.normal_speed_mps));
       ASSERT_LE(across, friction * normal_part * (1 + 1e-9) + 1e-9);
     }
   }

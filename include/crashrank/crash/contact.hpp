@@ -41,7 +41,7 @@ struct ContactFacts {
   NormalSource normal_source = NormalSource::motion;
   Eigen::Vector3d relative_velocity_mps =
       Eigen::Vector3d::Zero();      ///< of A against B, at the point
-  double closing_speed_mps = 0.0;   ///< its part along the normal, positive when approaching
+  double normal_speed_mps = 0.0;    ///< its part along the normal, positive when approaching
   double relative_speed_mps = 0.0;  ///< its length
 
   /// The region in which the surfaces overlap, seen along the normal: how wide horizontally, how

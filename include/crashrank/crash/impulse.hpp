@@ -68,7 +68,7 @@ struct ImpulseResult {
   /// Friction cannot stop the sliding at the contact: a sideswipe. Otherwise a full impact, at
   /// whose end the contact does not slide. The model is less sure of sliding impacts.
   bool slides = false;
-  double closing_speed_mps = 0.0;     ///< along the normal before, positive when approaching
+  double normal_speed_mps = 0.0;      ///< along the normal before, positive when approaching
   double separation_speed_mps = 0.0;  ///< along the normal after
   double sliding_speed_mps = 0.0;     ///< across the normal after
   /// Tangential over normal impulse that a contact without sliding would need; infinite when it
