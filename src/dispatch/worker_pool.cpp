@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cassert>
 #include <chrono>
+#include <cstring>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -67,16 +68,15 @@ struct WorkerPool::State {
   alignas(64) std::atomic<bool> stop{false};
   std::atomic<bool> failed{false};
   std::mutex failure_lock;
-  Error failure;
+  std::array<char, 256> failure{};  ///< what the first failure said, cut to fit
 
+  /// Allocates nothing: memory may be what has run out.
   void fail(const char* what) noexcept {
     const std::lock_guard<std::mutex> hold(failure_lock);
     if (failed.load(std::memory_order_relaxed)) return;
-    try {
-      failure = make_error(ErrorCode::internal, std::string("a worker failed: ") + what);
-    } catch (...) {  // the words did not fit into memory; the kind says enough
-      failure = Error{};
-    }
+    const std::size_t length = std::min(std::strlen(what), failure.size() - 1);
+    std::copy_n(what, length, failure.begin());
+    failure[length] = '\0';
     failed.store(true, std::memory_order_release);
   }
 
@@ -192,7 +192,7 @@ Status WorkerPool::take_failure() {
   const std::lock_guard<std::mutex> hold(state_->failure_lock);
   if (!state_->failed.load(std::memory_order_acquire)) return Success{};
   state_->failed.store(false, std::memory_order_release);
-  return std::exchange(state_->failure, Error{});
+  return make_error(ErrorCode::internal, std::string("a worker failed: ") + state_->failure.data());
 }
 
 Status WorkerPool::run_indices(std::size_t count, IndexBody body, void* opaque) {
