@@ -58,6 +58,7 @@ public:
     open(b_, b);
     rtcCommitScene(a_.scene);
   }
+  bool bakes() const override { return baked_beforehand_; }
   void bake(const Pose& b_in_a) override {
     if (baked_beforehand_) place(b_in_a);
   }

@@ -1,9 +1,9 @@
 // The side-by-side run: crashrank and the colliders it is compared with, on the same meshes and
 // poses, in one process, interleaved.
 
+#include "bench/workload.hpp"
 #include "measure.hpp"
 #include "table.hpp"
-#include "workload.hpp"
 
 #include <unistd.h>
 #include <CLI/CLI.hpp>
@@ -59,7 +59,7 @@ std::vector<std::unique_ptr<peers::Peer>> chosen_peers(const Options& options) {
 bool run(const Options& options, std::string name, crashrank::TriangleMesh mesh,
          std::vector<peers::Row>& rows) {
   auto workload =
-      peers::make_workload(std::move(name), std::move(mesh), options.poses, options.seed);
+      bench::make_workload(std::move(name), std::move(mesh), options.poses, options.seed);
   if (!workload) {
     std::fprintf(stderr, "%s\n", workload.error().message().c_str());
     return false;
@@ -98,10 +98,10 @@ int main(int argc, char** argv) {
   bool good = true;
   for (const std::size_t triangles : options.triangles) {
     const std::string car = triangles <= 20'000 ? "hatch" : "sedan";
-    good = run(options, car, peers::shipped_model(car, triangles), rows) && good;
+    good = run(options, car, bench::shipped_model(car, triangles), rows) && good;
   }
   if (const char* path = std::getenv("CRASHRANK_BENCH_MESH"); path != nullptr) {
-    auto mesh = peers::imported_mesh(path);
+    auto mesh = bench::imported_mesh(path);
     if (mesh) {
       const std::string name = std::string(path).substr(std::string(path).find_last_of('/') + 1);
       good = run(options, name, std::move(*mesh), rows) && good;

@@ -1,24 +1,16 @@
 #include "measure.hpp"
 
+#include "bench/timing.hpp"
+
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <utility>
 
 namespace peers {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+using bench::median;
+using bench::now_s;
 
 // Keeps the answers from being optimised away, and is what the compiler cannot know.
 volatile std::size_t sink = 0;
@@ -30,31 +22,46 @@ void ask(Peer& peer, Mode mode, const Pose& pose) {
 // Times of one query in seconds, each over enough repeats for the clock to tell.
 void sample(Peer& peer, Mode mode, const Pose& pose, double budget_s, std::vector<double>& times) {
   peer.bake(pose);
-  Clock::time_point start = Clock::now();
+  double start = now_s();
   ask(peer, mode, pose);
-  const double first = seconds_since(start);
+  const double first = now_s() - start;
   if (first > budget_s) {
     times.push_back(first);
     return;
   }
-  const int repeats = std::max(1, static_cast<int>(20e-6 / std::max(first, 1e-9)));
-  const int samples =
-      std::clamp(static_cast<int>(budget_s / (first * static_cast<double>(repeats))), 1, 15);
-  for (int i = 0; i < samples; ++i) {
-    start = Clock::now();
+  // Reading the clock takes as long as a short query, and the first one may be cold.
+  int repeats = 1;
+  double once = first;
+  for (double took = 0.0; took < 10e-6; repeats *= 2) {
+    start = now_s();
     for (int k = 0; k < repeats; ++k) ask(peer, mode, pose);
-    times.push_back(seconds_since(start) / repeats);
+    took = now_s() - start;
+    once = took / repeats;
+  }
+  const int samples =
+      std::clamp(static_cast<int>(budget_s / (once * static_cast<double>(repeats))), 1, 15);
+  for (int i = 0; i < samples; ++i) {
+    start = now_s();
+    for (int k = 0; k < repeats; ++k) ask(peer, mode, pose);
+    times.push_back((now_s() - start) / repeats);
   }
 }
 
-// One pass over all poses, seconds a query. Work left out of the timing is left out here too.
+// One pass over all poses, seconds a query. Work left out of the timing is left out here too; where
+// there is none the clock is read twice only, since reading it takes as long as a near query.
 double pass(Peer& peer, const std::vector<Pose>& poses) {
   double total = 0.0;
-  for (const Pose& pose : poses) {
-    peer.bake(pose);
-    const Clock::time_point start = Clock::now();
-    ask(peer, Mode::cycled, pose);
-    total += seconds_since(start);
+  if (peer.bakes()) {
+    for (const Pose& pose : poses) {
+      peer.bake(pose);
+      const double start = now_s();
+      ask(peer, Mode::cycled, pose);
+      total += now_s() - start;
+    }
+  } else {
+    const double start = now_s();
+    for (const Pose& pose : poses) ask(peer, Mode::cycled, pose);
+    total = now_s() - start;
   }
   return total / static_cast<double>(poses.size());
 }

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bench/workload.hpp"
 #include "peer.hpp"
-#include "workload.hpp"
 
 #include <array>
 #include <cstdint>
@@ -9,6 +9,11 @@
 #include <vector>
 
 namespace peers {
+
+using bench::Regime;
+using bench::regime_count;
+using bench::regime_names;
+using bench::Workload;
 
 /// What is asked of a peer.
 enum class Mode {

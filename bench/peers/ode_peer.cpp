@@ -2,6 +2,8 @@
 
 #include <ode/ode.h>
 
+#include <cstdarg>
+
 namespace peers {
 namespace {
 
@@ -33,11 +35,15 @@ struct Geometry {
   }
 };
 
+// ODE says for every query that its table of contacts is crowded; printing would be timed with it.
+void keep_quiet(int /*number*/, const char* /*message*/, va_list /*arguments*/) {}
+
 /// OPCODE through dCollide: contact points, each with the triangles it came from.
 class Ode final : public Peer {
 public:
   Ode() : contacts_(most_contacts) {
     dInitODE2(0);
+    dSetMessageHandler(keep_quiet);
     dAllocateODEDataForThread(dAllocateMaskAll);
   }
   ~Ode() override {

@@ -30,6 +30,7 @@ public:
   /// Work that the peer needs for a pose before it can be asked and that its timing leaves out.
   /// Most have none: a bound that leaves work out says so in its name.
   virtual void bake(const Pose& /*b_in_a*/) {}
+  virtual bool bakes() const { return false; }
   /// Finds all intersecting pairs, B at `b_in_a` in A's frame. Timed. Returns how many it reports.
   virtual std::size_t all(const Pose& b_in_a) = 0;
   /// Whether anything intersects, as early as the peer can tell. Timed.

@@ -1,4 +1,4 @@
-#include "workload.hpp"
+#include "bench/workload.hpp"
 
 #include "catalogue.hpp"
 #include "crashrank/collide/collide.hpp"
@@ -10,7 +10,7 @@
 #include <random>
 #include <utility>
 
-namespace peers {
+namespace bench {
 namespace {
 
 using crashrank::AabbTree;
@@ -125,4 +125,4 @@ crashrank::Result<Workload> make_workload(std::string name, crashrank::TriangleM
   return workload;
 }
 
-}  // namespace peers
+}  // namespace bench

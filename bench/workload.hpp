@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace peers {
+namespace bench {
 
 /// How far the bodies are from each other.
 enum class Regime {
@@ -39,4 +39,4 @@ crashrank::Result<crashrank::TriangleMesh> imported_mesh(const std::string& path
 crashrank::Result<Workload> make_workload(std::string name, crashrank::TriangleMesh mesh,
                                           std::size_t poses, std::uint64_t seed);
 
-}  // namespace peers
+}  // namespace bench
