@@ -117,7 +117,14 @@ BodyImpulse apply(const RigidBody& body, const Response& r, const Vector3d& impu
   result.after = body.velocity;
   if (!body.movable()) return result;
   result.delta_v_mps = r.inverse_mass * impulse;
-  result.delta_omega_radps = r.inverse_inertia * r.arm.cross(impulse);
+  const Vector3d twist = r.arm.cross(impulse);
+  result.delta_omega_radps = r.inverse_inertia * twist;
+  if (r.inverse_inertia(0, 0) != 0.0) {
+    // An explicit inverse loses digits with the inertia's condition; what is missing of the angular
+    // momentum is put back.
+    result.delta_omega_radps +=
+        r.inverse_inertia * (twist - body.inertia_kgm2 * result.delta_omega_radps);
+  }
   result.after.linear_mps += result.delta_v_mps;
   result.after.angular_radps += result.delta_omega_radps;
   RigidBody after = body;
