@@ -119,6 +119,10 @@ Result<SweepOptions> sweep_options(const Options& options) {
   how.buffer = options.buffer;
   how.store = options.store == "shared" ? StoreMode::shared : StoreMode::private_copy;
   how.kernel = options.kernel == "fast" ? Kernel::fast : Kernel::scalar;
+  if (how.kernel == Kernel::fast && how.store == StoreMode::private_copy) {
+    return make_error(ErrorCode::usage, "--kernel fast reads shared trees",
+                      "give --store shared, or --kernel scalar");
+  }
   how.store_bytes = options.memory;
   how.batch = options.batch;
   how.repeat = options.repeat;
@@ -143,23 +147,30 @@ const char* status_of(const SweepRow& row) {
   return row.end == DispatchEnd::out_of_memory ? "out_of_memory" : "ok";
 }
 
+/// What a run that was cut short took says nothing.
+Json measured(const SweepRow& row, double value) {
+  return row.end == DispatchEnd::ok ? Json(value) : Json(nullptr);
+}
+
+Json to_json(const SweepRow& row) {
+  return {{"depth", row.depth},
+          {"policy", policy_name(row.policy)},
+          {"jobs", row.jobs},
+          {"seconds", measured(row, row.seconds)},
+          {"serial_seconds", row.serial_seconds},
+          {"speedup", measured(row, row.speedup)},
+          {"replayed_seconds", measured(row, row.replayed_seconds)},
+          {"replayed_speedup", measured(row, row.replayed_speedup)},
+          {"relative_transfer", measured(row, row.relative_transfer)},
+          {"replayed_relative_transfer", measured(row, row.replayed_relative_transfer)},
+          {"transferred_bytes", measured(row, row.transferred_bytes)},
+          {"peak_part_bytes", row.peak_part_bytes},
+          {"status", status_of(row)}};
+}
+
 Json to_json(const Options& options, const Sweep& sweep) {
   Json rows = Json::array();
-  for (const SweepRow& row : sweep.rows) {
-    rows.push_back({{"depth", row.depth},
-                    {"policy", policy_name(row.policy)},
-                    {"jobs", row.jobs},
-                    {"seconds", row.seconds},
-                    {"serial_seconds", row.serial_seconds},
-                    {"speedup", row.speedup},
-                    {"replayed_seconds", row.replayed_seconds},
-                    {"replayed_speedup", row.replayed_speedup},
-                    {"relative_transfer", row.relative_transfer},
-                    {"replayed_relative_transfer", row.replayed_relative_transfer},
-                    {"transferred_bytes", row.transferred_bytes},
-                    {"peak_part_bytes", row.peak_part_bytes},
-                    {"status", status_of(row)}});
-  }
+  for (const SweepRow& row : sweep.rows) rows.push_back(to_json(row));
   const VirtualMachine& machine = sweep.machine;
   return {{"rows", std::move(rows)},
           {"a", options.a},
@@ -180,16 +191,25 @@ Json to_json(const Options& options, const Sweep& sweep) {
             {"copy_bytes_per_s", machine.copy_bytes_per_s}}}};
 }
 
+/// The rows alone, columns as the JSON's; empty cells where that has null.
 std::string to_csv(const Sweep& sweep) {
-  std::string text =
-      "depth,policy,jobs,seconds,serial_seconds,speedup,replayed_seconds,replayed_speedup,"
-      "relative_transfer,replayed_relative_transfer,transferred_bytes,peak_part_bytes,status\n";
+  std::string text;
   for (const SweepRow& row : sweep.rows) {
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.depth, policy_name(row.policy),
-                    row.jobs, row.seconds, row.serial_seconds, row.speedup, row.replayed_seconds,
-                    row.replayed_speedup, row.relative_transfer, row.replayed_relative_transfer,
-                    row.transferred_bytes, row.peak_part_bytes, status_of(row));
+    const Json cells = to_json(row);
+    if (text.empty()) {
+      for (const auto& [name, value] : cells.items()) text += (text.empty() ? "" : ",") + name;
+      text += '\n';
+    }
+    std::string line;
+    for (const auto& [name, value] : cells.items()) {
+      if (name != "depth") line += ',';
+      if (value.is_string()) {
+        line += value.get<std::string>();
+      } else if (!value.is_null()) {
+        line += value.dump();
+      }
+    }
+    text += line + '\n';
   }
   return text;
 }
@@ -205,13 +225,15 @@ std::string to_text(const Options& options, const Sweep& sweep) {
                {"transfer", true},
                {"replayed", true},
                {"status"}});
+  const auto cell = [](const SweepRow& row, double value, int digits) {
+    return row.end == DispatchEnd::ok ? fmt::format("{:.{}f}", value, digits) : std::string("-");
+  };
   for (const SweepRow& row : sweep.rows) {
     table.add_row({std::to_string(row.depth), policy_name(row.policy),
                    fmt::format("{:.0f}", row.jobs), fmt::format("{:.1f}", row.serial_seconds * 1e6),
-                   fmt::format("{:.1f}", row.seconds * 1e6), fmt::format("{:.2f}", row.speedup),
-                   fmt::format("{:.2f}", row.replayed_speedup),
-                   fmt::format("{:.3f}", row.relative_transfer),
-                   fmt::format("{:.3f}", row.replayed_relative_transfer), status_of(row)});
+                   cell(row, row.seconds * 1e6, 1), cell(row, row.speedup, 2),
+                   cell(row, row.replayed_speedup, 2), cell(row, row.relative_transfer, 3),
+                   cell(row, row.replayed_relative_transfer, 3), status_of(row)});
   }
   return table.text(colours_wanted()) +
          fmt::format("{} workers on {} processors; replayed on {} virtual cores.\n",
@@ -260,7 +282,8 @@ constexpr const char* epilogue =
     R"(Every pose is a query of its own with empty stores; --batch makes them one dispatch. A row's
 numbers are means over the poses. speedup is measured here; replayed_speedup is that of the recorded
 jobs on as many virtual cores as workers, with wake-ups and copying charged as measured. A row whose
-cores ran out of memory has status out_of_memory and is a gap in the plot.
+cores ran out of memory has status out_of_memory, null (in CSV nothing) for what was cut short, and
+is a gap in the plot; the exit code is 0 all the same.
 
 Examples:
   crashrank sweep car.obj car.obj --poses poses.txt --plot sweep.svg
@@ -291,7 +314,9 @@ void add_sweep(CLI::App& app, Action& action) {
   command->add_option("--store", options->store, "private: cores copy parts; shared: they do not")
       ->check(CLI::IsMember({"private", "shared"}))
       ->capture_default_str();
-  command->add_option("--memory", options->memory, "Bytes of each core's store; 0: no limit");
+  command
+      ->add_option("--memory", options->memory, "Bytes of each core's store; 0 (default): no limit")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--batch", options->batch, "All poses in one dispatch");
   command->add_option("--kernel", options->kernel, "Engine that works on the jobs")
       ->check(CLI::IsMember({"scalar", "fast"}))

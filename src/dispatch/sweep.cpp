@@ -88,10 +88,13 @@ private:
         if (Status status = serial(i); !status) return status;
         for (std::size_t p = 0; p < options_.policies.size(); ++p) {
           Measured& into = measured_[first + p][i];
-          if (into.end != DispatchEnd::ok) continue;
           const std::uint64_t seed = options_.seed + turn;
-          if (Status status = dispatch(depth, options_.policies[p], seed, i, into); !status) {
-            return status;
+          if (into.end == DispatchEnd::ok) {
+            if (Status status = dispatch(depth, options_.policies[p], seed, i, into); !status) {
+              return status;
+            }
+          } else if (into.recorded) {
+            continue;
           }
           if (Status status = record(depth, options_.policies[p], i, into); !status) return status;
         }
@@ -134,7 +137,6 @@ private:
     into.peak_part_bytes =
         std::max(into.peak_part_bytes, static_cast<double>(report->peak_part_bytes));
     if (report->end != DispatchEnd::ok) return Success{};
-    into.jobs = static_cast<double>(report->jobs);
     return same_answer(i);
   }
 
@@ -150,6 +152,7 @@ private:
       keep_smaller(into.recording, again_);
     }
     into.recorded = true;
+    into.jobs = static_cast<double>(report->jobs);
     return same_answer(i);
   }
 

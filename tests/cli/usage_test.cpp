@@ -15,8 +15,12 @@ TEST(Usage, HelpAndVersionAreData) {
   const Outcome version = place.crashrank({"--version"});
   EXPECT_EQ(version.code, 0);
   EXPECT_EQ(version.out, "crashrank " CRASHRANK_VERSION "\n");
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {"--help"}, {"inspect", "--help"}, {"collide", "--help"}, {"rank", "--help"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--help"},
+                                             {"inspect", "--help"},
+                                             {"collide", "--help"},
+                                             {"rank", "--help"},
+                                             {"sweep", "--help"}}) {
     const Outcome help = place.crashrank(arguments);
     EXPECT_EQ(help.code, 0);
     EXPECT_EQ(help.err, "");
@@ -59,6 +63,27 @@ TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
            {"rank"},
            {"rank", "s.json", "--measure", "beauty"},
            {"rank", "s.json", "--workers", "0"},
+           {"sweep", "a.obj", "a.obj"},
+           {"sweep", "a.obj", "--poses", "p.txt"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--depths", "0:4"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--depths", "4:3"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--depths", "1:17"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--depths", "1:2:3"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--depths", ""},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--policies", "best"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--policies", "random,"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--workers", "0"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--workers", "65"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--buffer", "0"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--memory", "-1"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--memory", "lots"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--store", "cloud"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--kernel", "quick"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--kernel", "fast", "--store",
+            "private"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--json", "--csv"},
+           {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--plot", "-"},
+           {"sweep", "-", "a.obj", "--poses", "-", "--format", "obj"},
        }) {
     SCOPED_TRACE(testing::PrintToString(arguments));
     const Outcome run = place.crashrank(arguments);

@@ -32,11 +32,12 @@ struct SweepOptions {
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-/// One policy at one depth. Means over the poses; of times, means of each pose's median.
+/// One policy at one depth. Means over the poses; of times, means of each pose's median. Where
+/// cores ran out of memory only jobs, serial time and peak say something.
 struct SweepRow {
   std::uint32_t depth = 0;
   Policy policy = Policy::best_match;
-  double jobs = 0.0;
+  double jobs = 0.0;            ///< that the queries have, whether or not all were worked off
   double seconds = 0.0;         ///< measured here, on so many processors as there are
   double serial_seconds = 0.0;  ///< the calling thread alone, in the same run
   double speedup = 0.0;
