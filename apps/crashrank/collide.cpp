@@ -160,7 +160,7 @@ Json body_json(const std::string& file, const Body& body) {
 
 /// "scalar", or the vector unit in use.
 std::string kernel_name(const EngineArguments& engine) {
-  return engine.kernel == "scalar" || engine.workers > 0 ? "scalar" : vector_unit();
+  return engine.kernel == "scalar" ? "scalar" : vector_unit();
 }
 
 Json to_json(const Options& options, const Body& a, const Body& b,

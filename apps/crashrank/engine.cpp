@@ -6,7 +6,7 @@
 #include <charconv>
 #include <chrono>
 #include <memory>
-#include <optional>
+#include <string>
 #include <utility>
 
 namespace crashrank::cli {
@@ -15,17 +15,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 bool is_kernel(const std::string& name) { return name == "fast" || name == "scalar"; }
-
-/// "auto" is `auto_depth`; nothing for what is no depth.
-std::optional<std::uint32_t> parse_depth(const std::string& text) {
-  if (text == "auto") return auto_depth;
-  std::uint32_t depth = 0;
-  const char* end = text.data() + text.size();
-  const std::from_chars_result read = std::from_chars(text.data(), end, depth);
-  if (read.ec != std::errc{} || read.ptr != end) return std::nullopt;
-  if (depth < 1 || depth > max_distribution_depth) return std::nullopt;
-  return depth;
-}
 
 /// The calling thread does all.
 Engine serial_engine(bool fast, const Model& a, const Model& b) {
@@ -51,25 +40,51 @@ struct Workers {
   PairLists lists;
 };
 
+template <class Source>
+Result<std::shared_ptr<Workers>> start(std::uint32_t count, const Source& a, const Source& b) {
+  PoolOptions pool;
+  pool.workers = count;
+  Result<Dispatcher> dispatcher = Dispatcher::start(pool);
+  if (!dispatcher) return dispatcher.error();
+  Result<PartIndex> index_a = PartIndex::make(a);
+  if (!index_a) return index_a.error();
+  Result<PartIndex> index_b = PartIndex::make(b);
+  if (!index_b) return index_b.error();
+  return std::shared_ptr<Workers>(
+      new Workers{std::move(*dispatcher), std::move(*index_a), std::move(*index_b), {}});
+}
+
 }  // namespace
+
+Result<std::uint32_t> depth_from_text(const std::string& text) {
+  if (text == "auto") return auto_depth;
+  std::uint32_t depth = 0;
+  const char* end = text.data() + text.size();
+  const std::from_chars_result read = std::from_chars(text.data(), end, depth);
+  if (read.ec != std::errc{} || read.ptr != end || depth < 1 || depth > max_distribution_depth) {
+    return make_error(ErrorCode::usage, "--depth " + text + ": is no distribution depth",
+                      "give a number from 1 to 16, or auto");
+  }
+  return depth;
+}
+
+std::string policy_help() {
+  std::string text = "How a job finds its worker (default late-match):";
+  for (const Policy policy : all_policies()) text += std::string(" ") + policy_name(policy);
+  return text;
+}
 
 void EngineArguments::add_to(CLI::App& command) {
   const std::string group = "Engine";
   command
-      .add_option("--kernel", kernel,
-                  "fast (default: the vector unit of this processor) or scalar; with workers the "
-                  "scalar one works")
+      .add_option("--kernel", kernel, "fast (default: the vector unit of this processor) or scalar")
       ->group(group);
   command
       .add_option("--workers", workers,
                   "Threads that share a query; without them the calling thread does all")
       ->check(CLI::Range(1U, max_workers))
       ->group(group);
-  command
-      .add_option("--policy", policy,
-                  "How a job finds its worker: best-match (default), random, lowest or "
-                  "best-match-load")
-      ->group(group);
+  command.add_option("--policy", policy, policy_help())->group(group);
   command
       .add_option("--depth", depth, "Distribution depth at which trees are cut, 1 to 16, or auto")
       ->group(group);
@@ -80,10 +95,8 @@ Status EngineArguments::check() const {
     return make_error(ErrorCode::usage, "--kernel " + kernel + ": is no kernel",
                       "give fast or scalar");
   }
-  if (!parse_depth(depth)) {
-    return make_error(ErrorCode::usage, "--depth " + depth + ": is no distribution depth",
-                      "give a number from 1 to 16, or auto");
-  }
+  const Result<std::uint32_t> cut = depth_from_text(depth);
+  if (!cut) return cut.error();
   const Result<Policy> known = policy_from_name(policy);
   if (!known) return known.error();
   return Success{};
@@ -91,21 +104,16 @@ Status EngineArguments::check() const {
 
 Result<Engine> make_engine(const EngineArguments& arguments, const Model& a, const Model& b) {
   if (Status sound = arguments.check(); !sound) return sound.error();
-  if (arguments.workers == 0) return serial_engine(arguments.kernel == "fast", a, b);
-
-  PoolOptions pool;
-  pool.workers = arguments.workers;
-  Result<Dispatcher> dispatcher = Dispatcher::start(pool);
-  if (!dispatcher) return dispatcher.error();
-  Result<PartIndex> index_a = PartIndex::make(a.tree);
-  if (!index_a) return index_a.error();
-  Result<PartIndex> index_b = PartIndex::make(b.tree);
-  if (!index_b) return index_b.error();
-  const std::shared_ptr<Workers> workers(
-      new Workers{std::move(*dispatcher), std::move(*index_a), std::move(*index_b), {}});
+  const bool fast = arguments.kernel == "fast";
+  if (arguments.workers == 0) return serial_engine(fast, a, b);
+  const Result<std::shared_ptr<Workers>> started =
+      fast ? start(arguments.workers, a, b) : start(arguments.workers, a.tree, b.tree);
+  if (!started) return started.error();
+  const std::shared_ptr<Workers> workers = *started;
   DispatchOptions how;
   how.policy = *policy_from_name(arguments.policy);
-  how.depth = *parse_depth(arguments.depth);
+  how.depth = *depth_from_text(arguments.depth);
+  how.kernel = fast ? Kernel::fast : Kernel::scalar;
   return Engine(
       [workers, how](const Pose& pose, bool any, std::vector<Pair>& pairs) -> Result<Answer> {
         if (any)

@@ -17,7 +17,7 @@ namespace crashrank::cli {
 /// Which engine answers a command's queries, as its options say. No answer depends on it.
 struct EngineArguments {
   std::string kernel = "fast";
-  std::string policy = "best-match";
+  std::string policy = "late-match";
   std::string depth = "auto";
   std::uint32_t workers = 0;  ///< 0: the calling thread does all
 
@@ -27,6 +27,12 @@ struct EngineArguments {
   /// Errors: usage for names and numbers that mean nothing.
   Status check() const;
 };
+
+/// "auto" is `auto_depth`. Errors: usage for what is no distribution depth.
+Result<std::uint32_t> depth_from_text(const std::string& text);
+
+/// What --policy can be told, for help texts.
+std::string policy_help();
 
 /// One query's answer.
 struct Answer {

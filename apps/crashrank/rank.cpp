@@ -1,6 +1,7 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "damage_folder.hpp"
+#include "engine.hpp"
 #include "mesh_arguments.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
@@ -25,6 +26,8 @@ struct Options {
   std::size_t damage_top = 5;
   std::size_t top = 20;
   unsigned workers = 1;
+  std::string policy = "late-match";
+  std::string depth = "auto";
   bool json = false;
   TreeArguments tree;
   std::vector<std::string> allowed_folders;
@@ -63,6 +66,12 @@ Result<std::vector<Model>> load_models(const Scenario& scenario, const BuildOpti
 int run(const Options& options) {
   RankOptions how;
   how.workers = options.workers;
+  const Result<Policy> policy = policy_from_name(options.policy);
+  if (!policy) return fail(policy.error());
+  how.policy = *policy;
+  const Result<std::uint32_t> depth = depth_from_text(options.depth);
+  if (!depth) return fail(depth.error());
+  how.depth = *depth;
   if (!options.measure.empty()) {
     const Result<Measure> measure = measure_from_name(options.measure);
     if (!measure) return fail(measure.error());
@@ -119,8 +128,11 @@ void add_rank(CLI::App& app, Action& action) {
   command->add_option("--top", options->top, "Candidates in the table, 0 for all (default 20)");
   command
       ->add_option("--workers", options->workers,
-                   "Threads that share the candidates; the answer is the same (default 1)")
-      ->check(CLI::Range(1, 1024));
+                   "Threads that share the work; the answer is the same (default 1)")
+      ->check(CLI::Range(1U, max_workers));
+  command->add_option("--policy", options->policy, policy_help());
+  command->add_option("--depth", options->depth,
+                      "Distribution depth at which trees are cut, 1 to 16, or auto (default)");
   command->add_option("--damage", options->damage_folder,
                       "Folder for GLB, PLY and PNG of the bodies with their damage in red");
   command->add_option("--damage-top", options->damage_top,

@@ -147,8 +147,23 @@ void sum_up(const TriangleMesh& mesh, BodyDamage& damage) {
   }
 }
 
-void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
-                 std::int32_t triangle_ego, std::int32_t triangle_other, DamageScratch& scratch,
+DamagePlan plan_damage(const Scene& scene, const Motion& ego_motion, const Contact& contact,
+                       std::int32_t triangle_ego, std::int32_t triangle_other) {
+  const CrushPath path(scene, ego_motion, contact);
+  DamagePlan plan;
+  plan.triangle_ego = triangle_ego;
+  plan.triangle_other = triangle_other;
+  const double samples = std::clamp(std::ceil(path.length_m() / sample_length_m), 1.0, max_samples);
+  // Bodies that were apart until now have met with the first pair alone.
+  const double first_sample = contact.state == ImpactState::contact ? 1.0 : 0.0;
+  for (double k = first_sample; k <= samples; ++k) {
+    plan.poses.push_back(relative(path.ego_at(k / samples), path.other_at(k / samples)));
+  }
+  return plan;
+}
+
+void read_damage(const Scene& scene, const Motion& ego_motion, const DamagePlan& plan,
+                 const FoundDamage& found, Contact& contact, DamageScratch& scratch,
                  RankWork& work) {
   const Body& other = scene.actors[contact.actor];
   const Model& ego_model = *scene.ego.model;
@@ -160,9 +175,9 @@ void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
 
   const Pose ego_first = path.ego_at(0.0);
   const Pose other_first = path.other_at(0.0);
-  if (triangle_ego >= 0 && triangle_other >= 0) {
-    scratch.ego.add(static_cast<std::uint32_t>(triangle_ego));
-    scratch.other.add(static_cast<std::uint32_t>(triangle_other));
+  if (plan.triangle_ego >= 0 && plan.triangle_other >= 0) {
+    scratch.ego.add(static_cast<std::uint32_t>(plan.triangle_ego));
+    scratch.other.add(static_cast<std::uint32_t>(plan.triangle_other));
     scratch.met.push_back(relative(ego_first, other_first));
   }
   if (contact.state == ImpactState::contained) {
@@ -170,21 +185,25 @@ void read_damage(const Scene& scene, const Motion& ego_motion, Contact& contact,
     add_all(ego_is_inside ? ego_model.mesh : other_model.mesh,
             ego_is_inside ? scratch.ego : scratch.other);
   }
-  const double samples = std::clamp(std::ceil(path.length_m() / sample_length_m), 1.0, max_samples);
-  // Bodies that were apart until now have met with the pair above alone.
-  const double first_sample = contact.state == ImpactState::contact ? 1.0 : 0.0;
-  for (double k = first_sample; k <= samples; ++k) {
-    const Pose b_in_a = relative(path.ego_at(k / samples), path.other_at(k / samples));
-    const CollideResult result =
-        collide(ego_model, other_model, b_in_a, scratch.pairs, scratch.collide);
-    ++work.damage_queries;
-    work.damage += result.work;
-    if (!result.intersecting) continue;
-    scratch.met.push_back(b_in_a);
-    for (const Pair& pair : scratch.pairs) {
+  const auto add = [&scratch](View<const Pair> pairs) {
+    for (const Pair& pair : pairs) {
       scratch.ego.add(static_cast<std::uint32_t>(pair.a));
       scratch.other.add(static_cast<std::uint32_t>(pair.b));
     }
+  };
+  for (std::size_t i = 0; i < plan.poses.size(); ++i) {
+    ++work.damage_queries;
+    if (found.lists != nullptr) {
+      if (found.lists->count(found.first + i) == 0) continue;
+      found.lists->for_each_run(found.first + i, add);
+    } else {
+      const CollideResult result =
+          collide(ego_model, other_model, plan.poses[i], scratch.pairs, scratch.collide);
+      work.damage += result.work;
+      if (!result.intersecting) continue;
+      add(scratch.pairs);
+    }
+    scratch.met.push_back(plan.poses[i]);
   }
   const Pose b_in_a_first = relative(ego_first, other_first);
   const Pose b_in_a_last = relative(path.ego_at(1.0), path.other_at(1.0));

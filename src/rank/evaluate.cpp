@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -218,31 +219,47 @@ double highest_score(const Scene& scene, const Motion& ego) {
 
 }  // namespace
 
-CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
-                         RankWork& work) {
-  CandidateResult result;
-  const bool decided = find_hits(scene, candidate.motion, scratch, work);
+Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
+                  RankWork& work) {
+  Approach found;
+  found.decided = find_hits(scene, candidate.motion, scratch, work);
   double last_s = std::numeric_limits<double>::infinity();
+  std::vector<Contact>& contacts = found.result.contacts;
   for (const Scratch::Hit& hit : scratch.hits) {
     if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
-    Contact contact = make_contact(scene, candidate.motion, hit);
-    if (result.contacts.empty()) {
-      last_s = hit.impact.time_s + window_s(scene, contact.closing_speed_mps);
+    contacts.push_back(make_contact(scene, candidate.motion, hit));
+    if (contacts.size() == 1) {
+      last_s = hit.impact.time_s + window_s(scene, contacts.front().closing_speed_mps);
     }
-    read_damage(scene, candidate.motion, contact, hit.impact.triangle_a, hit.impact.triangle_b,
-                scratch.damage, work);
-    result.contacts.push_back(std::move(contact));
+    found.plans.push_back(plan_damage(scene, candidate.motion, contacts.back(),
+                                      hit.impact.triangle_a, hit.impact.triangle_b));
   }
-  result.collides = !result.contacts.empty();
-  add_grazes(scratch, result);
+  found.result.collides = !contacts.empty();
+  add_grazes(scratch, found.result);
+  return found;
+}
+
+CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&& approach,
+                       FoundDamage found, Scratch& scratch, RankWork& work) {
+  CandidateResult result = std::move(approach.result);
+  for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+    read_damage(scene, candidate.motion, approach.plans[i], found, result.contacts[i],
+                scratch.damage, work);
+    found.first += approach.plans[i].poses.size();
+  }
   sum_up_ego(scene, result);
-  if (decided) {
+  if (approach.decided) {
     result.score = score_of(result, scene.measure);
     result.score_interval = {*result.score, *result.score};
   } else {
     result.score_interval = {0.0, highest_score(scene, candidate.motion)};
   }
   return result;
+}
+
+CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
+                         RankWork& work) {
+  return finish(scene, candidate, approach(scene, candidate, scratch, work), {}, scratch, work);
 }
 
 }  // namespace crashrank::detail

@@ -27,8 +27,23 @@ struct Scratch {
   DamageScratch damage;
 };
 
-/// Follows one candidate to its first contact and reads the damage. Depends on the scene and the
-/// candidate alone.
+/// A candidate followed to its contacts, with the damage still to be read.
+struct Approach {
+  CandidateResult result;         ///< contacts without damage, grazes
+  std::vector<DamagePlan> plans;  ///< by contact
+  bool decided = true;
+};
+
+/// Follows one candidate to its first contact. Depends on the scene and the candidate alone, as do
+/// the others here.
+Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch, RankWork& work);
+
+/// Reads the damage and scores it. `found` is of the first contact's first pose; those of the
+/// contacts after it follow.
+CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&& approach,
+                       FoundDamage found, Scratch& scratch, RankWork& work);
+
+/// Both at once, on the calling thread.
 CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
                          RankWork& work);
 

@@ -1,15 +1,13 @@
 #include "crashrank/rank/rank.hpp"
 
 #include "rank/evaluate.hpp"
+#include "rank/evaluate_on_workers.hpp"
 #include "rank/guard.hpp"
 #include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
-#include "rank/workers.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <exception>
-#include <new>
+#include <cstddef>
 #include <utility>
 
 namespace crashrank {
@@ -29,23 +27,18 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   result.candidates = std::move(*candidates);
 
   const std::size_t count = result.candidates.size();
-  const auto workers = static_cast<unsigned>(
-      std::clamp<std::size_t>(options.workers, 1, std::max<std::size_t>(count, 1)));
   result.ranking.resize(count);
-  std::vector<RankWork> work(count);
-  std::vector<char> failed(count, 0);
-  std::vector<detail::Scratch> scratch(workers);
-  detail::for_each_index(count, workers, [&](std::size_t i, unsigned worker) {
-    try {
-      result.ranking[i] = detail::evaluate(*scene, result.candidates[i], scratch[worker], work[i]);
-      result.ranking[i].candidate = i;
-    } catch (const std::bad_alloc&) {
-      failed[i] = 1;
-    }
-  });
-  if (std::find(failed.begin(), failed.end(), 1) != failed.end()) throw std::bad_alloc();
   result.work = scene->work;
-  for (const RankWork& spent : work) result.work += spent;
+  if (options.workers > 1 && count > 0) {
+    const Status shared = detail::evaluate_on_workers(*scene, options, result);
+    if (!shared) return shared.error();
+  } else {
+    detail::Scratch scratch;
+    for (std::size_t i = 0; i < count; ++i) {
+      result.ranking[i] = detail::evaluate(*scene, result.candidates[i], scratch, result.work);
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) result.ranking[i].candidate = i;
   detail::put_in_order(result);
   return result;
 }

@@ -156,9 +156,7 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
                         {"body_pairs", work.body_pairs},
                         {"impact_bv_tests", work.impact.bv_tests},
                         {"impact_primitive_tests", work.impact.primitive_tests},
-                        {"damage_queries", work.damage_queries},
-                        {"damage_bv_tests", work.damage.bv_tests},
-                        {"damage_primitive_tests", work.damage.primitive_tests}}},
+                        {"damage_queries", work.damage_queries}}},
                       {"ranking", std::move(ranking)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -152,8 +152,10 @@ TEST(Collide, EnginesWorkersAndPoliciesGiveTheSameAnswer) {
   ASSERT_EQ(reference.code, 0) << reference.err;
   const std::string pairs = boxes.place.read("pairs.csv");
   std::vector<std::vector<std::string>> ways{{"--kernel", "scalar"}, {"--workers", "2"}};
-  for (const char* policy : {"best-match", "random", "lowest", "best-match-load"}) {
-    ways.push_back({"--workers", "3", "--depth", "2", "--policy", policy});
+  for (const char* policy : {"best-match", "random", "lowest", "best-match-load", "late-match"}) {
+    for (const char* kernel : {"fast", "scalar"}) {
+      ways.push_back({"--workers", "3", "--depth", "2", "--policy", policy, "--kernel", kernel});
+    }
   }
   for (const std::vector<std::string>& way : ways) {
     SCOPED_TRACE(testing::PrintToString(way));

@@ -104,10 +104,14 @@ TEST(Rank, WorkersDoNotChangeTheAnswer) {
   const Workplace place;
   cli_test::write_box_scenario(place);
   Json one = ranked(place);
-  Json three = ranked(place, {"--workers", "3"});
   one.erase("elapsed_s");
-  three.erase("elapsed_s");
-  EXPECT_EQ(one, three);
+  for (const char* depth : {"auto", "1", "4"}) {
+    for (const char* policy : {"best-match", "random", "lowest", "best-match-load", "late-match"}) {
+      Json three = ranked(place, {"--workers", "3", "--depth", depth, "--policy", policy});
+      three.erase("elapsed_s");
+      EXPECT_EQ(one, three) << depth << ' ' << policy;
+    }
+  }
 }
 
 TEST(Rank, TheTableNamesEveryCandidateOrSaysHowManyAreMissing) {

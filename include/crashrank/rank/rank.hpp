@@ -7,6 +7,8 @@
 #include "crashrank/base/view.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
+#include "crashrank/dispatch/policy.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "crashrank/rank/measure.hpp"
 #include "crashrank/rank/scenario.hpp"
@@ -24,10 +26,13 @@ namespace crashrank {
 
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
-  /// Threads that share the candidates, the calling one included; 0 or 1: the calling thread alone.
-  /// The answer has the same bits for every number.
+  /// Threads that share the work, 64 at most; 0 or 1: the calling thread does all. They share the
+  /// candidates when looking for contacts, and one dispatch holds the queries of all candidates'
+  /// damage. The answer has the same bits for every number, policy and depth.
   unsigned workers = 1;
-  ImpactOptions impact;  ///< `start_is_apart` is decided inside
+  Policy policy = Policy::late_match;  ///< how the dispatch's jobs find their workers
+  std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
+  ImpactOptions impact;                ///< `start_is_apart` is decided inside
 };
 
 /// What a crash does to one body.
@@ -96,7 +101,8 @@ struct RankedBody {
   bool mass_guessed = false;
 };
 
-/// Work done, the same for every number of workers.
+/// Work done, the same for every number of workers but for `damage`, which also counts the box
+/// tests that share it out.
 struct RankWork {
   std::uint64_t box_tests = 0;       ///< of the broad phase
   std::uint64_t body_pairs = 0;      ///< bodies that came near enough for a closer look

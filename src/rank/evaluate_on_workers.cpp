@@ -1,0 +1,113 @@
+#include "rank/evaluate_on_workers.hpp"
+
+#include "crashrank/dispatch/dispatcher.hpp"
+#include "crashrank/dispatch/pair_lists.hpp"
+#include "crashrank/dispatch/part_index.hpp"
+#include "rank/evaluate.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace crashrank::detail {
+namespace {
+
+/// Candidates whose pairs are held at a time: enough that all threads stay busy, few enough that
+/// memory does not grow with the scenario.
+constexpr std::size_t batch_candidates = 1024;
+
+/// Where depth is left to the dispatcher it cuts a batch no finer than this.
+constexpr std::uint32_t auto_deepest = 12;
+
+Result<Dispatcher> start(unsigned workers) {
+  PoolOptions pool;
+  pool.workers = std::min(workers, max_workers);
+  Result<Dispatcher> started = Dispatcher::start(pool);
+  if (started) return started;
+  pool.workers = 0;
+  return Dispatcher::start(pool);
+}
+
+/// The part indices of the models in use, each made once.
+class Indices {
+public:
+  explicit Indices(std::uint32_t deepest) : deepest_(deepest) {}
+
+  Result<const PartIndex*> of(const Model& model) {
+    for (const PartIndex& index : indices_) {
+      if (index.model() == &model) return &index;
+    }
+    Result<PartIndex> made = PartIndex::make(model, deepest_);
+    if (!made) return made.error();
+    indices_.push_back(std::move(*made));
+    return &indices_.back();
+  }
+
+private:
+  std::uint32_t deepest_;
+  std::deque<PartIndex> indices_;  ///< which stay where they are
+};
+
+}  // namespace
+
+Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result) {
+  if (options.depth > max_distribution_depth) {
+    return make_error(ErrorCode::usage, "the distribution depth is 16 at most");
+  }
+  Result<Dispatcher> dispatcher = start(options.workers);
+  if (!dispatcher) return dispatcher.error();
+  WorkerPool& pool = dispatcher->pool();
+  const std::uint32_t deepest = options.depth == auto_depth ? auto_deepest : options.depth;
+  Indices indices_a(deepest);
+  Indices indices_b(deepest);  // one model may stand on both sides
+  DispatchOptions how;
+  how.policy = options.policy;
+  how.depth = options.depth;
+  how.kernel = Kernel::fast;
+
+  std::vector<Scratch> scratch(std::max(1U, pool.size()));
+  std::vector<RankWork> work(scratch.size());
+  std::vector<Approach> approaches;
+  std::vector<std::size_t> first_query;
+  std::vector<DispatchQuery> queries;
+  PairLists lists;
+  for (std::size_t begin = 0; begin < result.candidates.size(); begin += batch_candidates) {
+    const std::size_t count = std::min(batch_candidates, result.candidates.size() - begin);
+    approaches.clear();
+    approaches.resize(count);
+    Status done = pool.for_each(count, [&](std::size_t i, std::uint32_t worker) {
+      approaches[i] = approach(scene, result.candidates[begin + i], scratch[worker], work[worker]);
+    });
+    if (!done) return done;
+
+    queries.clear();
+    first_query.clear();
+    for (const Approach& found : approaches) {
+      first_query.push_back(queries.size());
+      for (std::size_t i = 0; i < found.plans.size(); ++i) {
+        const Body& other = scene.actors[found.result.contacts[i].actor];
+        const Result<const PartIndex*> a = indices_a.of(*scene.ego.model);
+        if (!a) return a.error();
+        const Result<const PartIndex*> b = indices_b.of(*other.model);
+        if (!b) return b.error();
+        for (const Pose& pose : found.plans[i].poses) queries.push_back({*a, *b, pose});
+      }
+    }
+    const Result<DispatchReport> report = dispatcher->run(queries, lists, how);
+    if (!report) return report.error();
+    result.work.damage += report->work;
+
+    done = pool.for_each(count, [&](std::size_t i, std::uint32_t worker) {
+      result.ranking[begin + i] =
+          finish(scene, result.candidates[begin + i], std::move(approaches[i]),
+                 {&lists, first_query[i]}, scratch[worker], work[worker]);
+    });
+    if (!done) return done;
+  }
+  for (const RankWork& spent : work) result.work += spent;
+  return Success{};
+}
+
+}  // namespace crashrank::detail

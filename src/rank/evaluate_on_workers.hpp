@@ -1,0 +1,16 @@
+#pragma once
+
+#include "crashrank/base/result.hpp"
+#include "crashrank/rank/rank.hpp"
+#include "rank/scene.hpp"
+
+namespace crashrank::detail {
+
+/// Evaluates all of `result.candidates` into `result.ranking`, in the same order, on
+/// `options.workers` threads. Contacts are looked for candidate by candidate; the queries of all
+/// their damage are one dispatch, in which parts of the ego serve every candidate. Where the system
+/// refuses threads the calling one does all. Errors: usage for a depth out of range; internal when
+/// a worker failed.
+Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result);
+
+}  // namespace crashrank::detail
