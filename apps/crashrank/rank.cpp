@@ -8,6 +8,7 @@
 
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/scenario.hpp"
+#include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/tree/model.hpp"
 
@@ -24,6 +25,7 @@ struct Options {
   std::string measure;
   std::string damage_folder;
   std::size_t damage_top = 5;
+  std::string report;
   std::size_t top = 20;
   unsigned workers = 1;
   std::string policy = "late-match";
@@ -63,6 +65,13 @@ Result<std::vector<Model>> load_models(const Scenario& scenario, const BuildOpti
   return models;
 }
 
+Status write_report(const std::string& path, const std::string& page) {
+  Result<OutputFile> file = OutputFile::open(path);
+  if (!file) return file.error();
+  file->write(page);
+  return file->close();
+}
+
 int run(const Options& options) {
   RankOptions how;
   how.workers = options.workers;
@@ -94,6 +103,10 @@ int run(const Options& options) {
         write_damage(options.damage_folder, options.damage_top, *scenario, *models, *ranked);
     if (!written) return fail(written.error());
   }
+  if (!options.report.empty()) {
+    const Status written = write_report(options.report, html_report(*scenario, *models, *ranked));
+    if (!written) return fail(written.error());
+  }
   if (options.json) {
     print(ranking_json(*scenario, *models, *ranked));
   } else {
@@ -111,7 +124,8 @@ scenario's folder or below, or below a folder above it that holds a file named c
 
 Examples:
   crashrank rank scenario.json
-  crashrank rank scenario.json --measure closing-energy --json --damage out)";
+  crashrank rank scenario.json --measure closing-energy --json --damage out
+  crashrank rank scenario.json --report report.html)";
 
 }  // namespace
 
@@ -135,6 +149,8 @@ void add_rank(CLI::App& app, Action& action) {
                       "Distribution depth at which trees are cut, 1 to 16, or auto (default)");
   command->add_option("--damage", options->damage_folder,
                       "Folder for GLB, PLY and PNG of the bodies with their damage in red");
+  command->add_option("--report", options->report,
+                      "HTML page with table, plans, parts and a 3-D view of both bodies");
   command->add_option("--damage-top", options->damage_top,
                       "Colliding candidates written there, best first, 0 for all (default 5)");
   command

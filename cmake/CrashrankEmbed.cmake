@@ -1,0 +1,37 @@
+# crashrank_embed(TARGET NAME FILE): puts a file's bytes into the library, to be read as
+# crashrank::detail::embedded_NAME() (report/page/embedded.hpp). An empty FILE gives no bytes.
+function(crashrank_embed target name file)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_${name}.cpp)
+  if(file)
+    file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
+#include "report/page/embedded.hpp"
+
+__asm__(".pushsection .rodata\n"
+        "crashrank_@name@_begin:\n"
+        ".incbin \"@file@\"\n"
+        "crashrank_@name@_end:\n"
+        ".popsection\n");
+
+extern "C" {
+extern const char begin[] __asm__("crashrank_@name@_begin");
+extern const char end[] __asm__("crashrank_@name@_end");
+}
+
+namespace crashrank::detail {
+std::string_view embedded_@name@() {
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+}  // namespace crashrank::detail
+]])
+    set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${file})
+  else()
+    file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
+#include "report/page/embedded.hpp"
+
+namespace crashrank::detail {
+std::string_view embedded_@name@() { return {}; }
+}  // namespace crashrank::detail
+]])
+  endif()
+  target_sources(${target} PRIVATE ${source})
+endfunction()

@@ -1,0 +1,305 @@
+#include "crashrank/report/html_report.hpp"
+
+#include "crashrank/report/escape.hpp"
+#include "report/damage_summary.hpp"
+#include "report/page/embedded.hpp"
+#include "report/plan_view.hpp"
+#include "report/ranking_words.hpp"
+#include "report/view_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using detail::DamageSummary;
+
+struct PartDamage {
+  std::string name;
+  std::size_t triangles = 0;
+  double area_m2 = 0.0;
+  double whole_m2 = 0.0;
+};
+
+double triangle_area_m2(const TriangleMesh& mesh, std::size_t index) {
+  const Triangle t = mesh.triangle(index);
+  const Eigen::Vector3d a = t.corner[0].cast<double>();
+  return 0.5 * (t.corner[1].cast<double>() - a).cross(t.corner[2].cast<double>() - a).norm();
+}
+
+std::vector<PartDamage> damage_by_part(const TriangleMesh& mesh, const BodyDamage& damage) {
+  std::vector<PartDamage> parts;
+  for (const std::uint32_t index : damage.parts) {
+    const Part& part = mesh.parts[index];
+    PartDamage row{part.name};
+    const std::uint32_t end = part.first_triangle + part.triangle_count;
+    for (std::uint32_t i = part.first_triangle; i < end; ++i) {
+      row.whole_m2 += triangle_area_m2(mesh, i);
+    }
+    const auto first =
+        std::lower_bound(damage.triangles.begin(), damage.triangles.end(), part.first_triangle);
+    const auto last = std::lower_bound(first, damage.triangles.end(), end);
+    row.triangles = static_cast<std::size_t>(last - first);
+    for (auto i = first; i != last; ++i) row.area_m2 += triangle_area_m2(mesh, *i);
+    parts.push_back(std::move(row));
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const PartDamage& p, const PartDamage& q) { return p.area_m2 > q.area_m2; });
+  return parts;
+}
+
+std::string parts_table(const std::string& title, const TriangleMesh& mesh,
+                        const BodyDamage& damage) {
+  constexpr std::size_t shown = 12;
+  std::string html = "<table class='parts'><caption>" + escape_xml(title) +
+                     "</caption><thead><tr><th>part</th><th>damaged m²</th><th>of the part</th>"
+                     "</tr></thead><tbody>\n";
+  const std::vector<PartDamage> parts = damage_by_part(mesh, damage);
+  for (std::size_t i = 0; i < std::min(shown, parts.size()); ++i) {
+    const PartDamage& part = parts[i];
+    const double share = part.whole_m2 > 0.0 ? 100.0 * part.area_m2 / part.whole_m2 : 0.0;
+    html += fmt::format(
+        "<tr><td>{}</td><td class='n'>{:.3f}</td><td class='n'><span class='bar' "
+        "style='width:{:.0f}px'></span>{:.0f} %</td></tr>\n",
+        escape_xml(part.name), part.area_m2, 0.5 * share, share);
+  }
+  html += "</tbody></table>\n";
+  if (parts.size() > shown) {
+    html += fmt::format("<p class='more'>and {} more parts</p>\n", parts.size() - shown);
+  }
+  return html;
+}
+
+class Page {
+public:
+  Page(const Scenario& scenario, View<const Model> models, const RankResult& result,
+       const HtmlReportOptions& options)
+      : scenario_(scenario), models_(models), result_(result), plan_(scenario, models, result) {
+    const std::size_t all = result.ranking.size();
+    const std::size_t drawn = options.drawn == 0 ? all : std::min(options.drawn, all);
+    for (std::size_t place = 0; place < drawn; ++place) places_.push_back(place);
+    if (drawn < all) places_.push_back(all - 1);
+    data_ = detail::view_data(scenario, models, result, places_, options.model_triangles);
+  }
+
+  std::string html() {
+    head();
+    verdict();
+    if (has_view()) {
+      view();
+    } else if (detail::embedded_three().empty()) {
+      out_ +=
+          "<p class='note'>The 3-D view is missing: this crashrank was built without "
+          "three.js.</p>\n";
+    }
+    table();
+    for (const std::size_t place : places_) candidate(place);
+    foot();
+    return std::move(out_);
+  }
+
+private:
+  bool has_view() const {
+    return !detail::embedded_three().empty() &&
+           std::any_of(places_.begin(), places_.end(),
+                       [&](std::size_t place) { return result_.ranking[place].collides; });
+  }
+
+  bool is_drawn(std::size_t place) const {
+    return std::binary_search(places_.begin(), places_.end(), place);
+  }
+
+  const std::string& name_of(std::size_t place) const {
+    return result_.candidates[result_.ranking[place].candidate].name;
+  }
+
+  void head() {
+    out_ +=
+        "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>\n"
+        "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; "
+        "script-src 'unsafe-inline'; style-src 'unsafe-inline'\">\n"
+        "<meta name='viewport' content='width=device-width, initial-scale=1'>\n<title>";
+    out_ += escape_xml(scenario_.name) + " - crashrank</title>\n<style>";
+    out_ += detail::embedded_style();
+    out_ += "</style></head><body>\n<header><h1>" + escape_xml(scenario_.name) + "</h1>\n";
+    if (!scenario_.description.empty()) {
+      out_ += "<p>" + escape_xml(scenario_.description) + "</p>\n";
+    }
+    const auto free = std::count_if(result_.ranking.begin(), result_.ranking.end(),
+                                    [](const CandidateResult& r) { return !r.collides; });
+    out_ += fmt::format(
+        "<p class='facts'>{} candidates, {} others on the road, {} touch nothing. Ranked by {} "
+        "[{}], lower is better, in {:.1f} ms{}.</p></header>\n",
+        result_.ranking.size(), scenario_.actors.size(), free, measure_name(result_.measure),
+        escape_xml(measure_unit(result_.measure)), result_.elapsed_s * 1e3,
+        result_.complete ? "" : "; the answer is partial");
+  }
+
+  void verdict() {
+    if (result_.ranking.empty()) return;
+    out_ += "<section class='verdict'><h2>Least destructive: " + escape_xml(name_of(0)) + "</h2>\n";
+    out_ += result_.ranking.size() > 1
+                ? "<p>" + escape_xml(detail::reason_words(scenario_, result_, 0)) + "</p>\n"
+                : "<p>It is the only candidate.</p>\n";
+    if (!result_.proved) {
+      out_ += "<p class='note'>The first place is not proved; still in the race: ";
+      for (std::size_t i = 0; i < result_.in_race.size(); ++i) {
+        if (i > 0) out_ += ", ";
+        out_ += escape_xml(result_.candidates[result_.in_race[i]].name);
+      }
+      out_ += "</p>\n";
+    }
+    out_ += "</section>\n";
+  }
+
+  void view() {
+    out_ +=
+        "<section class='stage'><div id='view'><p id='view-note'>The 3-D view needs a browser "
+        "with JavaScript and WebGL.</p></div>\n"
+        "<div class='controls'><b id='view-title'></b> <label>pull apart <input id='apart' "
+        "type='range' min='0' max='3' step='0.05' value='0'></label> "
+        "<span>drag to turn, wheel to come nearer; damage is red</span></div>\n";
+    if (data_.left_out) {
+      out_ += "<p class='note'>Models of very many triangles are left out of the 3-D view.</p>\n";
+    }
+    out_ += "</section>\n";
+  }
+
+  void table() {
+    double top = 0.0;
+    for (const CandidateResult& ranked : result_.ranking) {
+      top = std::max(top, ranked.score.value_or(ranked.score_interval.highest));
+    }
+    out_ +=
+        "<section><h2>Ranking</h2>\n<table class='ranking'><thead><tr><th>rank</th>"
+        "<th>candidate</th><th>";
+    out_ += std::string(measure_name(result_.measure)) + " [" +
+            escape_xml(measure_unit(result_.measure)) +
+            "]</th><th>hits</th><th>after s</th><th>closing m/s</th><th>along the normal m/s</th>"
+            "<th>damaged m², ego</th><th>others</th><th>ego's parts</th></tr></thead><tbody>\n";
+    for (std::size_t place = 0; place < result_.ranking.size(); ++place) row(place, top);
+    out_ += "</tbody></table></section>\n";
+  }
+
+  void row(std::size_t place, double top) {
+    const CandidateResult& ranked = result_.ranking[place];
+    const double score = ranked.score.value_or(ranked.score_interval.highest);
+    const double width = top > 0.0 && std::isfinite(score) ? 110.0 * score / top : 0.0;
+    out_ += fmt::format("<tr data-place='{}'><td class='n'>{}</td>", place + 1, place + 1);
+    out_ += is_drawn(place) ? fmt::format("<td><a href='#c{}'>", place + 1) : std::string("<td>");
+    out_ += escape_xml(name_of(place)) + (is_drawn(place) ? "</a></td>" : "</td>");
+    out_ += fmt::format("<td class='score'><span class='bar' style='width:{:.1f}px'></span>{}</td>",
+                        width,
+                        ranked.score ? fmt::format("{:.5g}", *ranked.score)
+                                     : fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
+                                                   ranked.score_interval.highest));
+    if (ranked.contacts.empty()) {
+      out_ += "<td colspan='7' class='free'>";
+      out_ += ranked.grazes.empty() ? "nothing" : "nothing, but grazes";
+      out_ += "</td></tr>\n";
+      return;
+    }
+    const Contact& first = ranked.contacts.front();
+    const DamageSummary ego = detail::summary_of(ranked.ego, models_[scenario_.ego.model].mesh);
+    const DamageSummary other = detail::summary_of_others(scenario_, models_, ranked);
+    std::string hit;
+    for (const Contact& contact : ranked.contacts) {
+      if (!hit.empty()) hit += ", ";
+      hit += scenario_.actors[contact.actor].name;
+    }
+    std::string parts;
+    for (std::size_t i = 0; i < std::min<std::size_t>(4, ego.parts.size()); ++i) {
+      if (i > 0) parts += ", ";
+      parts += ego.parts[i];
+    }
+    if (ego.parts.size() > 4) parts += fmt::format(" +{}", ego.parts.size() - 4);
+    out_ += fmt::format(
+        "<td>{}</td><td class='n'>{:.3f}</td><td class='n'>{:.1f}</td>"
+        "<td class='n'>{:.1f}</td><td class='n'>{:.2f}</td><td class='n'>{:.2f}"
+        "</td><td>{}</td></tr>\n",
+        escape_xml(hit), first.time_of_impact_s, first.closing_speed_mps, first.normal_speed_mps,
+        ego.area_m2, other.area_m2, escape_xml(parts));
+  }
+
+  void candidate(std::size_t place) {
+    const CandidateResult& ranked = result_.ranking[place];
+    out_ += fmt::format("<section class='candidate' id='c{}'><h2>{}. {}</h2>\n", place + 1,
+                        place + 1, escape_xml(name_of(place)));
+    out_ += "<p>It " + escape_xml(detail::outcome_words(scenario_, ranked)) + ": " +
+            escape_xml(detail::score_words(ranked, result_.measure)) + ".";
+    if (place > 0 && place + 1 < result_.ranking.size() && is_drawn(place + 1)) {
+      out_ += " Why it stands before the next: " +
+              escape_xml(detail::reason_words(scenario_, result_, place));
+    }
+    out_ += "</p>\n<div class='columns'>\n" + plan_.draw(place);
+    out_ += "<div>\n";
+    if (!ranked.contacts.empty()) {
+      if (has_view()) {
+        out_ += fmt::format("<button data-place='{}'>show in 3-D</button>\n", place + 1);
+      }
+      out_ += parts_table("ego", models_[scenario_.ego.model].mesh, ranked.ego);
+      for (const Contact& contact : ranked.contacts) {
+        out_ +=
+            parts_table(scenario_.actors[contact.actor].name,
+                        detail::mesh_of_actor(scenario_, models_, contact.actor), contact.other);
+      }
+    }
+    out_ += "</div></div></section>\n";
+  }
+
+  void foot() {
+    if (places_.size() < result_.ranking.size()) {
+      out_ += fmt::format("<p class='more'>{} candidates are drawn: the best and the worst.</p>\n",
+                          places_.size());
+    }
+    out_ +=
+        "<footer>Made by crashrank. Plans: the ego blue, what it hits sand, the shaded outline "
+        "its start, the arrow the closing velocity, damage red. Damage is what the rigid "
+        "bodies pass through in the scenario's crush, not a deformation; the measures are "
+        "measures of damage, not of harm to people.</footer>\n";
+    if (has_view()) {
+      out_ += "<script>";
+      add_script(detail::embedded_three());
+      out_ += "</script>\n<script type='application/json' id='view-data'>";
+      out_ += data_.json;
+      out_ += "</script>\n<script>";
+      out_ += detail::embedded_view();
+      out_ += "</script>\n";
+    }
+    out_ += "</body></html>\n";
+  }
+
+  // A script's own strings might hold what ends its element.
+  void add_script(std::string_view text) {
+    constexpr std::string_view end = "</script";
+    for (std::size_t at = text.find(end); at != std::string_view::npos; at = text.find(end)) {
+      out_ += text.substr(0, at);
+      out_ += "<\\/script";
+      text.remove_prefix(at + end.size());
+    }
+    out_ += text;
+  }
+
+  const Scenario& scenario_;
+  View<const Model> models_;
+  const RankResult& result_;
+  detail::PlanView plan_;
+  std::vector<std::size_t> places_;  // drawn, rising
+  detail::ViewData data_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string html_report(const Scenario& scenario, View<const Model> models,
+                        const RankResult& result, const HtmlReportOptions& options) {
+  return Page(scenario, models, result, options).html();
+}
+
+}  // namespace crashrank

@@ -1,0 +1,225 @@
+#include "report/plan_view.hpp"
+
+#include "crashrank/report/escape.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace crashrank::detail {
+namespace {
+
+// The part of the world that is drawn, m, and its size on the page.
+constexpr double half_width_m = 16.0;
+constexpr double half_height_m = 10.0;
+constexpr double pixels_per_m = 20.0;
+
+double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
+  const Eigen::Vector2d u = b - a;
+  const Eigen::Vector2d v = c - a;
+  return u.x() * v.y() - u.y() * v.x();
+}
+
+Outline outline_of(const TriangleMesh& mesh) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    points.emplace_back(vertex.x(), vertex.y());
+  }
+  return convex_hull(std::move(points));
+}
+
+Eigen::Vector2d ground(const Pose& pose, const Eigen::Vector2d& point) {
+  return (pose.rotation * Eigen::Vector3d(point.x(), point.y(), 0.0) + pose.translation).head<2>();
+}
+
+// World to page: x right, y up.
+class Canvas {
+public:
+  explicit Canvas(const Eigen::Vector2d& middle) : middle_(middle) {}
+
+  Eigen::Vector2d operator()(const Eigen::Vector2d& world) const {
+    return {(world.x() - middle_.x() + half_width_m) * pixels_per_m,
+            (middle_.y() - world.y() + half_height_m) * pixels_per_m};
+  }
+
+  bool shows(const Eigen::Vector2d& world, double reach) const {
+    return std::abs(world.x() - middle_.x()) < half_width_m + reach &&
+           std::abs(world.y() - middle_.y()) < half_height_m + reach;
+  }
+
+  std::string path(const Outline& world) const {
+    std::string text;
+    for (const Eigen::Vector2d& point : world) {
+      const Eigen::Vector2d p = (*this)(point);
+      text += fmt::format("{:.1f},{:.1f} ", p.x(), p.y());
+    }
+    return text;
+  }
+
+  std::string body(const Outline& outline, const Pose& pose, const char* css_class) const {
+    Outline world;
+    world.reserve(outline.size());
+    for (const Eigen::Vector2d& point : outline) world.push_back(ground(pose, point));
+    return fmt::format("<polygon class='{}' points='{}'/>\n", css_class, path(world));
+  }
+
+  // A wedge where the front is, so that a plan tells which way a body looks.
+  std::string nose(const Outline& outline, const Pose& pose) const {
+    double front = outline.front().x();
+    double middle = 0.0;
+    for (const Eigen::Vector2d& point : outline) {
+      front = std::max(front, point.x());
+      middle += point.y() / static_cast<double>(outline.size());
+    }
+    const Outline wedge{ground(pose, {front - 0.2, middle}),
+                        ground(pose, {front - 0.9, middle + 0.35}),
+                        ground(pose, {front - 0.9, middle - 0.35})};
+    return fmt::format("<polygon class='nose' points='{}'/>\n", path(wedge));
+  }
+
+private:
+  Eigen::Vector2d middle_;
+};
+
+Outline hull_of_damage(const TriangleMesh& mesh, const BodyDamage& damage) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(3 * damage.triangles.size());
+  for (const std::uint32_t index : damage.triangles) {
+    for (const std::uint32_t vertex : mesh.triangles[index]) {
+      points.emplace_back(mesh.vertices[vertex].x(), mesh.vertices[vertex].y());
+    }
+  }
+  return convex_hull(std::move(points));
+}
+
+Eigen::Vector3d closing_velocity(const Motion& ego, const Motion& other, const Contact& contact) {
+  Pose ego_pose;
+  Pose other_pose;
+  Velocity ego_velocity;
+  Velocity other_velocity;
+  ego.state_at(contact.time_of_impact_s, ego_pose, ego_velocity);
+  other.state_at(contact.time_of_impact_s, other_pose, other_velocity);
+  return velocity_of_point(ego_velocity, ego_pose.translation, contact.point_m) -
+         velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
+}
+
+std::string arrow(const Canvas& canvas, const Eigen::Vector2d& at,
+                  const Eigen::Vector2d& velocity) {
+  constexpr double seconds = 0.15;  // a metre of arrow for every 6.7 m/s
+  if (!(velocity.norm() > 0.0)) return {};
+  const Eigen::Vector2d tip = canvas(at);
+  const Eigen::Vector2d tail = canvas(at - seconds * velocity);
+  const Eigen::Vector2d along = (tip - tail).normalized();
+  const Eigen::Vector2d across(-along.y(), along.x());
+  const Eigen::Vector2d left = tip - 9.0 * along + 4.0 * across;
+  const Eigen::Vector2d right = tip - 9.0 * along - 4.0 * across;
+  return fmt::format(
+      "<path class='closing' d='M{:.1f} {:.1f} L{:.1f} {:.1f} M{:.1f} {:.1f} L{:.1f} {:.1f} "
+      "L{:.1f} {:.1f}'/>\n",
+      tail.x(), tail.y(), tip.x(), tip.y(), left.x(), left.y(), tip.x(), tip.y(), right.x(),
+      right.y());
+}
+
+std::string way(const Canvas& canvas, const Motion& motion, double until_s) {
+  constexpr int steps = 48;
+  Outline points;
+  for (int i = 0; i <= steps; ++i) {
+    points.emplace_back(motion.pose_at(until_s * i / steps).translation.head<2>());
+  }
+  return fmt::format("<polyline class='way' points='{}'/>\n", canvas.path(points));
+}
+
+}  // namespace
+
+Outline convex_hull(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+    return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
+  });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) return points;
+  Outline hull;
+  const auto add_all = [&](auto begin, auto end) {
+    const std::size_t first = hull.size();
+    for (auto point = begin; point != end; ++point) {
+      while (hull.size() >= first + 2 && turn(hull.end()[-2], hull.back(), *point) <= 0.0) {
+        hull.pop_back();
+      }
+      hull.push_back(*point);
+    }
+    hull.pop_back();  // the other half begins with it
+  };
+  add_all(points.begin(), points.end());
+  add_all(points.rbegin(), points.rend());
+  return hull;
+}
+
+PlanView::PlanView(const Scenario& scenario, View<const Model> models, const RankResult& result)
+    : scenario_(scenario), models_(models), result_(result) {
+  for (const Model& model : models) outlines_.push_back(outline_of(model.mesh));
+  for (const ScenarioActor& actor : scenario.actors) {
+    Result<Motion> motion = make_motion(actor);
+    motions_.push_back(motion ? std::move(*motion) : Motion::at_rest(actor.pose));
+  }
+}
+
+std::string PlanView::draw(std::size_t place) const {
+  const CandidateResult& ranked = result_.ranking[place];
+  const Motion& ego = result_.candidates[ranked.candidate].motion;
+  const bool hit = !ranked.contacts.empty();
+  const double time_s = hit ? ranked.contacts.front().time_of_impact_s : scenario_.horizon_s;
+  const Pose ego_pose = ego.pose_at(time_s);
+  const Canvas canvas(hit ? Eigen::Vector2d(ranked.contacts.front().point_m.head<2>())
+                          : Eigen::Vector2d(ego_pose.translation.head<2>()));
+
+  std::string svg =
+      fmt::format("<svg class='plan' viewBox='0 0 {:.0f} {:.0f}' role='img'>\n",
+                  2.0 * half_width_m * pixels_per_m, 2.0 * half_height_m * pixels_per_m);
+  svg += "<title>Seen from above at " +
+         (hit ? fmt::format("first contact, {:.3f} s", time_s)
+              : fmt::format("the horizon, {:.1f} s", time_s)) +
+         "</title>\n";
+  std::string labels;
+  for (std::size_t i = 0; i < scenario_.actors.size(); ++i) {
+    const Pose pose = motions_[i].pose_at(time_s);
+    const Eigen::Vector2d at = pose.translation.head<2>();
+    if (!canvas.shows(at, 30.0)) continue;
+    const bool is_hit = std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
+                                    [&](const Contact& contact) { return contact.actor == i; });
+    svg += canvas.body(outline_of_actor(i), pose, is_hit ? "other" : "bystander");
+    const BodyKind kind = scenario_.models[scenario_.actors[i].model].kind;
+    if (kind != BodyKind::barrier && kind != BodyKind::pole && kind != BodyKind::building) {
+      svg += canvas.nose(outline_of_actor(i), pose);
+    }
+    const Eigen::Vector2d p = canvas(at);
+    labels += fmt::format("<text x='{:.0f}' y='{:.0f}'>{}</text>\n", p.x(), p.y(),
+                          escape_xml(scenario_.actors[i].name));
+  }
+  const Outline& own = outlines_[scenario_.ego.model];
+  svg += canvas.body(own, ego.pose_at(0.0), "start");
+  svg += way(canvas, ego, time_s);
+  svg += canvas.body(own, ego_pose, "ego");
+  svg += canvas.nose(own, ego_pose);
+  if (hit) {
+    const Contact& first = ranked.contacts.front();
+    svg += canvas.body(hull_of_damage(models_[scenario_.ego.model].mesh, first.ego), first.ego.pose,
+                       "damage");
+    svg +=
+        canvas.body(hull_of_damage(models_[scenario_.actors[first.actor].model].mesh, first.other),
+                    first.other.pose, "damage");
+    svg += arrow(canvas, first.point_m.head<2>(),
+                 closing_velocity(ego, motions_[first.actor], first).head<2>());
+  }
+  svg += labels;
+  const double y = 2.0 * half_height_m * pixels_per_m - 14.0;
+  svg += fmt::format(
+      "<path class='scale' d='M14 {0:.0f} H{1:.0f}'/><text x='14' y='{2:.0f}'>5 m"
+      "</text>\n</svg>\n",
+      y, 14.0 + 5.0 * pixels_per_m, y - 6.0);
+  return svg;
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "crashrank/base/view.hpp"
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/scenario.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace crashrank::detail {
+
+using Outline = std::vector<Eigen::Vector2d>;
+
+/// Convex hull of points, counter-clockwise from the leftmost; points on its edges are left out.
+/// O(n log n).
+Outline convex_hull(std::vector<Eigen::Vector2d> points);
+
+/// Draws candidates from above at the moment of their first contact: outlines of all bodies near
+/// it, the ego's way there, what is damaged, and the closing velocity. Prepared once a ranking.
+class PlanView {
+public:
+  PlanView(const Scenario& scenario, View<const Model> models, const RankResult& result);
+
+  /// An SVG element; `place` is the candidate's in the ranking.
+  std::string draw(std::size_t place) const;
+
+private:
+  const Outline& outline_of_actor(std::size_t actor) const {
+    return outlines_[scenario_.actors[actor].model];
+  }
+
+  const Scenario& scenario_;
+  View<const Model> models_;
+  const RankResult& result_;
+  std::vector<Outline> outlines_;  ///< by model, body coordinates
+  std::vector<Motion> motions_;    ///< by actor
+};
+
+}  // namespace crashrank::detail

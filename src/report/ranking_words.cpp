@@ -1,0 +1,118 @@
+#include "report/ranking_words.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace crashrank::detail {
+namespace {
+
+std::string quoted(const RankResult& result, std::size_t place) {
+  return "“" + result.candidates[result.ranking[place].candidate].name + "”";
+}
+
+const char* what_counts(Measure measure) {
+  switch (measure) {
+    case Measure::polygons:
+      return "damaged triangles of all bodies";
+    case Measure::area:
+      return "damaged surface of all bodies";
+    case Measure::closing_energy:
+      break;
+  }
+  return "kinetic energy that the crash could turn into damage";
+}
+
+double damaged_area_m2(const CandidateResult& ranked) {
+  double area = ranked.ego.area_m2;
+  for (const Contact& contact : ranked.contacts) area += contact.other.area_m2;
+  return area;
+}
+
+// Where another measure would see the two the other way round, a reader should know.
+std::string other_view(const RankResult& result, const CandidateResult& first,
+                       const CandidateResult& second) {
+  if (first.contacts.empty() || second.contacts.empty()) return {};
+  const double first_speed = first.contacts.front().closing_speed_mps;
+  const double second_speed = second.contacts.front().closing_speed_mps;
+  if (first_speed > second_speed) {
+    return fmt::format(" Its closing speed is the higher one, though: {:.1f} m/s against {:.1f}.",
+                       first_speed, second_speed);
+  }
+  if (result.measure != Measure::area && damaged_area_m2(first) > damaged_area_m2(second)) {
+    return fmt::format(
+        " By damaged area it would be the other way round: {:.2f} m² against {:.2f}.",
+        damaged_area_m2(first), damaged_area_m2(second));
+  }
+  return {};
+}
+
+std::string tie_words(const CandidateResult& first, const CandidateResult& second) {
+  if (first.collides != second.collides) return "it touches nothing";
+  if (!first.collides) {
+    return first.grazes.empty() && !second.grazes.empty()
+               ? "it passes everything with more than a hair's breadth"
+               : "it comes first in the list of candidates";
+  }
+  const Contact& p = first.contacts.front();
+  const Contact& q = second.contacts.front();
+  if (p.time_of_impact_s != q.time_of_impact_s) {
+    return fmt::format("its first contact is later, {:.3f} s against {:.3f} s", p.time_of_impact_s,
+                       q.time_of_impact_s);
+  }
+  if (p.closing_speed_mps != q.closing_speed_mps) {
+    return fmt::format("its closing speed is lower, {:.2f} m/s against {:.2f} m/s",
+                       p.closing_speed_mps, q.closing_speed_mps);
+  }
+  return "it comes first in the list of candidates";
+}
+
+}  // namespace
+
+std::string score_words(const CandidateResult& ranked, Measure measure) {
+  if (ranked.score) return fmt::format("{:.5g} {}", *ranked.score, measure_unit(measure));
+  return fmt::format("{:.3g} to {:.3g} {}", ranked.score_interval.lowest,
+                     ranked.score_interval.highest, measure_unit(measure));
+}
+
+std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
+  if (ranked.contacts.empty()) {
+    return fmt::format("touches nothing within {:.1f} s{}", scenario.horizon_s,
+                       ranked.grazes.empty() ? "" : ", but grazes");
+  }
+  const Contact& first = ranked.contacts.front();
+  std::string text =
+      fmt::format("hits {} after {:.2f} s at {:.1f} m/s", scenario.actors[first.actor].name,
+                  first.time_of_impact_s, first.closing_speed_mps);
+  if (first.state == ImpactState::contained || first.state == ImpactState::overlapping) {
+    text = fmt::format("is inside {} after {:.2f} s", scenario.actors[first.actor].name,
+                       first.time_of_impact_s);
+  }
+  for (std::size_t i = 1; i < ranked.contacts.size(); ++i) {
+    text += (i + 1 == ranked.contacts.size() ? " and " : ", ") +
+            scenario.actors[ranked.contacts[i].actor].name;
+  }
+  return text;
+}
+
+std::string reason_words(const Scenario& scenario, const RankResult& result, std::size_t place) {
+  const CandidateResult& first = result.ranking[place];
+  const CandidateResult& second = result.ranking[place + 1];
+  std::string text = quoted(result, place) + " " + outcome_words(scenario, first) + "; " +
+                     quoted(result, place + 1) + " " + outcome_words(scenario, second) + ". ";
+  if (!first.score || !second.score) {
+    return text + "Not both scores are known: the order is the best guess within the intervals.";
+  }
+  if (*first.score == *second.score) {
+    return text + fmt::format("Both score {}; the first is placed before because {}.",
+                              score_words(first, result.measure), tie_words(first, second));
+  }
+  text += fmt::format("What counts here is the {}: {} against {}", what_counts(result.measure),
+                      score_words(first, result.measure), score_words(second, result.measure));
+  if (*first.score > 0.0) {
+    text += fmt::format(", {:.0f} % more", 100.0 * (*second.score / *first.score - 1.0));
+  }
+  return text + "." + other_view(result, first, second);
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,98 @@
+#include "report/view_data.hpp"
+
+#include "report/base64.hpp"
+#include "report/palette.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <set>
+#include <utility>
+
+namespace crashrank::detail {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr Colour ego_paint{0.055F, 0.16F, 0.36F};
+constexpr Colour other_paint{0.52F, 0.44F, 0.31F};
+
+std::string hex(const Colour& colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", srgb(colour.red), srgb(colour.green),
+                     srgb(colour.blue));
+}
+
+Json model_json(const TriangleMesh& mesh) {
+  std::vector<float> positions;
+  positions.reserve(3 * mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    positions.insert(positions.end(), vertex.data(), vertex.data() + 3);
+  }
+  Json parts = Json::array();
+  for (const Part& part : mesh.parts) {
+    const std::string ego = hex(part_colour(part.name, ego_paint));
+    const std::string other = hex(part_colour(part.name, other_paint));
+    parts.push_back(Json::array({part.first_triangle, part.triangle_count, ego, other}));
+  }
+  return {
+      {"positions", base64(positions.data(), positions.size() * sizeof(float))},
+      {"indices", base64(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]))},
+      {"parts", std::move(parts)}};
+}
+
+Json body_json(std::size_t model, const TriangleMesh& mesh, const BodyDamage& damage) {
+  std::vector<std::uint8_t> bits((mesh.size() + 7) / 8, 0);
+  for (const std::uint32_t triangle : damage.triangles) {
+    bits[triangle / 8] = static_cast<std::uint8_t>(bits[triangle / 8] | 1U << triangle % 8);
+  }
+  Json pose = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) pose.push_back(damage.pose.rotation(row, column));
+    pose.push_back(damage.pose.translation[row]);
+  }
+  return {
+      {"model", model}, {"pose", std::move(pose)}, {"damaged", base64(bits.data(), bits.size())}};
+}
+
+}  // namespace
+
+ViewData view_data(const Scenario& scenario, View<const Model> models, const RankResult& result,
+                   const std::vector<std::size_t>& places, std::size_t model_triangles) {
+  ViewData data;
+  std::set<std::size_t> used;
+  const auto shown = [&](std::size_t model) {
+    if (models[model].mesh.size() > model_triangles) {
+      data.left_out = true;
+      return false;
+    }
+    used.insert(model);
+    return true;
+  };
+  Json scenes = Json::object();
+  for (const std::size_t place : places) {
+    const CandidateResult& ranked = result.ranking[place];
+    if (ranked.contacts.empty()) continue;
+    Json bodies = Json::array();
+    BodyDamage ego = ranked.ego;
+    ego.pose = ranked.contacts.front().ego.pose;
+    if (shown(scenario.ego.model)) {
+      bodies.push_back(body_json(scenario.ego.model, models[scenario.ego.model].mesh, ego));
+    }
+    for (const Contact& contact : ranked.contacts) {
+      const std::size_t model = scenario.actors[contact.actor].model;
+      if (shown(model)) bodies.push_back(body_json(model, models[model].mesh, contact.other));
+    }
+    const Eigen::Vector3d& normal = ranked.contacts.front().normal;
+    scenes[std::to_string(place + 1)] = {{"normal", {normal.x(), normal.y(), normal.z()}},
+                                         {"bodies", std::move(bodies)}};
+  }
+  Json meshes = Json::object();
+  for (const std::size_t model : used) {
+    meshes[std::to_string(model)] = model_json(models[model].mesh);
+  }
+  // Numbers, base64 and colours alone: nothing in it can end a script element.
+  data.json = Json{{"models", std::move(meshes)}, {"scenes", std::move(scenes)}}.dump();
+  return data;
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,82 @@
+#include "crashrank/report/html_report.hpp"
+
+#include "told_ranking.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace crashrank {
+namespace {
+
+const char* const evil = "</script><img src=x onerror=alert(1)>'\"&";
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+// What the page says, without the library that it carries.
+std::string own_words(const std::string& page) { return page.substr(0, page.find("<script>")); }
+
+TEST(HtmlReport, LetsNoNameOutOfItsPlace) {
+  Told told;
+  told.scenario.name = evil;
+  told.scenario.description = evil;
+  told.scenario.actors[0].name = evil;
+  told.result.candidates[1].name = evil;
+  told.models[0].mesh.parts[0].name = evil;
+  const std::string page = html_report(told.scenario, told.models, told.result);
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  EXPECT_EQ(page.find('\x1b'), std::string::npos);
+  EXPECT_EQ(count(page, "<script"), count(page, "</script"));
+  EXPECT_GE(count(page, "&lt;img src=x"), 4U);
+}
+
+TEST(HtmlReport, AsksNothingOfTheNetwork) {
+  const Told told;
+  const std::string page = html_report(told.scenario, told.models, told.result);
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+  const std::string words = own_words(page);
+  EXPECT_EQ(words.find("src="), std::string::npos);
+  EXPECT_EQ(words.find("url("), std::string::npos);
+  EXPECT_EQ(words.find("<link"), std::string::npos);
+  EXPECT_EQ(count(words, "href="), count(words, "href='#c"));
+}
+
+TEST(HtmlReport, ListsEveryCandidateAndSaysThatThePlaceIsNotProved) {
+  Told told;
+  told.result.proved = false;
+  HtmlReportOptions options;
+  options.drawn = 1;
+  const std::string page = html_report(told.scenario, told.models, told.result, options);
+  EXPECT_EQ(count(page, "<tr data-place="), 3U);
+  EXPECT_EQ(count(page, "<section class='candidate'"), 2U);  // the best and the worst
+  for (const char* word : {"the answer is partial", "still in the race: miss, unknown",
+                           "nothing, but grazes", "Least destructive: miss"}) {
+    EXPECT_NE(page.find(word), std::string::npos) << word;
+  }
+}
+
+TEST(HtmlReport, CarriesTheDamageThatWasTold) {
+  const Told told;
+  const std::string page = html_report(told.scenario, told.models, told.result);
+  const std::string opening = "<script type='application/json' id='view-data'>";
+  const std::size_t begin = page.find(opening);
+  if (begin == std::string::npos) {
+    EXPECT_NE(page.find("built without three.js"), std::string::npos);
+    return;
+  }
+  const std::size_t from = begin + opening.size();
+  const auto data = nlohmann::json::parse(page.substr(from, page.find("</script", from) - from));
+  ASSERT_EQ(data["scenes"].size(), 1U);  // of three candidates one is known to hit
+  const auto& bodies = data["scenes"]["2"]["bodies"];
+  ASSERT_EQ(bodies.size(), 3U);
+  for (const auto& body : bodies) EXPECT_EQ(body["damaged"], "AQ==");  // the first triangle
+  EXPECT_EQ(data["models"]["0"]["indices"], "AAAAAAEAAAACAAAA");       // 0, 1, 2
+}
+
+}  // namespace
+}  // namespace crashrank
