@@ -23,7 +23,8 @@ std::string_view embedded_@name@() {
 }
 }  // namespace crashrank::detail
 ]])
-    set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS ${file})
+    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES
+      OBJECT_DEPENDS ${file})
   else()
     file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 #include "report/page/embedded.hpp"

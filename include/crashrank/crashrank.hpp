@@ -32,5 +32,6 @@
 #include "crashrank/rank/scenario.hpp"
 
 #include "crashrank/report/damage_model.hpp"
+#include "crashrank/report/html_report.hpp"
 #include "crashrank/report/picture.hpp"
 #include "crashrank/report/ranking.hpp"

@@ -22,6 +22,8 @@ std::string hex(const Colour& colour) {
                      srgb(colour.blue));
 }
 
+Json vector(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
 Json model_json(const TriangleMesh& mesh) {
   std::vector<float> positions;
   positions.reserve(3 * mesh.vertices.size());
@@ -82,8 +84,9 @@ ViewData view_data(const Scenario& scenario, View<const Model> models, const Ran
       const std::size_t model = scenario.actors[contact.actor].model;
       if (shown(model)) bodies.push_back(body_json(model, models[model].mesh, contact.other));
     }
-    const Eigen::Vector3d& normal = ranked.contacts.front().normal;
-    scenes[std::to_string(place + 1)] = {{"normal", {normal.x(), normal.y(), normal.z()}},
+    const Contact& first = ranked.contacts.front();
+    scenes[std::to_string(place + 1)] = {{"point", vector(first.point_m)},
+                                         {"normal", vector(first.normal)},
                                          {"bodies", std::move(bodies)}};
   }
   Json meshes = Json::object();

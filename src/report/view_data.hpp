@@ -18,7 +18,8 @@ struct ViewData {
 
 /// What the page's 3-D view draws, as JSON:
 /// {"models": {"INDEX": {"positions", "indices", "parts": [[first, count, "#rrggbb"]]}},
-///  "scenes": {"PLACE": {"normal": [x,y,z], "bodies": [{"model", "pose": [12], "damaged"}]}}}
+///  "scenes": {"PLACE": {"point": [x,y,z], "normal": [x,y,z], "bodies": [{"model", "pose": [12],
+///  "damaged"}]}}}
 /// positions are float32 and indices uint32 in base64, little endian; damaged is a bit a triangle,
 /// lowest bit first; pose is a row-major 3 x 4 matrix, body to world. The first body is the ego.
 ViewData view_data(const Scenario& scenario, View<const Model> models, const RankResult& result,

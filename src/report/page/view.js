@@ -129,11 +129,12 @@
       if (i === 0) hull.copy(mesh.geometry.boundingBox).applyMatrix4(mesh.matrix);
       return mesh;
     });
+    // Between the ego and the contact, from beside the normal: there both bodies show.
     hull.getCenter(target);
-    distance = 2.1 * hull.getSize(new THREE.Vector3()).length();
-    const ego = wanted.bodies[0].pose;
-    azimuth = Math.atan2(ego[4], ego[0]) + 0.9;
-    elevation = 0.42;
+    target.lerp(new THREE.Vector3(...wanted.point), 0.5);
+    distance = 2.0 * hull.getSize(new THREE.Vector3()).length();
+    azimuth = Math.atan2(normal.y, normal.x) + 1.1;
+    elevation = 0.5;
     const row = document.querySelector("tr[data-place='" + place + "']");
     for (const other of document.querySelectorAll("tr.chosen")) other.classList.remove("chosen");
     if (row) {
