@@ -163,7 +163,7 @@ private:
         "<section class='stage'><div id='view'><p id='view-note'>The 3-D view needs a browser "
         "with JavaScript and WebGL.</p></div>\n"
         "<div class='controls'><b id='view-title'></b> <label>pull apart <input id='apart' "
-        "type='range' min='0' max='3' step='0.05' value='0'></label> "
+        "type='range' min='0' max='3' step='0.05' value='0.6'></label> "
         "<span>drag to turn, wheel to come nearer; damage is red</span></div>\n";
     if (data_.left_out) {
       out_ += "<p class='note'>Models of very many triangles are left out of the 3-D view.</p>\n";

@@ -129,11 +129,15 @@
       if (i === 0) hull.copy(mesh.geometry.boundingBox).applyMatrix4(mesh.matrix);
       return mesh;
     });
-    // Between the ego and the contact, from beside the normal: there both bodies show.
+    // Between the ego and the contact, from beside the normal, where the gap between the bodies
+    // shows; of the two sides the one that also sees the ego's front.
     hull.getCenter(target);
     target.lerp(new THREE.Vector3(...wanted.point), 0.5);
     distance = 2.0 * hull.getSize(new THREE.Vector3()).length();
-    azimuth = Math.atan2(normal.y, normal.x) + 1.1;
+    const heading = Math.atan2(wanted.bodies[0].pose[4], wanted.bodies[0].pose[0]);
+    const across = Math.atan2(normal.y, normal.x);
+    const sees = (side) => Math.cos(across + side - heading);
+    azimuth = across + (sees(1.8) >= sees(-1.8) ? 1.8 : -1.8);
     elevation = 0.5;
     const row = document.querySelector("tr[data-place='" + place + "']");
     for (const other of document.querySelectorAll("tr.chosen")) other.classList.remove("chosen");
