@@ -14,5 +14,6 @@ void add_inspect(CLI::App& app, Action& action);
 void add_collide(CLI::App& app, Action& action);
 void add_rank(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);
+void add_validate(CLI::App& app, Action& action);
 
 }  // namespace crashrank::cli

@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   add_collide(app, action);
   add_rank(app, action);
   add_sweep(app, action);
+  add_validate(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

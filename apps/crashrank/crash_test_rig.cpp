@@ -1,0 +1,198 @@
+#include "crash_test_rig.hpp"
+
+#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace crashrank::cli {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Outline = std::vector<Vector2d>;
+
+constexpr double wall_width_m = 1.5;
+constexpr double wall_height_m = 1.524;
+constexpr double wall_depth_m = 2.5;
+// The plate of the small overlap barrier ends in an arc of 115 degrees: behind the corner the
+// barrier draws back by 25.
+constexpr double arc_deg = 115.0;
+
+// EEVC honeycomb: 0.342 MPa, 0.54 m deep, 0.65 m high, 0.2 m above the road.
+constexpr double honeycomb_pa = 0.342e6;
+constexpr double honeycomb_depth_m = 0.54;
+constexpr double honeycomb_low_m = 0.2;
+constexpr double honeycomb_high_m = 0.85;
+
+double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
+
+/// An upright prism over an outline, counter-clockwise from above and star-shaped about its mean.
+TriangleMesh prism(const Outline& outline, double low, double high) {
+  TriangleMesh mesh;
+  const auto count = static_cast<std::uint32_t>(outline.size());
+  Vector2d middle = Vector2d::Zero();
+  for (const Vector2d& p : outline) middle += p / static_cast<double>(count);
+  for (const double z : {low, high}) {
+    for (const Vector2d& p : outline) {
+      mesh.vertices.emplace_back(Vector3d(p.x(), p.y(), z).cast<float>());
+    }
+  }
+  for (const double z : {low, high}) {
+    mesh.vertices.emplace_back(Vector3d(middle.x(), middle.y(), z).cast<float>());
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t j = (i + 1) % count;
+    mesh.triangles.push_back({i, j, count + j});
+    mesh.triangles.push_back({i, count + j, count + i});
+    mesh.triangles.push_back({2 * count, j, i});
+    mesh.triangles.push_back({2 * count + 1, count + i, count + j});
+  }
+  return mesh;
+}
+
+void add_arc(const Vector2d& center, double radius, double from_deg, double to_deg, int pieces,
+             Outline& outline) {
+  for (int i = 0; i <= pieces; ++i) {
+    const double angle = radians(from_deg + (to_deg - from_deg) * i / pieces);
+    outline.emplace_back(center + radius * Vector2d(std::cos(angle), std::sin(angle)));
+  }
+}
+
+/// The barrier with its face at x = 0 towards -x. `inner_y` is where its overlap begins.
+TriangleMesh barrier_mesh(const CrashTest& test, double inner_y) {
+  constexpr int arc_pieces = 48;
+  const double r = test.radius_m;
+  Outline outline;
+  if (test.barrier == Barrier::pole) {
+    const double last = 360.0 - 360.0 / (2 * arc_pieces);
+    add_arc({r, inner_y + r}, r, 0.0, last, 2 * arc_pieces - 1, outline);
+    return prism(outline, 0.0, 2.0 * wall_height_m);
+  }
+  const double draws_back = std::tan(radians(arc_deg - 90.0));
+  const auto close = [&] {
+    const Vector2d last = outline.back();
+    outline.emplace_back(wall_depth_m, last.y() + draws_back * (wall_depth_m - last.x()));
+    outline.emplace_back(wall_depth_m, inner_y + wall_width_m);
+  };
+  outline.emplace_back(0.0, inner_y + wall_width_m);
+  if (test.barrier == Barrier::deformable) {
+    outline.emplace_back(0.0, inner_y);
+    outline.emplace_back(honeycomb_depth_m, inner_y);
+    close();
+    return prism(outline, honeycomb_low_m, honeycomb_high_m);
+  }
+  const double low_y = test.barrier == Barrier::flat ? inner_y - r : inner_y;
+  add_arc({r, low_y + r}, r, 180.0, 180.0 + arc_deg, arc_pieces, outline);
+  close();
+  return prism(outline, 0.0, wall_height_m);
+}
+
+/// The overhangs are stretched alike, the wheelbase on its own.
+TriangleMesh morphed(const RigCar& car, const CrashTest& test) {
+  TriangleMesh mesh = car.mesh;
+  const Box box = mesh.bounds();
+  const double length = static_cast<double>(box.extent().x());
+  const double overhangs = (test.length_m - test.wheelbase_m) / (length - car.wheelbase_m);
+  const double across = test.width_m / car.width_m;
+  const double up = test.height_m / static_cast<double>(box.max.z());
+  for (Eigen::Vector3f& vertex : mesh.vertices) {
+    Vector3d p = vertex.cast<double>();
+    if (p.x() < 0.0) {
+      p.x() *= overhangs;
+    } else if (p.x() > car.wheelbase_m) {
+      p.x() = test.wheelbase_m + (p.x() - car.wheelbase_m) * overhangs;
+    } else {
+      p.x() *= test.wheelbase_m / car.wheelbase_m;
+    }
+    p.y() *= across;
+    p.z() *= up;
+    vertex = p.cast<float>();
+  }
+  return mesh;
+}
+
+TriangleMesh box_around(const Box& box, double half_width) {
+  const Vector3d low = box.min.cast<double>();
+  const Vector3d high = box.max.cast<double>();
+  const double right = half_width > 0.0 ? -half_width : low.y();
+  const double left = half_width > 0.0 ? half_width : high.y();
+  return prism({{high.x(), right}, {high.x(), left}, {low.x(), left}, {low.x(), right}}, low.z(),
+               high.z());
+}
+
+CrushStrength barrier_strength(Barrier barrier) {
+  CrushStrength strength = CrushStrength::unyielding();
+  if (barrier != Barrier::deformable) return strength;
+  strength.rigid = false;
+  const double height = honeycomb_high_m - honeycomb_low_m;
+  // The slope only has to be positive.
+  strength.front = {honeycomb_pa * height, 0.01 * honeycomb_pa * height, honeycomb_depth_m};
+  strength.side = strength.front;
+  strength.rear = strength.front;
+  strength.low_m = honeycomb_low_m;
+  strength.high_m = honeycomb_high_m;
+  return strength;
+}
+
+}  // namespace
+
+Result<Barrier> barrier_from_name(const std::string& name) {
+  if (name == "wall") return Barrier::wall;
+  if (name == "flat") return Barrier::flat;
+  if (name == "pole") return Barrier::pole;
+  if (name == "deformable") return Barrier::deformable;
+  return make_error(ErrorCode::bad_input, "there is no barrier \"" + name + "\"",
+                    "choose one of wall, flat, pole, deformable");
+}
+
+double guess_izz_kgm2(double mass_kg, double length_m) {
+  constexpr double gyration = 0.29;
+  return mass_kg * gyration * gyration * length_m * length_m;
+}
+
+Result<PulseResult> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape) {
+  constexpr double run_up_m = 0.5;
+  constexpr double steel_friction = 0.1;
+  constexpr double honeycomb_friction = 0.5;
+  TriangleMesh body = morphed(car, test);
+  TriangleMesh obstacle = barrier_mesh(test, test.width_m * (0.5 - test.overlap));
+  if (shape == RigShape::boxes) {
+    body = box_around(body.bounds(), 0.5 * test.width_m);
+    obstacle = box_around(obstacle.bounds(), 0.0);
+  }
+  const Result<Model> a = make_model(std::move(body));
+  if (!a) return a.error();
+  const Result<Model> b = make_model(std::move(obstacle));
+  if (!b) return b.error();
+
+  FreeMotion drive;
+  drive.start.translation.x() = -run_up_m - static_cast<double>(a->mesh.bounds().max.x());
+  drive.velocity.linear_mps.x() = test.speed_mps;
+  const Motion motion(drive);
+  ImpactWorkspace workspace;
+  const double until_s = (2.0 * run_up_m + test.length_m) / test.speed_mps;
+  const Impact impact = time_of_impact(a->tree, motion, b->tree, Motion(), 0.0, until_s, workspace);
+  if (!impact.hit()) return PulseResult{};
+
+  MassProperties mass;
+  mass.mass_kg = test.mass_kg;
+  mass.center_m = Vector3d(car.center_of_mass * test.wheelbase_m, 0.0, car.center_height_m);
+  mass.inertia_kgm2 *= test.izz_kgm2;
+  PulseBody one;
+  one.mesh = &a->mesh;
+  one.pose = motion.pose_at(impact.time_s);
+  one.rigid = place(mass, one.pose, motion.velocity_at(impact.time_s));
+  one.strength = car_strength({test.mass_kg, test.width_m, 0.0, test.wheelbase_m});
+  PulseBody two;
+  two.mesh = &b->mesh;
+  two.strength = barrier_strength(test.barrier);
+  PulseOptions options;
+  options.friction = test.barrier == Barrier::deformable ? honeycomb_friction : steel_friction;
+  return simulate_pulse(one, two, impact.point_a_m, Vector3d::UnitX(), options);
+}
+
+}  // namespace crashrank::cli

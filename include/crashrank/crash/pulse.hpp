@@ -1,0 +1,65 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/pose.hpp"
+#include "crashrank/crash/impulse.hpp"
+#include "crashrank/crash/strength.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
+
+#include <Eigen/Core>
+
+namespace crashrank {
+
+/// A body at first contact, as the pulse needs it. The mesh has to outlive the call.
+struct PulseBody {
+  const TriangleMesh* mesh = nullptr;
+  Pose pose;        ///< body to world
+  RigidBody rigid;  ///< in the world, at the same instant
+  CrushStrength strength;
+};
+
+struct PulseOptions {
+  /// Coulomb friction between the surfaces; 0.3 is what openPASS uses for cars against each other.
+  double friction = 0.3;
+  double cell_w_m = 0.025;  ///< width and height of the cells in which the surfaces are sampled
+  double cell_h_m = 0.1;
+  double step_s = 0.0005;
+  double longest_s = 0.25;
+};
+
+/// What a pulse does to two bodies. World coordinates.
+struct PulseResult {
+  bool acts = false;  ///< the surfaces pressed against each other at all
+  /// The contact kept more than a fifth of its speed when the force ended: it slid off.
+  bool slides = false;
+  double duration_s = 0.0;  ///< from first contact until the force ends
+  BodyImpulse a;
+  BodyImpulse b;
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< middle of the pressing, weighted by it
+  double dissipated_j = 0.0;  ///< kinetic energy of both before less after, never negative
+  double friction_j = 0.0;    ///< what sliding took of that, as integrated
+  double deepest_m = 0.0;     ///< how far the undeformed surfaces came to lie in each other
+};
+
+/// The crush phase, from first contact on, as a chain of small impulses in the plane.
+///
+/// Both bodies move on as rigid bodies on wheels (horizontal velocity and yaw). Body B's surface,
+/// as seen along `along` (horizontal, from A towards B), is cut into facets. Where a facet moves
+/// into A's undeformed surface it meets the pressure that both bodies' laws give for the depth,
+/// and friction along it. The depth counts along the view as far as the facet's advance is along
+/// it: sideways it opens fresh material, which resists with its yield alone. Material once pushed
+/// away stays away, so there is no rebound. So a contact that is wedged off a rounded corner leaves
+/// it, and one that is caught turns the car about it: the impulse's place and direction come from
+/// the surfaces at every depth, not from first touch.
+/// Equal and opposite impulses act at one point, so momentum is conserved to rounding; each step is
+/// at most the one that takes the most energy out, so energy is never gained.
+///
+/// Cost: facets × steps, some milliseconds with the default cells. Allocates. Safe from any thread.
+/// Where it fails: vertical motion, rolling, parts that break off; what A is made of is told by its
+/// strength, not by the mesh. Facets are B's, so exchanging the bodies changes the answer a little.
+CRASHRANK_API PulseResult simulate_pulse(const PulseBody& a, const PulseBody& b,
+                                         const Eigen::Vector3d& point_m,
+                                         const Eigen::Vector3d& along,
+                                         const PulseOptions& options = {});
+
+}  // namespace crashrank

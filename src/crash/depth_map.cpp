@@ -1,0 +1,122 @@
+#include "crashrank/crash/depth_map.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace crashrank {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+/// Cells whose middle lies in [low, high], as a range of indices clipped to the grid.
+struct Span {
+  std::size_t first = 0;
+  std::size_t end = 0;
+};
+
+Span cells_between(double low, double high, double start, double cell, std::size_t count) {
+  // A little wider than it is, so that a middle on a shared edge is seen by one side at least.
+  constexpr double slack = 1e-9;
+  const double first = std::ceil((low - start) / cell - 0.5 - slack);
+  const double last = std::floor((high - start) / cell - 0.5 + slack);
+  const double end = static_cast<double>(count);
+  if (!(first <= last) || !(last >= 0.0) || !(first < end)) return {};
+  return {static_cast<std::size_t>(std::max(first, 0.0)),
+          static_cast<std::size_t>(std::min(last + 1.0, end))};
+}
+
+void draw(const Vector3d& a, const Vector3d& b, const Vector3d& c, DepthMap& map) {
+  const ViewGrid& grid = map.grid;
+  const Vector3d ab = b - a;
+  const Vector3d ac = c - a;
+  const double twice_area = ab.y() * ac.z() - ab.z() * ac.y();
+  if (twice_area == 0.0) return;
+  const Vector3d low = a.cwiseMin(b).cwiseMin(c);
+  const Vector3d high = a.cwiseMax(b).cwiseMax(c);
+  const Span columns = cells_between(low.y(), high.y(), grid.low_w_m, grid.cell_w_m, grid.columns);
+  const Span rows = cells_between(low.z(), high.z(), grid.low_h_m, grid.cell_h_m, grid.rows);
+  constexpr double rim = 1e-9;
+  for (std::size_t row = rows.first; row < rows.end; ++row) {
+    const double dh = grid.h_of(row) - a.z();
+    for (std::size_t column = columns.first; column < columns.end; ++column) {
+      const double dw = grid.w_of(column) - a.y();
+      const double s = (dw * ac.z() - dh * ac.y()) / twice_area;
+      const double t = (ab.y() * dh - ab.z() * dw) / twice_area;
+      if (s < -rim || t < -rim || s + t > 1.0 + rim) continue;
+      // Clamped to the triangle: a sliver seen nearly edge-on must not throw its plane far out.
+      const double u = std::clamp(a.x() + s * ab.x() + t * ac.x(), low.x(), high.x());
+      const std::size_t cell = grid.index(column, row);
+      map.least_m[cell] = std::min(map.least_m[cell], u);
+      map.greatest_m[cell] = std::max(map.greatest_m[cell], u);
+    }
+  }
+}
+
+}  // namespace
+
+ViewFrame view_along(const Vector3d& along, const Vector3d& origin_m) {
+  ViewFrame frame;
+  const Vector3d u = Vector3d(along.x(), along.y(), 0.0).normalized();
+  frame.axes.row(0) = u;
+  frame.axes.row(1) = Vector3d(-u.y(), u.x(), 0.0);
+  frame.axes.row(2) = Vector3d::UnitZ();
+  frame.origin_m = Vector3d(origin_m.x(), origin_m.y(), 0.0);
+  return frame;
+}
+
+ViewGrid grid_over(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double cell_w_m,
+                   double cell_h_m) {
+  ViewGrid grid;
+  grid.low_w_m = low.x();
+  grid.low_h_m = low.y();
+  const double width = std::max(high.x() - low.x(), 0.0);
+  const double height = std::max(high.y() - low.y(), 0.0);
+  const double cells = std::max(width / cell_w_m, 1.0) * std::max(height / cell_h_m, 1.0);
+  const double coarser = std::max(1.0, std::sqrt(cells / (0.25 * max_view_cells)));
+  const auto count = [coarser](double length, double cell) {
+    const double wanted = std::ceil(length / (cell * coarser));
+    return static_cast<std::size_t>(std::clamp(wanted, 1.0, 1024.0));
+  };
+  grid.columns = count(width, cell_w_m);
+  grid.rows = count(height, cell_h_m);
+  grid.cell_w_m = width > 0.0 ? width / static_cast<double>(grid.columns) : cell_w_m;
+  grid.cell_h_m = height > 0.0 ? height / static_cast<double>(grid.rows) : cell_h_m;
+  return grid;
+}
+
+void view_bounds(const TriangleMesh& mesh, const Pose& body_in_world, const ViewFrame& frame,
+                 Vector3d& low, Vector3d& high) {
+  low = Vector3d::Constant(endless);
+  high = -low;
+  const Eigen::Matrix3d turn = frame.axes * body_in_world.rotation;
+  const Vector3d shift = frame.into(body_in_world.translation);
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Vector3d p = turn * vertex.cast<double>() + shift;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+}
+
+DepthMap depth_map(const TriangleMesh& mesh, const Pose& body_in_world, const ViewFrame& frame,
+                   const ViewGrid& grid) {
+  DepthMap map;
+  map.grid = grid;
+  map.least_m.assign(grid.size(), endless);
+  map.greatest_m.assign(grid.size(), -endless);
+  const Eigen::Matrix3d turn = frame.axes * body_in_world.rotation;
+  const Vector3d shift = frame.into(body_in_world.translation);
+  std::vector<Vector3d> seen;
+  seen.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    seen.emplace_back(turn * vertex.cast<double>() + shift);
+  }
+  for (const std::array<std::uint32_t, 3>& t : mesh.triangles) {
+    draw(seen[t[0]], seen[t[1]], seen[t[2]], map);
+  }
+  return map;
+}
+
+}  // namespace crashrank
