@@ -10,6 +10,7 @@
 #include "collide/triangle_kernel-inl.hpp"
 #include "collide/wide_query.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -76,10 +77,17 @@ HWY_INLINE Boxes spread_box(const float* center, const float* half, std::size_t 
   return {spread3(center, lane), spread3(half, lane)};
 }
 
+/// Clusters of each body that are kept ready. Twice as many are found ready a little more often and
+/// crowd everything else out of the first cache.
+inline constexpr std::size_t prepared_kept = 16;
+
 /// One step: lanes of a node of A against lanes of a node of B.
 class Step {
 public:
-  Step(const WideQuery& query, WideSink& sink) : query_(query), sink_(sink) {}
+  Step(const WideQuery& query, WideSink& sink) : query_(query), sink_(sink) {
+    std::fill_n(a_kept_, prepared_kept, max_clusters);
+    std::fill_n(b_kept_, prepared_kept, max_clusters);
+  }
 
   /// Returns false to stop.
   bool run(const WideTask& task, std::size_t& waiting) {
@@ -166,34 +174,44 @@ private:
 
   bool leaves(const WideNode& na, std::uint32_t rows, const WideNode& nb,
               const std::uint32_t* partners, const Boxes&) {
-    std::uint32_t ready = 0;
     for (; rows != 0; rows &= rows - 1) {
       const auto i = static_cast<std::size_t>(lowest(rows));
-      bool a_ready = false;
+      const Prepared& a = prepared_a(na, i);
       for (std::uint32_t left = partners[i] & nb.leaf_lanes; left != 0; left &= left - 1) {
         const auto j = lowest(left);
-        if (!a_ready) {
-          prepare_a(query_, na, i, a_prepared_);
-          a_ready = true;
-        }
-        if ((ready >> j & 1U) == 0) {
-          prepare_b(query_, nb, j, b_prepared_[j]);
-          ready |= 1U << j;
-        }
-        const Prepared& b = b_prepared_[j];
-        std::uint32_t ta = (1U << a_prepared_.size) - 1U;
+        const Prepared& b = prepared_b(nb, j);
+        std::uint32_t ta = (1U << a.size) - 1U;
         std::uint32_t tb = (1U << b.size) - 1U;
         if (query_.body_boxes) {
           // Triangles outside the other cluster's box take no part.
-          ta &= inside(a_prepared_, spread_box(b_in_a_.center[0], b_in_a_.half[0], j));
+          ta &= inside(a, spread_box(b_in_a_.center[0], b_in_a_.half[0], j));
           if (ta == 0) continue;
           tb &= inside(b, spread_box(na.center[0].data(), na.half[0].data(), i));
           if (tb == 0) continue;
         }
-        if (!collide_clusters(query_, a_prepared_, ta, b, tb, sink_)) return false;
+        if (!collide_clusters(query_, a, ta, b, tb, sink_)) return false;
       }
     }
     return true;
+  }
+
+  HWY_INLINE const Prepared& prepared_a(const WideNode& node, std::size_t lane) {
+    const std::uint32_t cluster = cluster_index(node.child[lane]);
+    const std::size_t slot = cluster % prepared_kept;
+    if (a_kept_[slot] != cluster) {
+      prepare_a(query_, node, lane, a_prepared_[slot]);
+      a_kept_[slot] = cluster;
+    }
+    return a_prepared_[slot];
+  }
+  HWY_INLINE const Prepared& prepared_b(const WideNode& node, std::size_t lane) {
+    const std::uint32_t cluster = cluster_index(node.child[lane]);
+    const std::size_t slot = cluster % prepared_kept;
+    if (b_kept_[slot] != cluster) {
+      prepare_b(query_, node, lane, b_prepared_[slot]);
+      b_kept_[slot] = cluster;
+    }
+    return b_prepared_[slot];
   }
 
   static HWY_INLINE std::uint32_t inside(const Prepared& p, const Boxes& box) {
@@ -215,8 +233,12 @@ private:
   WideSink& sink_;
   StoredBoxes a_in_b_;
   StoredBoxes b_in_a_;
-  Prepared a_prepared_;
-  Prepared b_prepared_[8];
+  // Clusters made ready, by the last bits of their index: neighbours in the tree, which meet the
+  // same clusters of the other body, have neighbouring indices.
+  std::uint32_t a_kept_[prepared_kept];
+  std::uint32_t b_kept_[prepared_kept];
+  Prepared a_prepared_[prepared_kept];
+  Prepared b_prepared_[prepared_kept];
 };
 
 /// Works off all lane pairs below `start`.

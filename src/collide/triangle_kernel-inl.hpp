@@ -23,8 +23,9 @@ struct alignas(64) Prepared {
   float corner[9][8];  // of B, relative to place
   float normal[3][8];  // (c1 − c0) × (c2 − c0)
   float normal_sum[8];
-  float edge[8];    // largest extent of the triangle, within its corners' errors
-  float low[3][8];  // box, widened by what rounding may have moved it, in A's frame
+  float normal_error[8];  // what the normal's own rounding adds to a distance, per metre of reach
+  float edge[8];          // largest extent of the triangle, within its corners' errors
+  float low[3][8];        // box, widened by what rounding may have moved it, in A's frame
   float high[3][8];
   float place[3];
   float error;  // m, a relative corner of B against the coordinates that `carry` gives
@@ -32,9 +33,18 @@ struct alignas(64) Prepared {
   const TriangleCluster* source;
 };
 
-HWY_INLINE void store_shape(Prepared& p, V8 normal, V8 low, V8 high) {
+/// Sum over the components of u × v of the sizes of their two products: what their rounding is
+/// relative to. For slivers it is far below the squared length of the longest edge.
+HWY_INLINE F8 products(V8 u, V8 v) {
+  const V8 p = absolute(u);
+  const V8 q = absolute(v);
+  return mul_add(p.x, q.y + q.z, mul_add(p.y, q.z + q.x, p.z * (q.x + q.y)));
+}
+
+HWY_INLINE void store_shape(Prepared& p, V8 normal, F8 normal_error, V8 low, V8 high) {
   store3(normal, p.normal[0]);
   store(sum_abs(normal), p.normal_sum);
+  store(normal_error, p.normal_error);
   const V8 extent = high - low;
   store(maximum(extent.x, maximum(extent.y, extent.z)), p.edge);
 }
@@ -52,7 +62,9 @@ HWY_INLINE void prepare_a(const WideQuery& query, const WideNode& node, std::siz
   const V8 high = maximum(c0, maximum(c1, c2));
   store3(low, p.low[0]);
   store3(high, p.high[0]);
-  store_shape(p, cross(c1 - c0, c2 - c0), low, high);
+  const V8 e1 = c1 - c0;
+  const V8 e2 = c2 - c0;
+  store_shape(p, cross(e1, e2), all(0x1p-24F * 10.0F) * products(e1, e2), low, high);
 }
 
 /// Carries a cluster of B into A's frame in float, relative to the place of its first corner, which
@@ -105,9 +117,15 @@ HWY_INLINE void prepare_b(const WideQuery& query, const WideNode& node, std::siz
   const V8 high = maximum(corner[0], maximum(corner[1], corner[2]));
   store3(low + to - widen, p.low[0]);
   store3(high + to + widen, p.high[0]);
-  // The normal is turned as a whole: its error then follows the triangle and not the cluster.
-  const V8 n = cross(relative[1] - relative[0], relative[2] - relative[0]);
-  store_shape(p, V8{dot(r0, n), dot(r1, n), dot(r2, n)}, low, high);
+  // The normal is made of the exact corners and turned as a whole: its error then follows the
+  // triangle and not the cluster.
+  const V8 e1 = load3(cluster.corner[3].data()) - load3(cluster.corner[0].data());
+  const V8 e2 = load3(cluster.corner[6].data()) - load3(cluster.corner[0].data());
+  const V8 n = cross(e1, e2);
+  const F8 lb = maximum(max_abs(e1), max_abs(e2));
+  const F8 moved = all(50.0F * query.carry_error) * (lb + all(query.carry_error));
+  store_shape(p, V8{dot(r0, n), dot(r1, n), dot(r2, n)},
+              mul_add(all(0x1p-24F * 16.0F), products(e1, e2), moved), low, high);
 }
 
 /// The corner that stands alone among three sides of a plane, none of them in it, with the other
@@ -152,23 +170,28 @@ inline bool decide(const WideQuery& query, const TriangleCluster& a, std::size_t
 ///
 /// Bounds. u = 2^-24; e the error of B's relative corners, at least 12·u·s with s its cluster's
 /// diagonal; la, lb the triangles' extents; Q = la + lb + 4·e bounds every coordinate of a
-/// difference of their corners, because their boxes overlap; N the normals.
+/// difference of their corners, because their boxes overlap; N the normals; P the sum of the sizes
+/// of the six products that a normal is made of; c what `carry` may be off the real motion; k the
+/// pose's skew, the largest row sum of |RᵀR − 1|.
 /// - A relative to B's place is rounded once: u·(s + Q). A corner difference w = b − a is then off
-///   by e + u·(s + Q) + u·Q ≤ 1.1·e + 2·u·Q.
-/// - A's normal: edges (of exact corners) are off by u·la, so a component, a difference of two
-///   products of at most la² each, by 8.2·u·la². Its product with w:
-///   |N|₁·(1.1·e + 5·u·Q) + 3·8.2·u·la²·Q.
-/// - B's normal: in its own frame corners are taken relative to one point, each rounded by u·s, and
-///   their differences by u·lb: a component is off by 4·lb·u·(2·s + lb) + 4.2·u·lb². Turning it
-///   adds 7·u·|N|₁ a component and turns the former by at most √3. With w: |N|₁·(1.1·e + 26·u·Q) +
-///   3·√3·Q·lb·(8·u·s + 8.2·u·lb), where 8·u·s < e.
+///   by e + u·(s + Q) + u·Q ≤ 1.1·e + 2·u·Q. Its product with a normal is off by |N|₁ times that
+///   and, from three roundings a term, by 3.1·u·|N|₁·Q: |N|₁·(1.1·e + 5.1·u·Q).
+/// - A normal made of exact corners: edges are rounded by u of themselves, their products and the
+///   difference of these once more, so that all components together are off by 4.1·u·P. With w:
+///   4.1·u·P·Q, of which 10 is kept for A.
+/// - B's normal is turned, with four roundings a term: 4.1·u·|N|₂ a component, with w
+///   12.3·u·|N|₁·Q. Turning mixes the components of its error: √3·4.1·u·P·Q ≤ 7.2·u·P·Q, of which
+///   16 is kept. The normal that R gives to a turned triangle is its cofactor matrix times N, which
+///   is R·N for a rotation and otherwise R·(1 − E + ½·tr E)·N to first order with |E| ≤ k: off by
+///   2.6·k·|N|₂, with w 4.6·k·|N|₁·Q. Corners that `carry` moves by c a coordinate change a
+///   component of the normal by at most 8.1·c·(lb + c), with w 24.3·c·(lb + c)·Q; 50 is kept.
 /// - det[ea, w, eb]: six monomials of at most la·Q·lb, factors off by u·la, by 1.1·e + 2·u·Q and by
 ///   2·e + u·lb, and four roundings: 6·la·(lb·(1.1·e + 8·u·Q) + 2·Q·e).
 /// Each is used with a factor of two to spare, which also covers the rounding of the bounds
 /// themselves, plus a floor for products that vanish below the smallest float.
-HWY_INLINE std::uint32_t test_pairs(const Prepared& a, const Prepared& b, const std::int32_t* ia,
-                                    const std::int32_t* ib, std::uint32_t valid,
-                                    std::uint32_t& unsure) {
+HWY_INLINE std::uint32_t test_pairs(const WideQuery& query, const Prepared& a, const Prepared& b,
+                                    const std::int32_t* ia, const std::int32_t* ib,
+                                    std::uint32_t valid, std::uint32_t& unsure) {
   constexpr float u = 0x1p-24F;
   const F8 floor = all(1e-30F);
   const F8 zero = all(0.0F);
@@ -184,7 +207,7 @@ HWY_INLINE std::uint32_t test_pairs(const Prepared& a, const Prepared& b, const 
   const F8 la = pa(a.edge);
   const F8 lb = pb(b.edge);
   const F8 reach = la + lb + all(4.0F * b.error);
-  const F8 per_normal = mul_add(all(52.0F * u), reach, all(2.2F * b.error));
+  const F8 per_normal = mul_add(all(query.per_reach), reach, all(2.2F * b.error));
 
   const V8 na = pick3(pa, a.normal[0]);
   const V8 w = b0 - a0;
@@ -192,7 +215,7 @@ HWY_INLINE std::uint32_t test_pairs(const Prepared& a, const Prepared& b, const 
   const F8 p1 = dot(na, b1 - a0);
   const F8 p2 = dot(na, b2 - a0);
   const F8 plane_a =
-      mul_add(pa(a.normal_sum), per_normal, mul_add(la * la, all(50.0F * u) * reach, floor));
+      mul_add(pa(a.normal_sum), per_normal, mul_add(pa(a.normal_error), reach, floor));
   // All on one side: the least above the bound, or the greatest below its negative.
   const M8 apart_a = either(less(plane_a, minimum(p0, minimum(p1, p2))),
                             less(maximum(p0, maximum(p1, p2)), zero - plane_a));
@@ -203,8 +226,7 @@ HWY_INLINE std::uint32_t test_pairs(const Prepared& a, const Prepared& b, const 
   const F8 q1 = dot(nb, (corner_a1 - to) - b0);
   const F8 q2 = dot(nb, (corner_a2 - to) - b0);
   const F8 plane_b =
-      mul_add(pb(b.normal_sum), per_normal,
-              mul_add(lb * reach, mul_add(lb, all(90.0F * u), all(11.0F * b.error)), floor));
+      mul_add(pb(b.normal_sum), per_normal, mul_add(pb(b.normal_error), reach, floor));
   const M8 apart_b = either(less(plane_b, minimum(q0, minimum(q1, q2))),
                             less(maximum(q0, maximum(q1, q2)), zero - plane_b));
   const std::uint32_t crossing = valid & ~bits(either(apart_a, apart_b));
@@ -273,7 +295,7 @@ inline bool collide_clusters(const WideQuery& query, const Prepared& a, std::uin
   for (std::size_t at = 0; at < count; at += 8) {
     const std::uint32_t valid = count - at >= 8 ? 0xffU : (1U << (count - at)) - 1U;
     std::uint32_t unsure = 0;
-    std::uint32_t hits = test_pairs(a, b, ia + at, ib + at, valid, unsure);
+    std::uint32_t hits = test_pairs(query, a, b, ia + at, ib + at, valid, unsure);
     for (std::uint32_t left = unsure; left != 0; left &= left - 1) {
       const auto k = at + static_cast<std::size_t>(__builtin_ctz(left));
       if (decide(query, *a.source, static_cast<std::size_t>(ia[k]), *b.source,

@@ -46,6 +46,10 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
   query.pose = &pose;
   // `carry` rounds four times in double; each sum stays below `size`.
   query.carry_error = round_up(0x1p-50 * size);
+  // Twice 17.4·u and 4.6 times the skew: see `test_pairs`.
+  const Eigen::Matrix3d skew =
+      detail::multiply(pose.rotation.transpose(), pose.rotation) - Eigen::Matrix3d::Identity();
+  query.per_reach = round_up(52.0 * 0x1p-24 + 10.0 * skew.cwiseAbs().rowwise().sum().maxCoeff());
   query.body_boxes = a.tree.axes_are_world && b.tree.axes_are_world;
   query.a_nodes = a.wide.nodes.data();
   query.b_nodes = b.wide.nodes.data();
@@ -55,6 +59,26 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
   return query;
 }
 
+/// Whether a ball around B's box certainly misses A's box, in a third of the time that it takes to
+/// set up a query. Let S bound every coordinate and the translation, summed as below. The ball's
+/// centre is carried with an error below 2^-50·S; the pose stretches lengths by at most 2e-6
+/// (`max_rigidity_error` on the entries of RᵀR); `carry` and the squares, sums and root are within
+/// 2^-48·S. The slack kept is 2^-17 of the radius and 2^-40 of S. NaN and infinity are not apart.
+bool ball_misses(const Box& a, const Box& b, const Pose& b_in_a) {
+  const Eigen::Vector3d a_min = a.min.cast<double>();
+  const Eigen::Vector3d a_max = a.max.cast<double>();
+  const Eigen::Vector3d b_min = b.min.cast<double>();
+  const Eigen::Vector3d b_max = b.max.cast<double>();
+  const Eigen::Vector3d b_center = 0.5 * (b_min + b_max);
+  const Eigen::Vector3d& t = b_in_a.translation;
+  const Eigen::Vector3d at = detail::rotate(b_in_a.rotation, b_center) + t;
+  const Eigen::Vector3d gap = (a_min - at).cwiseMax(at - a_max);
+  const double size = t.cwiseAbs().sum() + (a_max - a_min).sum() + 2.0 * b_center.cwiseAbs().sum() +
+                      (a_min + a_max).cwiseAbs().sum();
+  const double radius = 0.5 * (1.0 + 0x1p-17) * (b_max - b_min).norm();
+  return gap.maxCoeff() > radius + 0x1p-40 * (size + radius);
+}
+
 }  // namespace detail
 
 CollideResult collide(const Model& a, std::uint32_t a_node, const Model& b, std::uint32_t b_node,
@@ -62,10 +86,13 @@ CollideResult collide(const Model& a, std::uint32_t a_node, const Model& b, std:
                       const CollideOptions& options) {
   pairs.clear();
   CollideResult result;
-  const BoxTransform to = box_transform(a.tree, b.tree, b_in_a);
   const Box& a_box = a.tree.nodes[a_node].box;
   const Box& b_box = b.tree.nodes[b_node].box;
   result.work.bv_tests = 1;
+  if (a.tree.axes_are_world && b.tree.axes_are_world && detail::ball_misses(a_box, b_box, b_in_a)) {
+    return result;
+  }
+  const BoxTransform to = box_transform(a.tree, b.tree, b_in_a);
   if (!boxes_may_touch(a_box, b_box, to)) return result;
   workspace.prepare(a, b);
   const double size =

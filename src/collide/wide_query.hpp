@@ -21,6 +21,7 @@ struct WideQuery {
   float body_rotation[9];
   const Pose* pose;
   float carry_error;  // m: how far `carry` may be from the real motion
+  float per_reach;    // error of a distance from a plane, per normal and metre between corners
   bool body_boxes;    // both trees' boxes stand along A's and B's body axes
 
   const WideNode* a_nodes;
