@@ -25,7 +25,7 @@ void overhead(const Scene& scene) {
       const double before = detail::clock_seconds();
       for (const DispatchQuery& query : queries) {
         const BoxTransform to = box_transform(query.a->frame(), query.b->frame(), query.b_in_a);
-        detail::find_jobs(*query.a, *query.b, to, depth, stack, work,
+        detail::find_jobs(*query.a, *query.b, to, depth, 0, stack, work,
                           [&](std::uint32_t, std::uint32_t) {
                             ++jobs;
                             return true;

@@ -215,6 +215,7 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
   if (measure) options.recording->begin_seconds = last - begun;
   aside_seconds = 0.0;
   const bool estimates = chosen.window() > 1;
+  const std::uint32_t whole = chosen.whole_triangles();
   DispatchEnd end = DispatchEnd::ok;
   detail::FoundJob job;
   frames.clear();
@@ -224,6 +225,7 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
     frames.push_back(
         {number, query.b_in_a, box_transform(query.a->frame(), query.b->frame(), query.b_in_a)});
     const BoxTransform to = frames.back().to;
+    const detail::WorkEstimate estimate(to);
     job.query = number;
     job.body_a = holdings.body(*query.a, report.depth);
     job.body_b = holdings.body(*query.b, report.depth);
@@ -236,7 +238,7 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
       job.node_a = node_a;
       job.node_b = node_b;
       if (estimates) {
-        job.work = detail::estimate_work(query.a->nodes()[node_a], query.b->nodes()[node_b], to);
+        job.work = estimate(query.a->nodes()[node_a], query.b->nodes()[node_b]);
       }
       const bool placed = placer.add(job);
       ++job.number;
@@ -253,7 +255,8 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
       }
       return true;
     };
-    const bool done = detail::find_jobs(*query.a, *query.b, to, report.depth, stack, work, take);
+    const bool done =
+        detail::find_jobs(*query.a, *query.b, to, report.depth, whole, stack, work, take);
     if (!done) break;
   }
   if (end == DispatchEnd::ok && !pool.failed() && !placer.finish()) {

@@ -22,16 +22,27 @@ inline float covered(const Box& box, const Eigen::Vector3f& center, const Eigen:
 
 /// What a job will cost, in triangles to look at: each part's triangles times the share of its box
 /// that the other's box covers, and one for the job itself. A guess; nothing but balance rests on
-/// it.
-inline float estimate_work(const IndexedNode& a, const IndexedNode& b, const BoxTransform& to) {
-  const Eigen::Matrix3f rotation = to.rotation.cast<float>();
-  const Eigen::Matrix3f spread = to.abs_rotation.cast<float>();
-  const Eigen::Vector3f translation = to.translation.cast<float>();
-  const Eigen::Vector3f b_in_a = rotation * b.box.center() + translation;
-  const Eigen::Vector3f a_in_b = rotation.transpose() * (a.box.center() - translation);
-  const float of_a = covered(a.box, b_in_a, spread * (0.5F * b.box.extent()));
-  const float of_b = covered(b.box, a_in_b, spread.transpose() * (0.5F * a.box.extent()));
-  return 1.0F + of_a * static_cast<float>(a.slots.count) + of_b * static_cast<float>(b.slots.count);
-}
+/// it. Made once per query.
+class WorkEstimate {
+public:
+  explicit WorkEstimate(const BoxTransform& to)
+      : rotation_(to.rotation.cast<float>()),
+        spread_(to.abs_rotation.cast<float>()),
+        translation_(to.translation.cast<float>()) {}
+
+  float operator()(const IndexedNode& a, const IndexedNode& b) const {
+    const Eigen::Vector3f b_in_a = rotation_ * b.box.center() + translation_;
+    const Eigen::Vector3f a_in_b = rotation_.transpose() * (a.box.center() - translation_);
+    const float of_a = covered(a.box, b_in_a, spread_ * (0.5F * b.box.extent()));
+    const float of_b = covered(b.box, a_in_b, spread_.transpose() * (0.5F * a.box.extent()));
+    return 1.0F + of_a * static_cast<float>(a.slots.count) +
+           of_b * static_cast<float>(b.slots.count);
+  }
+
+private:
+  Eigen::Matrix3f rotation_;
+  Eigen::Matrix3f spread_;
+  Eigen::Vector3f translation_;
+};
 
 }  // namespace crashrank::detail

@@ -13,10 +13,12 @@ namespace crashrank::detail {
 /// Descends two trees from their roots and calls `found(node_a, node_b)`, indices in the part
 /// indices, for every pair of parts whose boxes, and all boxes above them, may touch; `found`
 /// returns false to stop. The larger box is split first, as in `traverse`. Left before right, so
-/// jobs that follow each other tend to share parts. `stack` keeps its memory between calls.
+/// jobs that follow each other tend to share parts. A node of no more than `whole` triangles is a
+/// part wherever it stands. `stack` keeps its memory between calls.
 template <class Found>
 bool find_jobs(const PartIndex& a, const PartIndex& b, const BoxTransform& to, std::uint32_t depth,
-               std::vector<NodePair>& stack, CollideWork& work, Found&& found) {
+               std::uint32_t whole, std::vector<NodePair>& stack, CollideWork& work,
+               Found&& found) {
   const View<const IndexedNode> nodes_a = a.nodes();
   const View<const IndexedNode> nodes_b = b.nodes();
   stack.clear();
@@ -28,8 +30,8 @@ bool find_jobs(const PartIndex& a, const PartIndex& b, const BoxTransform& to, s
     const IndexedNode& nb = nodes_b[pair.b];
     ++work.bv_tests;
     if (!boxes_may_touch(na.box, nb.box, to)) continue;
-    const bool part_a = a.is_part(na, depth);
-    const bool part_b = b.is_part(nb, depth);
+    const bool part_a = a.is_part(na, depth) || na.slots.count <= whole;
+    const bool part_b = b.is_part(nb, depth) || nb.slots.count <= whole;
     if (part_a && part_b) {
       if (!found(pair.a, pair.b)) return false;
     } else if (part_b || (!part_a && na.half_area_m2 >= nb.half_area_m2)) {

@@ -2,8 +2,10 @@
 
 #include "crashrank/dispatch/part_index.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace crashrank::detail {
@@ -25,8 +27,14 @@ public:
     forget();
   }
 
-  /// Forgets what cores hold; keeps the memory of the tables.
+  /// Forgets what cores hold, in time proportional to that; keeps the memory of the tables.
   void forget() {
+    for (std::uint32_t number = 0; number < used_; ++number) {
+      Body& body = bodies_[number];
+      for (const std::uint32_t node : body.held) body.holders[node] = 0;
+      body.held.clear();
+      body.known = 0;
+    }
     used_ = 0;
     core_.assign(cores_, {});
   }
@@ -38,7 +46,6 @@ public:
     if (number == used_) {
       if (used_ == bodies_.size()) bodies_.emplace_back();
       bodies_[used_].index = &index;
-      bodies_[used_].holders.clear();
       ++used_;
     }
     extend(bodies_[number], index.nodes_down_to(depth));
@@ -74,7 +81,8 @@ public:
     while (!open_.empty()) {
       const std::uint32_t at = open_.back();
       open_.pop_back();
-      if (at >= of.holders.size()) continue;
+      if (at >= of.known) continue;
+      if (of.holders[at] == 0) of.held.push_back(at);
       of.holders[at] |= bit;
       of.places[std::size_t{at} * cores_ + core] = place;
       const std::uint32_t left = of.index->nodes()[at].left;
@@ -88,7 +96,9 @@ public:
 private:
   struct Body {
     const PartIndex* index = nullptr;
-    std::vector<std::uint64_t> holders;  ///< by node
+    std::uint32_t known = 0;             ///< nodes there is room for; the first of the index
+    std::vector<std::uint64_t> holders;  ///< by node; 0 where no core holds it
+    std::vector<std::uint32_t> held;     ///< nodes that are held
     std::vector<Place> places;           ///< by node, then core; valid where the bit is set
   };
   struct Core {
@@ -98,15 +108,17 @@ private:
 
   /// What lies in a held part is held: a child inherits from its parent, which comes first.
   void extend(Body& body, std::uint32_t nodes) const {
-    const auto known = static_cast<std::uint32_t>(body.holders.size());
-    if (nodes <= known) return;
-    body.holders.resize(nodes, 0);
+    if (nodes <= body.known) return;
+    if (body.holders.size() < nodes) body.holders.resize(nodes, 0);
     if (body.places.size() < std::size_t{nodes} * cores_) {
       body.places.resize(std::size_t{nodes} * cores_);
     }
-    for (std::uint32_t node = known == 0 ? 1 : known; node < nodes; ++node) {
+    const std::uint32_t known = std::exchange(body.known, nodes);
+    if (body.held.empty()) return;
+    for (std::uint32_t node = std::max(known, 1U); node < nodes; ++node) {
       const std::uint32_t parent = body.index->nodes()[node].parent;
       if (body.holders[parent] == 0) continue;
+      body.held.push_back(node);
       body.holders[node] = body.holders[parent];
       for (std::uint32_t core = 0; core < cores_; ++core) {
         body.places[std::size_t{node} * cores_ + core] =

@@ -56,6 +56,7 @@ public:
     at_.unclaimed = everyone(count);
     at_.batch = jobs_.data();
     at_.batch_work = batch_work_.data();
+    at_.sent = known_out_.data();
     at_.sent_work = sent_work_.data();
     waiting_.clear();
     found_.clear();

@@ -82,15 +82,19 @@ public:
 /// with a long one.
 class LateMatch final : public PlacementPolicy {
 public:
-  /// Enough for all jobs of one query near its best depth, and little enough to look through a
-  /// window per job.
-  std::uint32_t window() const noexcept override { return 128; }
+  /// A wider window finds nearer jobs, and costs the main thread a look at each of them per job.
+  std::uint32_t window() const noexcept override { return 32; }
 
-  /// A core without work does not wait for a better choice.
+  /// A few microseconds of work: finer parts cost the main thread more to place than they spare.
+  std::uint32_t whole_triangles() const noexcept override { return 16; }
+
+  /// A core without work does not wait for a better choice; one that works on its last batch gets
+  /// another, so that it need not be woken, when there is much to choose from.
   bool in_haste(const Placement& at) const noexcept override {
     if (at.jobs.size() < at.cores) return false;
+    const bool many = at.jobs.size() >= 2 * std::size_t{at.cores};
     for (std::uint32_t core = 0; core < at.cores; ++core) {
-      if (at.sent_work[core] == 0.0F) return true;
+      if (at.sent[core] == 0 || (many && at.sent[core] == 1)) return true;
     }
     return false;
   }

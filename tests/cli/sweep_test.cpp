@@ -105,7 +105,9 @@ TEST(Sweep, ByDefaultAllDepthsAndPoliciesOfFourWorkersWithStoresOfTheirOwn) {
       EXPECT_GE(row["jobs"].get<double>(), jobs) << "deeper cuts make more jobs";
       jobs = row["jobs"].get<double>();
     }
-    EXPECT_EQ(row["jobs"].get<double>(), jobs) << "whatever the policy";
+    // Late Match alone leaves small nodes whole.
+    const bool late = row["policy"] == "late-match";
+    EXPECT_TRUE(late ? row["jobs"].get<double>() <= jobs : row["jobs"].get<double>() == jobs);
   }
 }
 

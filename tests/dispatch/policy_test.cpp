@@ -32,11 +32,13 @@ struct State {
     at.buffer = 8;
     at.batch = batch.data();
     at.batch_work = work.data();
+    at.sent = sent.data();
     at.sent_work = work.data();
     at.jobs = {&job, 1};
   }
 
   std::array<std::uint32_t, 4> batch;
+  std::array<std::uint32_t, 4> sent{};
   std::array<float, 4> work{};
   std::uint64_t holders_a = 0;
   std::uint64_t holders_b = 0;
@@ -120,6 +122,7 @@ struct TwoCores {
     at.unclaimed = 3;
     at.batch = batch.data();
     at.batch_work = batch_work.data();
+    at.sent = sent.data();
     at.sent_work = sent_work.data();
     at.jobs = jobs;
   }
@@ -128,6 +131,7 @@ struct TwoCores {
   std::vector<WaitingJob> jobs;
   std::array<std::uint32_t, 2> batch{};
   std::array<float, 2> batch_work{};
+  std::array<std::uint32_t, 2> sent{};
   std::array<float, 2> sent_work{};
   Placement at;
 };
@@ -156,14 +160,27 @@ TEST(Policy, LateMatchTakesOfEquallyNearJobsTheFirst) {
   EXPECT_EQ(late->choose(two.at).job, 1U);
 }
 
-TEST(Policy, LateMatchWaitsForMoreJobsUnlessACoreIsIdle) {
+TEST(Policy, LateMatchWaitsForMoreJobsUnlessACoreIsIdleOrSoonWillBe) {
   const std::unique_ptr<PlacementPolicy> late = make_policy(Policy::late_match);
   late->begin(2, 1);
   EXPECT_GT(late->window(), 1U);
-  TwoCores two({{0, 0}, {0, 0}});
-  EXPECT_TRUE(late->in_haste(two.at));
-  two.sent_work = {5.0F, 5.0F};
-  EXPECT_FALSE(late->in_haste(two.at));
+  TwoCores few({{0, 0}, {0, 0}});
+  EXPECT_TRUE(late->in_haste(few.at));
+  few.sent = {1, 1};
+  EXPECT_FALSE(late->in_haste(few.at));
+  TwoCores many({{0, 0}, {0, 0}, {0, 0}, {0, 0}});
+  many.sent = {2, 1};
+  EXPECT_TRUE(late->in_haste(many.at));
+  many.sent = {2, 2};
+  EXPECT_FALSE(late->in_haste(many.at));
+  TwoCores one({{0, 0}});  // fewer than cores
+  EXPECT_FALSE(late->in_haste(one.at));
+}
+
+TEST(Policy, LateMatchAloneLeavesSmallNodesWhole) {
+  for (const Policy policy : all_policies()) {
+    EXPECT_EQ(make_policy(policy)->whole_triangles() > 0, policy == Policy::late_match);
+  }
 }
 
 TEST(Policy, LateMatchSendsBatchesThatShrinkTowardsTheEnd) {

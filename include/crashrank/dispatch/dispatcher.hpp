@@ -49,8 +49,8 @@ struct DispatchOptions {
   bool sorted = false;  ///< every query's pairs in one run, sorted by a, then b
   /// Set from any thread to end the dispatch early.
   const std::atomic<bool>* cancel = nullptr;
-  /// Filled with what every job took, for `replay`; measuring costs about a tenth of a microsecond a
-  /// job. Estimates of work are recorded only under a policy that asks for them (late_match).
+  /// Filled with what every job took, for `replay`; measuring costs about a tenth of a microsecond
+  /// a job. Estimates of work are recorded only under a policy that asks for them (late_match).
   DispatchRecording* recording = nullptr;
 };
 

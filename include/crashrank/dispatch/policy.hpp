@@ -19,7 +19,7 @@ enum class Policy {
   lowest,           ///< the core that holds least of the job's parts
   best_match_load,  ///< the least loaded core, then the one that holds most
   late_match,       ///< jobs wait unassigned; the core with least work before it takes the job it
-                    ///< is nearest to, in batches that shrink towards the end
+               ///< is nearest to, in batches that shrink towards the end; small nodes stay whole
 };
 
 /// All policies, in the order of the enum.
@@ -52,6 +52,7 @@ struct Placement {
   std::uint64_t unclaimed = 0;           ///< cores that can take a job; never 0 in `choose`
   const std::uint32_t* batch = nullptr;  ///< by core: jobs in the batch that is being filled
   const float* batch_work = nullptr;     ///< by core: their estimated work
+  const std::uint32_t* sent = nullptr;   ///< by core: batches sent and not known to be done, 0 to 2
   const float* sent_work = nullptr;      ///< by core: of batches sent and not known to be done
   View<const WaitingJob> jobs;           ///< in the order found; never empty in `choose`
   float waiting_work = 0.0F;             ///< their estimated work
@@ -77,6 +78,9 @@ public:
   }
   /// Jobs that the main thread may find ahead of placing them; 1: each is placed when found.
   virtual std::uint32_t window() const noexcept { return 1; }
+  /// Triangles that are not worth cutting further: a node of no more is a part wherever it stands
+  /// above the distribution depth. 0: all parts lie at that depth, or are leaves above it.
+  virtual std::uint32_t whole_triangles() const noexcept { return 0; }
   /// Whether to place a job now, though more can be found and the window has room.
   virtual bool in_haste(const Placement& at) const noexcept {
     static_cast<void>(at);
