@@ -116,12 +116,16 @@ public:
   }
 
   bool send_early(const Placement& at, std::uint32_t core) const noexcept override {
+    if (!at.all_found && at.batch_work[core] < worth_waking) return false;
     float left = at.waiting_work;
     for (std::uint32_t other = 0; other < at.cores; ++other) left += at.batch_work[other];
     return at.batch_work[core] * static_cast<float>(at.cores) >= left;
   }
 
 private:
+  /// Some ten microseconds of the scalar kernel: about what waking a core takes.
+  static constexpr float worth_waking = 80.0F;
+
   /// Bytes that need not be sent if this core takes the job, less those if the best other one does.
   static std::int64_t advantage(const WaitingJob& job, std::uint32_t core) noexcept {
     const std::uint64_t mine = std::uint64_t{1} << core;

@@ -186,12 +186,16 @@ TEST(Policy, LateMatchAloneLeavesSmallNodesWhole) {
 TEST(Policy, LateMatchSendsBatchesThatShrinkTowardsTheEnd) {
   const std::unique_ptr<PlacementPolicy> late = make_policy(Policy::late_match);
   late->begin(2, 1);
-  TwoCores two({{0, 0}, {0, 0}, {0, 0}, {0, 0}});  // 40 wait
-  two.batch_work = {30.0F, 0.0F};
-  EXPECT_FALSE(late->send_early(two.at, 0));  // half of 70 is 35
-  two.batch_work = {40.0F, 0.0F};
+  TwoCores two({{0, 0}, {0, 0}, {0, 0}, {0, 0}});
+  two.at.waiting_work = 400.0F;
+  two.batch_work = {300.0F, 0.0F};
+  EXPECT_FALSE(late->send_early(two.at, 0));  // half of 700 is 350
+  two.batch_work = {400.0F, 0.0F};
   EXPECT_TRUE(late->send_early(two.at, 0));
   two.at.waiting_work = 0.0F;
+  two.batch_work = {1.0F, 0.5F};
+  EXPECT_FALSE(late->send_early(two.at, 0)) << "not worth waking a core for, while more may come";
+  two.at.all_found = true;
   two.batch_work = {1.0F, 0.5F};
   EXPECT_TRUE(late->send_early(two.at, 0));
   EXPECT_FALSE(late->send_early(two.at, 1));

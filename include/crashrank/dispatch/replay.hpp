@@ -39,8 +39,8 @@ struct VirtualMachine {
 };
 
 /// Measures what waking threads costs on this machine, on an idle pool of at least one worker: the
-/// medians of 200 tries, about 0.1 s. Fills the pool's side of `machine` (spin, send and wake
-/// times). Errors as `WorkerPool::take_failure`.
+/// lower quartiles of 200 tries, since other programs only ever add; about 0.1 s. Fills the pool's
+/// side of `machine` (spin, send and wake times). Errors as `WorkerPool::take_failure`.
 CRASHRANK_API Status measure_waking(WorkerPool& pool, VirtualMachine& machine);
 
 /// Sets the copying times of `machine` to those that fit the batches of private recordings best
