@@ -1,6 +1,7 @@
 #include "crashrank/crash/pulse.hpp"
 
 #include "crash/facets.hpp"
+#include "crash/material.hpp"
 
 #include "crashrank/crash/depth_map.hpp"
 
@@ -14,6 +15,7 @@ namespace crashrank {
 namespace {
 
 using detail::Facet;
+using detail::Material;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -66,33 +68,6 @@ Planar make_planar(const RigidBody& body, const ViewFrame& frame) {
   p.spin = body.velocity.angular_radps.z();
   return p;
 }
-
-/// A body's strength, asked in view coordinates as the body lay when the pulse began.
-class Material {
-public:
-  Material(const PulseBody& body, const ViewFrame& frame)
-      : strength_(body.strength),
-        turn_(body.pose.rotation.transpose() * frame.axes.transpose()),
-        shift_(body.pose.rotation.transpose() * (frame.origin_m - body.pose.translation)),
-        ground_(frame.origin_m.z()) {}
-
-  CrushPressure law(const Vector2d& point, double height, const Vector2d& inward) const {
-    if (strength_.rigid) {
-      CrushPressure rigid;
-      rigid.rigid = true;
-      return rigid;
-    }
-    Vector3d in_body = turn_ * Vector3d(point.x(), point.y(), height) + shift_;
-    in_body.z() = height + ground_;
-    return pressure_at(strength_, in_body, (turn_ * Vector3d(inward.x(), inward.y(), 0)).head<2>());
-  }
-
-private:
-  const CrushStrength& strength_;
-  Eigen::Matrix3d turn_;
-  Vector3d shift_;
-  double ground_;
-};
 
 /// Forces of one instant.
 struct Wrench {

@@ -1,0 +1,268 @@
+#include "crashrank/crash/crush.hpp"
+
+#include "crash/material.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace crashrank {
+namespace {
+
+using detail::Material;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// A cell in which both bodies are seen, and how far they are pressed into each other there.
+struct Cell {
+  std::size_t index = 0;
+  double gap = 0.0;
+  double pressure = 0.0;
+  double depth_a = 0.0;
+  double depth_b = 0.0;
+  double energy_a = 0.0;  ///< J/m²
+  double energy_b = 0.0;
+};
+
+class Press {
+public:
+  Press(const PulseBody& a, const PulseBody& b, const ViewFrame& frame, const DepthMap& map_a,
+        const DepthMap& map_b)
+      : map_a_(map_a), map_b_(map_b), a_(a, frame), b_(b, frame) {
+    for (std::size_t i = 0; i < map_a.grid.size(); ++i) {
+      if (!map_a.covered(i) || !map_b.covered(i)) continue;
+      cells_.push_back({i, map_b.least_m[i] - map_a.greatest_m[i]});
+    }
+    std::sort(cells_.begin(), cells_.end(),
+              [](const Cell& p, const Cell& q) { return p.gap < q.gap; });
+  }
+
+  bool empty() const { return cells_.empty(); }
+  double first_touch() const { return cells_.front().gap; }
+  const std::vector<Cell>& cells() const { return cells_; }
+
+  /// Work of going on from `from` to `to`, and with `keep` the state there.
+  double advance(double from, double to, bool keep) {
+    double work = 0.0;
+    for (Cell& cell : cells_) {
+      if (cell.gap >= to) break;
+      Cell next = cell;
+      const double way = to - std::max(from, cell.gap);
+      press(to - cell.gap, way, next);
+      work += (next.energy_a - cell.energy_a + next.energy_b - cell.energy_b) *
+              map_a_.grid.cell_area_m2();
+      if (keep) cell = next;
+    }
+    return work;
+  }
+
+private:
+  void press(double depth, double way, Cell& cell) const {
+    const std::size_t columns = map_a_.grid.columns;
+    const double w = map_a_.grid.w_of(cell.index % columns);
+    const double h = map_a_.grid.h_of(cell.index / columns);
+    // Each law is that of the material at the body's crushed face.
+    const Vector2d face_a(map_a_.greatest_m[cell.index] - cell.depth_a, w);
+    const Vector2d face_b(map_b_.least_m[cell.index] + cell.depth_b, w);
+    const SharedCrush shared =
+        share_crush(a_.law(face_a, h, {-1.0, 0.0}), b_.law(face_b, h, {1.0, 0.0}), depth);
+    if (!std::isfinite(shared.pressure_pa)) return;
+    const double before = cell.pressure > 0.0 ? cell.pressure : yield(face_a, face_b, h);
+    const double work = 0.5 * (before + shared.pressure_pa) * way;
+    const double more_a = std::max(0.0, shared.depth_a_m - cell.depth_a);
+    const double more_b = std::max(0.0, shared.depth_b_m - cell.depth_b);
+    const double to_a = more_a + more_b > 0.0 ? more_a / (more_a + more_b) : 0.5;
+    cell.energy_a += to_a * work;
+    cell.energy_b += (1.0 - to_a) * work;
+    cell.depth_a += to_a * way;
+    cell.depth_b += (1.0 - to_a) * way;
+    cell.pressure = shared.pressure_pa;
+  }
+
+  double yield(const Vector2d& face_a, const Vector2d& face_b, double h) const {
+    constexpr double hardly_m = 1e-12;
+    return share_crush(a_.law(face_a, h, {-1.0, 0.0}), b_.law(face_b, h, {1.0, 0.0}), hardly_m)
+        .pressure_pa;
+  }
+
+  const DepthMap& map_a_;
+  const DepthMap& map_b_;
+  Material a_;
+  Material b_;
+  std::vector<Cell> cells_;
+};
+
+/// Reads off what a body's crush map moves. `side` is +1 for A, whose greatest u is pushed back,
+/// and -1 for B.
+class Reader {
+public:
+  Reader(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, double side,
+         BodyCrush& told)
+      : mesh_(*body.mesh), map_(map), side_(side), told_(told) {
+    const Eigen::Matrix3d turn = frame.axes * body.pose.rotation;
+    const Vector3d shift = frame.into(body.pose.translation);
+    seen_.reserve(mesh_.vertices.size());
+    for (const Eigen::Vector3f& vertex : mesh_.vertices) {
+      seen_.emplace_back(turn * vertex.cast<double>() + shift);
+    }
+  }
+
+  void run() {
+    std::size_t part = 0;
+    for (std::size_t i = 0; i < mesh_.size(); ++i) {
+      while (part < mesh_.parts.size() &&
+             i >= mesh_.parts[part].first_triangle + mesh_.parts[part].triangle_count) {
+        ++part;
+      }
+      double furthest = 0.0;
+      const double area = moved_area(mesh_.triangles[i], furthest);
+      if (!(furthest > 0.0)) continue;
+      told_.triangles.push_back(static_cast<std::uint32_t>(i));
+      told_.area_m2 += area;
+      if (part >= mesh_.parts.size() || i < mesh_.parts[part].first_triangle) continue;
+      const auto index = static_cast<std::uint32_t>(part);
+      if (told_.parts.empty() || told_.parts.back().part != index) {
+        told_.parts.push_back({index, 0.0, 0.0});
+      }
+      told_.parts.back().area_m2 += area;
+      told_.parts.back().intrusion_m = std::max(told_.parts.back().intrusion_m, furthest);
+    }
+  }
+
+private:
+  /// How far a point is pushed; 0 where it stays.
+  double pushed(const Vector3d& p) const {
+    const ViewGrid& grid = map_.grid;
+    // Faces that lie in the rim of the map belong to it.
+    constexpr double rim = 1e-6;
+    const double column = (p.y() - grid.low_w_m) / grid.cell_w_m;
+    const double row = (p.z() - grid.low_h_m) / grid.cell_h_m;
+    const auto columns = static_cast<double>(grid.columns);
+    const auto rows = static_cast<double>(grid.rows);
+    if (!(column >= -rim && column <= columns + rim && row >= -rim && row <= rows + rim)) {
+      return 0.0;
+    }
+    const std::size_t cell =
+        grid.index(static_cast<std::size_t>(std::clamp(column, 0.0, columns - 1.0)),
+                   static_cast<std::size_t>(std::clamp(row, 0.0, rows - 1.0)));
+    if (!(told_.depth_m[cell] > 0.0)) return 0.0;
+    const double behind = side_ > 0.0 ? map_.greatest_m[cell] - p.x() : p.x() - map_.least_m[cell];
+    return std::clamp(told_.depth_m[cell] - behind, 0.0, told_.depth_m[cell]);
+  }
+
+  /// Cuts the triangle into n² even ones no longer than a cell and counts those that move.
+  double moved_area(const std::array<std::uint32_t, 3>& t, double& furthest) const {
+    constexpr double most_cuts = 64.0;
+    const Vector3d& a = seen_[t[0]];
+    const Vector3d& b = seen_[t[1]];
+    const Vector3d& c = seen_[t[2]];
+    const ViewGrid& grid = map_.grid;
+    const Vector3d low = a.cwiseMin(b).cwiseMin(c);
+    const Vector3d high = a.cwiseMax(b).cwiseMax(c);
+    const double right = grid.low_w_m + grid.cell_w_m * static_cast<double>(grid.columns);
+    const double top = grid.low_h_m + grid.cell_h_m * static_cast<double>(grid.rows);
+    if (high.y() < grid.low_w_m || low.y() > right || high.z() < grid.low_h_m || low.z() > top) {
+      return 0.0;
+    }
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const double cuts = std::clamp(std::ceil(longest / grid.cell_w_m), 1.0, most_cuts);
+    const double piece = 0.5 * (b - a).cross(c - a).norm() / (cuts * cuts);
+    double moved = 0.0;
+    const auto look = [&](double s, double r) {
+      const double push = pushed(a + (s / cuts) * (b - a) + (r / cuts) * (c - a));
+      if (!(push > 0.0)) return;
+      moved += piece;
+      furthest = std::max(furthest, push);
+    };
+    constexpr double third = 1.0 / 3.0;
+    for (double s = 0.0; s < cuts; ++s) {
+      for (double r = 0.0; s + r < cuts; ++r) {
+        look(s + third, r + third);
+        if (s + r + 1.0 < cuts) look(s + 2.0 * third, r + 2.0 * third);
+      }
+    }
+    return moved;
+  }
+
+  const TriangleMesh& mesh_;
+  const DepthMap& map_;
+  double side_;
+  BodyCrush& told_;
+  std::vector<Vector3d> seen_;
+};
+
+void read(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, double side,
+          BodyCrush& told) {
+  for (const double depth : told.depth_m) {
+    told.deepest_m = std::max(told.deepest_m, depth);
+    told.volume_m3 += depth * map.grid.cell_area_m2();
+  }
+  if (body.rigid.movable() && told.energy_j > 0.0) {
+    told.ees_mps = std::sqrt(2.0 * told.energy_j / body.rigid.mass_kg);
+  }
+  if (told.deepest_m > 0.0) Reader(body, frame, map, side, told).run();
+}
+
+}  // namespace
+
+CrushResult crush(const PulseBody& a, const PulseBody& b, const Vector3d& point_m,
+                  const Vector3d& along, double energy_j, const CrushOptions& options) {
+  constexpr int halvings = 40;
+  CrushResult result;
+  if (!(along.head<2>().norm() > 0.0)) return result;
+  result.frame = view_along(along, point_m);
+  Vector3d low_a;
+  Vector3d high_a;
+  Vector3d low_b;
+  Vector3d high_b;
+  view_bounds(*a.mesh, a.pose, result.frame, low_a, high_a);
+  view_bounds(*b.mesh, b.pose, result.frame, low_b, high_b);
+  const Vector3d low = low_a.cwiseMax(low_b);
+  const Vector3d high = high_a.cwiseMin(high_b);
+  if (!(low.y() < high.y() && low.z() < high.z())) return result;
+  result.grid = grid_over(low.tail<2>(), high.tail<2>(), options.cell_m, options.cell_m);
+  result.a.depth_m.assign(result.grid.size(), 0.0);
+  result.b.depth_m.assign(result.grid.size(), 0.0);
+  result.a.end_m.assign(result.grid.size(), 0.0);
+  result.b.end_m.assign(result.grid.size(), 0.0);
+  if ((a.strength.rigid && b.strength.rigid) || !(energy_j > 0.0)) return result;
+  const DepthMap map_a = depth_map(*a.mesh, a.pose, result.frame, result.grid);
+  const DepthMap map_b = depth_map(*b.mesh, b.pose, result.frame, result.grid);
+  Press press(a, b, result.frame, map_a, map_b);
+  if (press.empty()) return result;
+
+  const double start = press.first_touch();
+  double at = start;
+  while (at - start < options.deepest_m && result.energy_j < energy_j) {
+    double to = at + options.step_m;
+    const double left = energy_j - result.energy_j;
+    if (press.advance(at, to, false) > left) {
+      double low_end = at;
+      for (int i = 0; i < halvings; ++i) {
+        const double middle = 0.5 * (low_end + to);
+        (press.advance(at, middle, false) > left ? to : low_end) = middle;
+      }
+      result.energy_j += press.advance(at, to, true);
+      at = to;
+      break;
+    }
+    result.energy_j += press.advance(at, to, true);
+    at = to;
+  }
+  result.pressed_m = at - start;
+  for (const Cell& cell : press.cells()) {
+    result.a.depth_m[cell.index] = cell.depth_a;
+    result.b.depth_m[cell.index] = cell.depth_b;
+    result.a.end_m[cell.index] = map_a.greatest_m[cell.index] - cell.depth_a;
+    result.b.end_m[cell.index] = map_b.least_m[cell.index] + cell.depth_b;
+    result.a.energy_j += cell.energy_a * result.grid.cell_area_m2();
+    result.b.energy_j += cell.energy_b * result.grid.cell_area_m2();
+  }
+  read(a, result.frame, map_a, 1.0, result.a);
+  read(b, result.frame, map_b, -1.0, result.b);
+  return result;
+}
+
+}  // namespace crashrank
