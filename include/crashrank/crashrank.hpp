@@ -21,6 +21,7 @@
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/distance.hpp"
 #include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair_kind.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 
 #include "crashrank/dispatch/dispatcher.hpp"
