@@ -133,7 +133,8 @@ private:
           }
         }
         for (std::size_t p = 0; p < peers_.size(); ++p) {
-          if (!times[p].empty()) medians[p].push_back(median(times[p]));
+          if (times[p].empty()) continue;
+          medians[p].push_back(*std::min_element(times[p].begin(), times[p].end()));
         }
       }
     }

@@ -30,7 +30,7 @@ struct Row {
   Regime regime = Regime::deep;
   Mode mode = Mode::all;
   std::string peer;
-  double microseconds = 0.0;  ///< a query; median of repeats, then over the poses
+  double microseconds = 0.0;  ///< a query; least of the repeats, median over the poses
   std::uint64_t pairs = 0;    ///< over all poses, each once; of `any`: poses answered yes
   std::uint64_t missed = 0;   ///< against crashrank's exact answer
   std::uint64_t invented = 0;

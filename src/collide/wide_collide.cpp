@@ -62,8 +62,9 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
 /// Whether a ball around B's box certainly misses A's box, in a third of the time that it takes to
 /// set up a query. Let S bound every coordinate and the translation, summed as below. The ball's
 /// centre is carried with an error below 2^-50·S; the pose stretches lengths by at most 2e-6
-/// (`max_rigidity_error` on the entries of RᵀR); `carry` and the squares, sums and root are within
-/// 2^-48·S. The slack kept is 2^-17 of the radius and 2^-40 of S. NaN and infinity are not apart.
+/// (`max_rigidity_error` on the entries of RᵀR), `carry` rounds by less than 2^-48·S and the
+/// squares by 2^-50 of themselves. The slack kept is 2^-40 of S and 2^-16 of the squared radius.
+/// NaN and infinity are not apart, nor are sizes whose squares overflow.
 bool ball_misses(const Box& a, const Box& b, const Pose& b_in_a) {
   const Eigen::Vector3d a_min = a.min.cast<double>();
   const Eigen::Vector3d a_max = a.max.cast<double>();
@@ -75,8 +76,9 @@ bool ball_misses(const Box& a, const Box& b, const Pose& b_in_a) {
   const Eigen::Vector3d gap = (a_min - at).cwiseMax(at - a_max);
   const double size = t.cwiseAbs().sum() + (a_max - a_min).sum() + 2.0 * b_center.cwiseAbs().sum() +
                       (a_min + a_max).cwiseAbs().sum();
-  const double radius = 0.5 * (1.0 + 0x1p-17) * (b_max - b_min).norm();
-  return gap.maxCoeff() > radius + 0x1p-40 * (size + radius);
+  const double certain = gap.maxCoeff() - 0x1p-40 * size;
+  return certain > 0.0 &&
+         certain * certain > 0.25 * (1.0 + 0x1p-16) * (b_max - b_min).squaredNorm();
 }
 
 }  // namespace detail
