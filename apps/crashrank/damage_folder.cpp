@@ -34,9 +34,32 @@ Status write_body(const fs::path& stem, const TriangleMesh& mesh, const BodyDama
   return write_file(stem.string() + ".ply", damage_ply(mesh, damage.triangles));
 }
 
+// Of a few places around the scene the one from which a small picture shows most damage; what
+// leads is asked first and keeps its place when no other shows a tenth more.
+Result<double> best_azimuth_deg(View<const PictureBody> bodies, double azimuth_deg) {
+  double best = azimuth_deg;
+  double most = -1.0;
+  for (const double turn : {35.0, -35.0, 70.0, -70.0, 110.0, -110.0, 150.0, -150.0}) {
+    PictureOptions options;
+    options.width_px = 240;
+    options.height_px = 150;
+    options.azimuth_deg = azimuth_deg + turn;
+    const Result<Image> image = draw_picture(bodies, options);
+    if (!image) return image.error();
+    const double red = static_cast<double>(count_damage(*image));
+    if (red > 1.1 * most) {
+      most = red;
+      best = options.azimuth_deg;
+    }
+  }
+  return best;
+}
+
 Status write_picture(const fs::path& path, View<const PictureBody> bodies, double azimuth_deg) {
+  const Result<double> best = best_azimuth_deg(bodies, azimuth_deg);
+  if (!best) return best.error();
   PictureOptions options;
-  options.azimuth_deg = azimuth_deg;
+  options.azimuth_deg = *best;
   const Result<Image> image = draw_picture(bodies, options);
   if (!image) return image.error();
   const Result<std::string> bytes = png(*image);
@@ -61,20 +84,30 @@ Status write_candidate(const fs::path& stem, const Scenario& scenario, View<cons
     bodies.push_back({&mesh, contact.other.pose, contact.other.triangles});
   }
   const double side = azimuth_of_damage_deg(bodies.front());
-  Status drawn = write_picture(stem.string() + "-ego.png", {bodies.data(), 1}, side + 35.0);
+  Status drawn = write_picture(stem.string() + "-ego.png", {bodies.data(), 1}, side);
   if (!drawn) return drawn;
-  return write_picture(stem.string() + ".png", bodies, side + 60.0);
+  return write_picture(stem.string() + ".png", bodies, side);
 }
 
 }  // namespace
 
-Status write_damage(const std::string& folder, std::size_t top, const Scenario& scenario,
-                    View<const Model> models, const RankResult& result) {
+Status make_folder(const std::string& folder) {
   std::error_code failure;
   fs::create_directories(folder, failure);
-  if (!fs::is_directory(folder)) {
-    return Error{ErrorCode::not_found, folder, {}, "cannot make this folder", {}};
-  }
+  std::error_code ignored;
+  if (fs::is_directory(folder, ignored)) return Success{};
+  const bool taken = fs::exists(folder, ignored);
+  return Error{ErrorCode::not_found,
+               folder,
+               {},
+               "cannot make this folder: " +
+                   (taken ? std::string("a file has its name") : failure.message()),
+               "name a new folder, or one that can be written to"};
+}
+
+Status write_damage(const std::string& folder, std::size_t top, const Scenario& scenario,
+                    View<const Model> models, const RankResult& result) {
+  if (Status made = make_folder(folder); !made) return made;
   const auto colliding = static_cast<std::size_t>(
       std::count_if(result.ranking.begin(), result.ranking.end(),
                     [](const CandidateResult& ranked) { return !ranked.contacts.empty(); }));

@@ -11,6 +11,9 @@
 
 namespace crashrank::cli {
 
+/// Makes the folder when it is missing. Errors: not_found.
+Status make_folder(const std::string& folder);
+
 /// Writes, for the first `top` candidates that collide (0: all), into `folder`, made when missing:
 /// RRR-CANDIDATE.png with all bodies at first contact, RRR-CANDIDATE-ego.png, .glb and .ply of the
 /// ego alone, and RRR-CANDIDATE-N-OTHER.glb and .ply for each body hit; RRR is the rank. Names are

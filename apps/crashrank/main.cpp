@@ -3,6 +3,7 @@
 
 #include "crashrank/base/library_version.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <string>
@@ -20,14 +21,21 @@ Examples:
   crashrank collide car.obj truck.glb --pose 4.2,0.3,0,180,0,0
   crashrank rank scenario.json --damage out)";
 
-/// The first line of what the parser has to say, and where to read on.
-int usage(const CLI::App& app, const CLI::ParseError& problem) {
+/// The first line of what the parser has to say, and where to read on. `word` is the first argument
+/// or null.
+int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word) {
   const CLI::App* named = &app;
   while (!named->get_subcommands().empty()) named = named->get_subcommands().front();
   const std::string help =
       named == &app ? "crashrank --help" : "crashrank " + named->get_name() + " --help";
-  const std::string text = problem.what();
-  return fail(make_error(ErrorCode::usage, text.substr(0, text.find('\n')), "see " + help));
+  std::string text = problem.what();
+  text.resize(std::min(text.find('\n'), text.size()));
+  if (named == &app && word != nullptr && word[0] != '-') {
+    text = "there is no command '" + std::string(word) + "'; choose";
+    for (const CLI::App* known : app.get_subcommands({})) text += " " + known->get_name() + ",";
+    text.pop_back();
+  }
+  return fail(make_error(ErrorCode::usage, text, "see " + help));
 }
 
 int run(int argc, char** argv) {
@@ -45,13 +53,14 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const auto named = app.get_subcommands();
-    print(named.empty() ? app.help() : named.front()->help());
+    print(named.empty() ? app.help()
+                        : named.front()->help("crashrank " + named.front()->get_name()));
     return finish(exit_done);
   } catch (const CLI::CallForVersion&) {
     print(app.version() + "\n");
     return finish(exit_done);
   } catch (const CLI::ParseError& problem) {
-    return usage(app, problem);
+    return usage(app, problem, argc > 1 ? argv[1] : nullptr);
   }
   return finish(action());
 }

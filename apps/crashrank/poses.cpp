@@ -11,11 +11,15 @@ namespace crashrank::cli {
 
 Result<Pose> parse_pose_option(const std::string& text) {
   const std::optional<std::vector<double>> numbers = parse_numbers(text);
-  if (!numbers || numbers->size() != 6 ||
-      !std::all_of(numbers->begin(), numbers->end(), [](double x) { return std::isfinite(x); })) {
+  const auto finite = [](double x) { return std::isfinite(x); };
+  if (numbers && !std::all_of(numbers->begin(), numbers->end(), finite)) {
+    return make_error(ErrorCode::usage, "--pose " + text + ": holds a number that is not finite",
+                      "give metres and degrees");
+  }
+  if (!numbers || numbers->size() != 6) {
     return make_error(ErrorCode::usage,
                       "--pose " + text + ": needs six numbers, x,y,z,yaw_deg,pitch_deg,roll_deg",
-                      "write them with commas and no spaces, such as 4.2,0,0,180,0,0");
+                      "write them with commas between, such as 4.2,0,0,180,0,0");
   }
   const std::vector<double>& n = *numbers;
   constexpr double radians = 3.14159265358979323846 / 180.0;
@@ -23,7 +27,7 @@ Result<Pose> parse_pose_option(const std::string& text) {
 }
 
 Result<std::vector<Pose>> read_poses(const std::string& path) {
-  constexpr std::size_t largest_file = std::size_t{1} << 30U;
+  constexpr std::size_t largest_file = std::size_t{64} << 20U;  // 200,000 poses of 16 numbers
   Result<std::string> text = read_text(path, largest_file);
   if (!text) return text.error();
   const std::string file = is_standard(path) ? "standard input" : path;

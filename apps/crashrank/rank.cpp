@@ -51,7 +51,11 @@ Result<std::vector<Model>> load_models(const Scenario& scenario, const BuildOpti
     ImportOptions how;
     how.transform = wanted.transform;
     Result<ImportedMesh> imported = import_mesh(wanted.path, how);
-    if (!imported) return imported.error();
+    if (!imported) {
+      Error error = imported.error();
+      error.reason += " (it is models." + wanted.name + ".mesh of the scenario)";
+      return error;
+    }
     for (const std::string& warning : imported->warnings) warn(wanted.path, warning);
     Result<Model> model = make_model(std::move(imported->mesh), build);
     if (!model) {
@@ -90,6 +94,10 @@ int run(const Options& options) {
   if (!build) return fail(build.error());
   const Result<Scenario> scenario = read_scenario(options);
   if (!scenario) return fail(scenario.error());
+  // Where the answer goes is seen to before the work.
+  if (!options.damage_folder.empty()) {
+    if (const Status made = make_folder(options.damage_folder); !made) return fail(made.error());
+  }
   const Result<std::vector<Model>> models = load_models(*scenario, *build);
   if (!models) return fail(models.error());
   const Result<RankResult> ranked = rank(*scenario, *models, how);
@@ -133,13 +141,16 @@ void add_rank(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("rank", "Rank the crashes that a scenario leaves, least harmful first");
-  command->add_option("SCENARIO", options->scenario, "Scenario file; - is standard input")
+  command
+      ->add_option("SCENARIO", options->scenario,
+                   "Scenario file; - is standard input, its meshes then relative to this folder")
       ->required();
   command->add_option("--measure", options->measure,
                       "What is compared: polygons, area or closing-energy (default: as the "
                       "scenario says)");
   command->add_flag("--json", options->json, "Answer in JSON, every candidate");
-  command->add_option("--top", options->top, "Candidates in the table, 0 for all (default 20)");
+  command->add_option("--top", options->top, "Candidates in the table, 0 for all (default 20)")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}));
   command
       ->add_option("--workers", options->workers,
                    "Threads that share the work; the answer is the same (default 1)")
@@ -147,15 +158,30 @@ void add_rank(CLI::App& app, Action& action) {
   command->add_option("--policy", options->policy, policy_help());
   command->add_option("--depth", options->depth,
                       "Distribution depth at which trees are cut, 1 to 16, or auto (default)");
-  command->add_option("--damage", options->damage_folder,
-                      "Folder for GLB, PLY and PNG of the bodies with their damage in red");
-  command->add_option("--report", options->report,
-                      "HTML page with table, plans, parts and a 3-D view of both bodies");
-  command->add_option("--damage-top", options->damage_top,
-                      "Colliding candidates written there, best first, 0 for all (default 5)");
+  // An unset variable of a script must not lose the answer, and a folder is no stream.
+  const CLI::Validator named(
+      [](const std::string& text) {
+        return text.empty() || text == "-" ? "'" + text + "' names no folder" : std::string();
+      },
+      "FOLDER", "named");
+  command
+      ->add_option("--damage", options->damage_folder,
+                   "Folder for GLB, PLY and PNG of the bodies with their damage in red")
+      ->check(named);
+  command
+      ->add_option("--report", options->report,
+                   "HTML page with table, plans, parts and a 3-D view of both bodies")
+      ->check([](const std::string& text) {
+        return text.empty() ? std::string("names no file") : std::string();
+      });
+  command
+      ->add_option("--damage-top", options->damage_top,
+                   "Colliding candidates written there, best first, 0 for all (default 5)")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}));
   command
       ->add_option("--allow", options->allowed_folders,
                    "Another folder that meshes may be read from; may be repeated")
+      ->check(CLI::ExistingDirectory)
       ->type_size(1)
       ->allow_extra_args(false);
   options->tree.add_to(*command);

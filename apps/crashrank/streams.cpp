@@ -38,7 +38,8 @@ template <class Take> Status read_pieces(const std::string& path, std::size_t li
   }
   const File file(is_standard(path) ? stdin : std::fopen(path.c_str(), "rb"));
   if (!file) {
-    return file_error(ErrorCode::not_found, path, std::string("cannot open: ") + strerror(errno));
+    return file_error(ErrorCode::not_found, path, std::string("cannot open: ") + strerror(errno),
+                      "check the path");
   }
   std::string piece(std::size_t{1} << 16U, '\0');
   std::size_t total = 0;
@@ -113,7 +114,8 @@ Result<OutputFile> OutputFile::open(const std::string& path, bool follow_links) 
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | links, 0666);
   if (descriptor >= 0) out.file_.reset(fdopen(descriptor, "wb"));
   if (!out.file_) {
-    return file_error(ErrorCode::not_found, path, std::string("cannot write: ") + strerror(errno));
+    return file_error(ErrorCode::not_found, path, std::string("cannot write: ") + strerror(errno),
+                      "name a file in a folder that can be written to");
   }
   return out;
 }

@@ -36,6 +36,17 @@ inline double point_acceleration(const MotionBound& bound, double radius) {
          (bound.angular_radps * bound.angular_radps + bound.angular_radps2) * radius;
 }
 
+/// No chain of operations from a motion's parameters to a carried corner is longer than 64, and
+/// none of its terms exceeds this, so that 64 u of it bounds their rounding. A position is its
+/// start and a way that may cancel: the start is at most as far as the present place and the way
+/// together. An angle of w·t radians is off by up to u·w·t, and moves a corner by that times its
+/// radius.
+inline double term_bound(const Motion& motion, const Pose& pose, double radius, double t) {
+  const MotionBound past = motion.bound(0.0, t);
+  return pose.translation.cwiseAbs().sum() + 4.0 * past.speed_mps * t +
+         (1.0 + past.angular_radps * t) * radius;
+}
+
 inline RelativeState relative_state(const Motion& motion_a, const Motion& motion_b,
                                     const Radii& radii, double t, double until) {
   RelativeState s;
@@ -53,10 +64,8 @@ inline RelativeState relative_state(const Motion& motion_a, const Motion& motion
   s.omega_b = rotate(back, vb.angular_radps);
   s.acceleration = point_acceleration(motion_a.bound(t, s.horizon), radii.a) +
                    point_acceleration(motion_b.bound(t, s.horizon), radii.b);
-  // No chain of operations from a motion's parameters to a carried corner is longer than 64, and
-  // none of its terms exceeds the sum of the world coordinates and radii: 64 u of that.
-  s.margin = 0x1p-47 * (s.a_in_world.translation.cwiseAbs().sum() +
-                        b_in_world.translation.cwiseAbs().sum() + radii.a + radii.b);
+  s.margin = 0x1p-47 * (term_bound(motion_a, s.a_in_world, radii.a, t) +
+                        term_bound(motion_b, b_in_world, radii.b, t));
   return s;
 }
 

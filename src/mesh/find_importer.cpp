@@ -25,7 +25,7 @@ Result<std::string> insist(const std::string& path, const std::string& named_by)
 
 }  // namespace
 
-Result<std::string> find_importer(const std::string& chosen) {
+Result<std::string> find_importer(const std::string& chosen, const std::string& of_package) {
   if (!chosen.empty()) return insist(chosen, "the caller");
   // A program with raised privileges must not let its caller choose what it runs.
   const char* from_environment = ::secure_getenv("CRASHRANK_IMPORTER");
@@ -40,6 +40,7 @@ Result<std::string> find_importer(const std::string& chosen) {
       if (runnable(path)) return path;
     }
   }
+  if (runnable(of_package)) return of_package;
   std::string installed = std::string(CRASHRANK_IMPORTER_DIR) + "/" + program;
   if (runnable(installed)) return installed;
   return make_error(ErrorCode::internal,

@@ -64,7 +64,8 @@ Result<MeshFile> open_mesh(const std::string& path, const ImportLimits& limits) 
       0};
   if (!file.descriptor.valid()) {
     return make_error(ErrorCode::not_found,
-                      "cannot open it: " + std::generic_category().message(errno));
+                      "cannot open it: " + std::generic_category().message(errno),
+                      "check the path");
   }
   struct stat status {};
   if (::fstat(file.descriptor.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
@@ -140,7 +141,9 @@ Status check_surface(const TriangleMesh& mesh, const MeshQuality& quality) {
                       "export the mesh again");
   }
   const double largest = quality.extent_m.maxCoeff();
-  if (!(largest >= min_extent_m && largest <= max_extent_m)) {
+  // Coordinates were rounded to float32, the extent with them.
+  constexpr double rounding = 1e-6;
+  if (!(largest >= min_extent_m * (1.0 - rounding) && largest <= max_extent_m * (1.0 + rounding))) {
     return make_error(
         ErrorCode::bad_input,
         "its largest extent is " + number(largest) + " m, outside the range of 1e-6 to 1e6 m",
@@ -155,7 +158,8 @@ Result<ImportedMesh> import_file(const std::string& path, const ImportOptions& o
   if (!extension) return extension.error();
   const Result<MeshFile> file = open_mesh(path, options.limits);
   if (!file) return file.error();
-  const Result<std::string> importer = detail::find_importer(options.importer);
+  const Result<std::string> importer =
+      detail::find_importer(options.importer, options.package_importer);
   if (!importer) return importer.error();
 
   const ImportLimits& limits = options.limits;

@@ -89,6 +89,9 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
 }  // namespace
 
 Result<json> parse_json(const std::string& text) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    return make_error(ErrorCode::bad_input, "is empty", "give a scenario in JSON");
+  }
   Watcher watcher;
   const auto callback = [&watcher](int, json::parse_event_t event, json& parsed) {
     watcher.see(event, parsed);
@@ -102,8 +105,9 @@ Result<json> parse_json(const std::string& text) {
     return Error{ErrorCode::bad_input,
                  {},
                  line_and_column(text, error.byte),
-                 "this is not JSON",
-                 "mend the text there; JSON has neither comments nor trailing commas"};
+                 error.byte > text.size() ? "the text ends too early" : "this is not JSON",
+                 "mend the text there or just before; JSON has neither comments nor trailing "
+                 "commas, NaN nor Infinity"};
   } catch (const json::exception&) {
     return Error{
         ErrorCode::bad_input, {}, {}, "a number is too large", "keep to the ranges stated"};

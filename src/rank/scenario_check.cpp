@@ -81,7 +81,12 @@ void check_candidates(const Scenario& scenario, Check& check) {
                   max_yaw_rate_radps);
     check.poses(path + ".poses", candidate.poses);
   }
-  if (!scenario.grid) return;
+  if (!scenario.grid) {
+    if (scenario.listed.empty() && !scenario.add_straight_braking) {
+      check.refuse("candidates", "leaves no manoeuvre to rank; list one, or let the grid be made");
+    }
+    return;
+  }
   const CandidateGrid& grid = *scenario.grid;
   if (grid.accelerations < 1 || grid.accelerations > limits::grid_side || grid.steerings < 1 ||
       grid.steerings > limits::grid_side) {

@@ -19,12 +19,19 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return end == folder.end() || (std::next(end) == folder.end() && end->empty());
 }
 
+// In a folder where everybody may write, a marker says nothing about what its owner wants.
+bool anybody_writes(const fs::path& folder) {
+  std::error_code error;
+  const fs::perms permissions = fs::status(folder, error).permissions();
+  return error || (permissions & fs::perms::others_write) != fs::perms::none;
+}
+
 // The folder that owns a scenario's files: the nearest one, itself or above, that says so, or else
 // its own.
 fs::path owning_folder(const fs::path& folder) {
   std::error_code ignored;
   for (fs::path at = folder;; at = at.parent_path()) {
-    if (fs::exists(at / root_marker, ignored)) return at;
+    if (fs::exists(at / root_marker, ignored) && !anybody_writes(at)) return at;
     if (at == at.parent_path()) return folder;
   }
 }

@@ -78,7 +78,7 @@ BodyKind read_kind(const JsonObject& object) {
     if (text == body_kind_name(kind)) return kind;
     known += (known.empty() ? "" : ", ") + std::string(body_kind_name(kind));
   }
-  object.refuse("kind", "is not a kind of body", "choose one of " + known);
+  object.refuse("kind", "'" + text + "' is not a kind of body", "choose one of " + known);
   return BodyKind::car;
 }
 
@@ -94,7 +94,7 @@ Axis read_axis(const JsonObject& object, const char* key, Axis otherwise) {
   for (const auto& [name, axis] : axes) {
     if (text == name) return axis;
   }
-  object.refuse(key, "is not an axis", "choose one of +x, -x, +y, -y, +z, -z");
+  object.refuse(key, "'" + text + "' is not an axis", "choose one of +x, -x, +y, -y, +z, -z");
   return otherwise;
 }
 
@@ -137,7 +137,7 @@ std::size_t read_model_name(const JsonObject& object, const std::vector<Scenario
     if (models[i].name == name) return i;
     if (i < 10) known += (known.empty() ? "" : ", ") + models[i].name;
   }
-  object.refuse("model", "is not among the models", "the models are " + known);
+  object.refuse("model", "'" + name + "' is not among the models", "the models are " + known);
   return 0;
 }
 

@@ -173,4 +173,13 @@ double azimuth_of_damage_deg(const PictureBody& body) {
   return std::atan2(sum.y(), sum.x()) / static_cast<double>(radians);
 }
 
+std::size_t count_damage(const Image& image) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    const int red = image.rgb[i];
+    if (red > 70 && red > 3 * image.rgb[i + 1] && red > 3 * image.rgb[i + 2]) ++count;
+  }
+  return count;
+}
+
 }  // namespace crashrank

@@ -72,8 +72,9 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
   for (std::size_t place = 0; place < shown; ++place) {
     table.add_row(cells(scenario, models, result, place));
   }
-  std::string text = fmt::format("{}: {} candidates, {} others on the road\n\n",
-                                 escape_terminal(scenario.name), all, scenario.actors.size());
+  std::string text = fmt::format("{}: {} candidate{}, {} other{} on the road\n\n",
+                                 escape_terminal(scenario.name), all, all == 1 ? "" : "s",
+                                 scenario.actors.size(), scenario.actors.size() == 1 ? "" : "s");
   text += table.text(options.colours);
   if (shown < all) {
     text += fmt::format("... and {} more, up to {} {}\n", all - shown,

@@ -28,12 +28,24 @@ TEST(Usage, HelpAndVersionAreData) {
   }
 }
 
+TEST(Usage, AWrongCommandIsNamedBesideTheRightOnes) {
+  const Workplace place;
+  const Outcome run = place.crashrank({"rnak", "scenario.json"});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.err.find("no command 'rnak'"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("rank"), std::string::npos) << run.err;
+}
+
 TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
   const Workplace place;
   place.write("a.obj", cli_test::box_obj("a", 0, 0, 0, 1, 1, 1));
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
            {},
            {"fly"},
+           {"rank", "s.json", "--damage", ""},
+           {"rank", "s.json", "--damage", "-"},
+           {"rank", "s.json", "--top", "-1"},
+           {"rank", "s.json", "--allow", "no-such-folder"},
            {"inspect"},
            {"inspect", "a.obj", "--nonsense"},
            {"inspect", "a.obj", "--scale", "0"},

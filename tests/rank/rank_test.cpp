@@ -70,6 +70,16 @@ TEST(Rank, ABoxMeetsAWallAfterDistanceOverSpeed) {
   EXPECT_EQ(&stop, &result.ranking.front());
 }
 
+TEST(Rank, AScenarioThatLeavesNoManoeuvreIsRefused) {
+  Scene scene = car_and_wall();
+  scene.scenario.grid.reset();
+  scene.scenario.add_straight_braking = false;
+  const Result<RankResult> ranked = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(ranked.ok());
+  EXPECT_EQ(ranked.error().code, ErrorCode::bad_input);
+  EXPECT_EQ(ranked.error().place, "candidates");
+}
+
 TEST(Rank, ClosingEnergyUsesTheReducedMass) {
   for (const double other_kg : {75.0, 1500.0, 40000.0}) {
     Scene scene = car_and_wall(other_kg);

@@ -55,6 +55,14 @@ TEST_F(ScenarioPathsTest, AMarkedFolderAboveWidensIt) {
   EXPECT_FALSE(reaches("../../project-2/car.obj"));
 }
 
+TEST_F(ScenarioPathsTest, AMarkWhereEverybodyMayWriteIsNobodysWord) {
+  std::ofstream(top_ / "project/crashrank.root");
+  fs::permissions(top_ / "project", fs::perms::others_write, fs::perm_options::add);
+  EXPECT_FALSE(reaches("../models/car.obj"));
+  fs::permissions(top_ / "project", fs::perms::others_write, fs::perm_options::remove);
+  EXPECT_TRUE(reaches("../models/car.obj"));
+}
+
 TEST_F(ScenarioPathsTest, TheCallerWidensItToo) {
   EXPECT_TRUE(reaches("../models/car.obj", {{(top_ / "project/models").string()}}));
   EXPECT_TRUE(reaches("../models/car.obj", {{(top_ / "project/models").string() + "/"}}));

@@ -157,7 +157,10 @@ TEST(Scenario, ListedCandidatesReplaceTheGrid) {
 
 TEST(Scenario, TextThatIsNoJsonNamesLineAndColumn) {
   EXPECT_EQ(error_of("{\n  \"a\": }").place, "line 2, column 8");
-  EXPECT_EQ(error_of("").place, "line 1, column 1");
+  EXPECT_EQ(error_of("").reason, "is empty");
+  EXPECT_EQ(error_of(" \n").reason, "is empty");
+  EXPECT_EQ(error_of("{\"a\": 1").reason, "the text ends too early");
+  EXPECT_EQ(error_of("{\"a\": NaN}").place, "line 1, column 7");
   EXPECT_EQ(error_of("{} x").place, "line 1, column 4");
   EXPECT_EQ(error_of("{\"a\": 1,}").place, "line 1, column 9");
   EXPECT_EQ(error_of("{// no\n}").place, "line 1, column 2");

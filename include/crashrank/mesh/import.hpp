@@ -12,6 +12,11 @@
 
 namespace crashrank {
 
+/// Where the package found by CMake keeps crashrank-import; find_package sets it.
+#ifndef CRASHRANK_PACKAGE_IMPORTER
+#define CRASHRANK_PACKAGE_IMPORTER ""
+#endif
+
 /// Bounds on what a stranger's file may cost.
 struct ImportLimits {
   std::size_t file_bytes = std::size_t{512} << 20;    ///< of the mesh, and of each file it names
@@ -31,6 +36,7 @@ struct ImportOptions {
   ImportTransform transform;
   ImportLimits limits;
   std::string importer;  ///< path of the crashrank-import program; empty: found as told below
+  std::string package_importer = CRASHRANK_PACKAGE_IMPORTER;  ///< one more place to look
 };
 
 /// A mesh with what had to be said about its file.
@@ -58,7 +64,8 @@ struct ImportedMesh {
 /// The parser runs in a process of its own, with the limits above, and opens no file outside the
 /// mesh's folder; what comes back is checked before it is believed. That program, crashrank-import,
 /// is `options.importer`, else the environment's CRASHRANK_IMPORTER, else the one beside the
-/// running executable, else the installed one.
+/// running executable, else `options.package_importer`, else the one at the prefix that crashrank
+/// was configured for.
 ///
 /// Blocks until that process has ended. Safe from any thread.
 /// Errors: usage (transform), not_found, bad_input, limit_exceeded; internal when the importer

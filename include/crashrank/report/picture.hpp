@@ -6,6 +6,7 @@
 #include "crashrank/base/view.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -51,6 +52,9 @@ CRASHRANK_API Result<Image> draw_picture(View<const PictureBody> bodies,
 /// middle, as an azimuth in world axes; 0 without damage. A camera 30 to 60 degrees beside it
 /// shows the damage and the body's length.
 CRASHRANK_API double azimuth_of_damage_deg(const PictureBody& body);
+
+/// Pixels in the colour of damage, however shaded: tells how much of it a view shows.
+CRASHRANK_API std::size_t count_damage(const Image& image);
 
 /// The image as a PNG file's bytes. Errors: internal when libpng fails.
 CRASHRANK_API Result<std::string> png(const Image& image);

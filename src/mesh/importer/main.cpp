@@ -29,11 +29,7 @@ bool answer(const crashrank::importer::Request& request) {
     if (!parsed) return importer::send(parsed.error());
     return importer::send(parsed->mesh, parsed->dropped_triangles, parsed->warnings);
   } catch (const std::bad_alloc&) {
-    return importer::send(
-        make_error(ErrorCode::limit_exceeded,
-                   "reading it takes more than " + std::to_string(request.memory_bytes >> 20) +
-                       " MiB of memory",
-                   "the file is damaged or too large; simplify it or raise the limit"));
+    return importer::send(importer::out_of_memory(request));
   } catch (const std::exception& failure) {
     return importer::send(make_error(ErrorCode::bad_input, failure.what(), "export it again"));
   }

@@ -106,10 +106,7 @@ void undo_axis_change(aiScene& scene, const Request& request) {
 
 Error parser_error(const std::string& text, const FolderIo& files, const Request& request) {
   if (text.find("bad_alloc") != std::string::npos || text.find("memory") != std::string::npos) {
-    return make_error(ErrorCode::limit_exceeded,
-                      "reading it takes more than " + std::to_string(request.memory_bytes >> 20) +
-                          " MiB of memory",
-                      "the file is damaged or too large");
+    return out_of_memory(request);
   }
   Error error = make_error(ErrorCode::bad_input, text.empty() ? "the parser gave up" : text,
                            "export the file again");

@@ -85,4 +85,12 @@ Result<Request> parse_request(const std::vector<std::string>& words) {
   return request;
 }
 
+Error out_of_memory(const Request& request) {
+  return make_error(
+      ErrorCode::limit_exceeded,
+      "reading it takes more memory than it may: " + std::to_string(request.memory_bytes >> 20U) +
+          " MiB, or less where the system sets a limit",
+      "simplify it if it is large; otherwise it is damaged");
+}
+
 }  // namespace crashrank::importer

@@ -23,6 +23,10 @@ struct Request {
   ImportTransform transform;
 };
 
+/// The error of a file that needs more memory than there is. The process may have been started
+/// under a tighter limit than the one it was asked to keep.
+Error out_of_memory(const Request& request);
+
 /// Errors: usage, naming the word that is missing or wrong.
 Result<Request> parse_request(const std::vector<std::string>& words);
 
