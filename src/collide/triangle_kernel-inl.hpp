@@ -28,7 +28,8 @@ struct alignas(64) Prepared {
   float low[3][8];        // box, widened by what rounding may have moved it, in A's frame
   float high[3][8];
   float place[3];
-  float error;  // m, a relative corner of B against the coordinates that `carry` gives
+  float error;   // m, a relative corner of B against the coordinates that `carry` gives
+  float around;  // m, how far apart corners of touching boxes may be beyond their triangles' sizes
   std::uint32_t size;
   const TriangleCluster* source;
 };
@@ -112,6 +113,7 @@ HWY_INLINE void prepare_b(const WideQuery& query, const WideNode& node, std::siz
   // Adding the place back rounds once more.
   const F8 slack = all(p.error + 0x1p-23F * (farthest + diagonal));
   const V8 widen{slack, slack, slack};
+  p.around = p.error + 0x1p-23F * (farthest + diagonal) + 3.0F * p.error;
   const V8 to = all3(p.place);
   const V8 low = minimum(corner[0], minimum(corner[1], corner[2]));
   const V8 high = maximum(corner[0], maximum(corner[1], corner[2]));
@@ -169,10 +171,12 @@ inline bool decide(const WideQuery& query, const TriangleCluster& a, std::size_t
 /// `unsure`, of those that floats cannot decide.
 ///
 /// Bounds. u = 2^-24; e the error of B's relative corners, at least 12·u·s with s its cluster's
-/// diagonal; la, lb the triangles' extents; Q = la + lb + 4·e bounds every coordinate of a
-/// difference of their corners, because their boxes overlap; N the normals; P the sum of the sizes
-/// of the six products that a normal is made of; c what `carry` may be off the real motion; k the
-/// pose's skew, the largest row sum of |RᵀR − 1|.
+/// diagonal; la, lb the triangles' extents; Q = la + lb + around bounds every coordinate of a
+/// difference of their corners, because their boxes overlap: A's box is exact, B's is widened by
+/// its slack, which far from A's origin may be larger than the triangles, and its corners and its
+/// extent are off by e each; N the normals; P the sum of the sizes of the six products that a
+/// normal is made of; c what `carry` may be off the real motion; k the pose's skew, the largest row
+/// sum of |RᵀR − 1|.
 /// - A relative to B's place is rounded once: u·(s + Q). A corner difference w = b − a is then off
 ///   by e + u·(s + Q) + u·Q ≤ 1.1·e + 2·u·Q. Its product with a normal is off by |N|₁ times that
 ///   and, from three roundings a term, by 3.1·u·|N|₁·Q: |N|₁·(1.1·e + 5.1·u·Q).
@@ -206,7 +210,7 @@ HWY_INLINE std::uint32_t test_pairs(const WideQuery& query, const Prepared& a, c
   const V8 b2 = pick3(pb, b.corner[6]);
   const F8 la = pa(a.edge);
   const F8 lb = pb(b.edge);
-  const F8 reach = la + lb + all(4.0F * b.error);
+  const F8 reach = la + lb + all(b.around);
   const F8 per_normal = mul_add(all(query.per_reach), reach, all(2.2F * b.error));
 
   const V8 na = pick3(pa, a.normal[0]);

@@ -10,6 +10,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -126,6 +127,43 @@ TEST(WideCollide, FarFromTheOriginAndOutOfFloatRange) {
     pose.translation.x() += offset;
     EXPECT_EQ(sorted_pairs(model(ma), model(mb), pose), brute_force(ma, mb, pose)) << offset;
   }
+}
+
+// Tiny triangles nearly in one plane, far away along another axis: there boxes are widened by more
+// than the triangles measure, and triangles that are apart by as much are tested.
+TEST(WideCollide, TinyTrianglesFarAlongOneAxis) {
+  constexpr std::uint64_t seed = 20261121;
+  Random random(seed);
+  std::size_t found = 0;
+  for (int n = 0; n < 400; ++n) {
+    const auto far = static_cast<float>(std::pow(10.0, random.uniform(3.0, 6.0)));
+    const double size = std::pow(10.0, random.uniform(-6.0, -2.0));
+    const bool own_coordinates = random.below(2) == 0;
+    const auto flat = [&](float x) {
+      TriangleMesh mesh;
+      for (std::uint32_t i = 0; i < 90; ++i) {
+        Eigen::Vector3f corner = random.point(size);
+        corner.x() = x;
+        if (random.below(4) == 0) corner.x() = std::nextafter(x, 2.0F * far);
+        mesh.vertices.push_back(corner);
+        if (i % 3 == 2) mesh.triangles.push_back({i - 2, i - 1, i});
+      }
+      mesh.parts.push_back({"flat", 0, 30});
+      return mesh;
+    };
+    const TriangleMesh ma = flat(far);
+    const TriangleMesh mb = flat(own_coordinates ? far : 0.0F);
+    Pose pose;
+    if (!own_coordinates) pose.translation.x() = far;
+    const double slack = 0x1p-23 * far;
+    pose.translation.y() = random.uniform(-1.0, 1.0) * (random.below(2) == 0 ? slack : size);
+    if (random.below(2) == 0) pose.translation.x() += random.uniform(-1.0, 1.0) * size;
+    const std::vector<Pair> expected = brute_force(ma, mb, pose);
+    found += expected.size();
+    ASSERT_EQ(sorted_pairs(model(ma), model(mb), pose), expected)
+        << "seed " << seed << " case " << n;
+  }
+  EXPECT_GT(found, 1000U);
 }
 
 TEST(WideCollide, AnyFindsAPairWhereThereIsOne) {
