@@ -13,8 +13,8 @@ namespace crashrank {
 
 namespace {
 
-double lower_quartile(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+double low_quantile(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
@@ -57,9 +57,9 @@ Status measure_waking(WorkerPool& pool, VirtualMachine& machine) {
     main_wake.push_back(std::max(0.0, back - times.ended));
   }
   if (!send.empty()) {
-    machine.send_s = lower_quartile(send);
-    machine.wake_s = lower_quartile(wake);
-    machine.main_wake_s = lower_quartile(main_wake);
+    machine.send_s = low_quantile(send);
+    machine.wake_s = low_quantile(wake);
+    machine.main_wake_s = low_quantile(main_wake);
     machine.spin_s = pool.spin_seconds();
   }
   return pool.take_failure();

@@ -39,7 +39,7 @@ struct VirtualMachine {
 };
 
 /// Measures what waking threads costs on this machine, on an idle pool of at least one worker: the
-/// lower quartiles of 200 tries, since other programs only ever add; about 0.1 s. Fills the pool's
+/// 5 % quantiles of 200 tries, since other programs only ever add; about 0.1 s. Fills the pool's
 /// side of `machine` (spin, send and wake times). Errors as `WorkerPool::take_failure`.
 CRASHRANK_API Status measure_waking(WorkerPool& pool, VirtualMachine& machine);
 
