@@ -196,8 +196,7 @@ private:
     for (std::size_t i = 0; i < queries.size(); ++i) {
       const Measured& measured = queries[i];
       const double seconds = median(measured.seconds);
-      const Serial& alone = serial_[level][i];
-      const double serial = median(alone.seconds);
+      const double serial = median(serial_[level][i].seconds);
       row.jobs += share * measured.jobs;
       row.seconds += share * seconds;
       row.serial_seconds += share * serial;
@@ -218,13 +217,25 @@ private:
       if (!replayed) return replayed.error();
       if (replayed->end != DispatchEnd::ok) row.end = replayed->end;
       row.replayed_seconds += share * replayed->seconds;
-      // Recorded times are the smallest of all turns, so the serial time beside them is too.
-      row.replayed_speedup += share *
-                              std::accumulate(alone.smallest.begin(), alone.smallest.end(), 0.0) /
-                              replayed->seconds;
+      // Recorded times are the smallest of all turns, so the serial time beside them is too, of
+      // the turns at all depths, since it does not depend on them.
+      row.replayed_speedup += share * smallest_serial(i) / replayed->seconds;
       row.replayed_relative_transfer += share * replayed->relative_transfer;
     }
     return row;
+  }
+
+  /// Sum of the smallest times of the queries that are dispatched together.
+  double smallest_serial(std::size_t i) const {
+    double sum = 0.0;
+    for (std::size_t q = 0; q < asked_[i].size(); ++q) {
+      double smallest = std::numeric_limits<double>::infinity();
+      for (const std::vector<Serial>& level : serial_) {
+        smallest = std::min(smallest, level[i].smallest[q]);
+      }
+      sum += smallest;
+    }
+    return sum;
   }
 
   const SweepOptions& options_;
