@@ -23,6 +23,7 @@ namespace {
 struct Options {
   std::string scenario;
   std::string measure;
+  std::string risk_model;
   std::string damage_folder;
   std::size_t damage_top = 5;
   std::string report;
@@ -90,6 +91,11 @@ int run(const Options& options) {
     if (!measure) return fail(measure.error());
     how.measure = *measure;
   }
+  if (!options.risk_model.empty()) {
+    const Result<RiskModel> model = risk_model_from_name(options.risk_model);
+    if (!model) return fail(model.error());
+    how.harm.model = *model;
+  }
   const Result<BuildOptions> build = options.tree.build_options();
   if (!build) return fail(build.error());
   const Result<Scenario> scenario = read_scenario(options);
@@ -146,8 +152,11 @@ void add_rank(CLI::App& app, Action& action) {
                    "Scenario file; - is standard input, its meshes then relative to this folder")
       ->required();
   command->add_option("--measure", options->measure,
-                      "What is compared: polygons, area or closing-energy (default: as the "
-                      "scenario says)");
+                      "What is compared: polygons, area, closing-energy, delta-v, energy, "
+                      "intrusion or harm (default: as the scenario says)");
+  command->add_option("--risk-model", options->risk_model,
+                      "Curves that harm is counted with: tum (default), malliaris-monfort, "
+                      "malliaris-rosen or joksch-monfort");
   command->add_flag("--json", options->json, "Answer in JSON, every candidate");
   command->add_option("--top", options->top, "Candidates in the table, 0 for all (default 20)")
       ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}));

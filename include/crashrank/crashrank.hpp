@@ -26,9 +26,12 @@
 
 #include "crashrank/dispatch/dispatcher.hpp"
 
+#include "crashrank/crash/injury.hpp"
 #include "crashrank/crash/motion.hpp"
+#include "crashrank/crash/severity.hpp"
 #include "crashrank/crash/time_of_impact.hpp"
 
+#include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/scenario.hpp"
 

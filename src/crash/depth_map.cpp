@@ -37,6 +37,7 @@ void draw(const Vector3d& a, const Vector3d& b, const Vector3d& c, DepthMap& map
   const Vector3d low = a.cwiseMin(b).cwiseMin(c);
   const Vector3d high = a.cwiseMax(b).cwiseMax(c);
   const Span columns = cells_between(low.y(), high.y(), grid.low_w_m, grid.cell_w_m, grid.columns);
+  if (columns.first >= columns.end) return;
   const Span rows = cells_between(low.z(), high.z(), grid.low_h_m, grid.cell_h_m, grid.rows);
   constexpr double rim = 1e-9;
   for (std::size_t row = rows.first; row < rows.end; ++row) {

@@ -79,19 +79,57 @@ struct Wrench {
   Vector2d pressed_at = Vector2d::Zero();  ///< times `pressing`
 };
 
+/// The two surfaces in each other's way, looked at once.
+struct Surfaces {
+  DepthMap map_a;
+  std::vector<Facet> facets;  ///< of B
+};
+
+Surfaces look(const PulseBody& a, const PulseBody& b, const ViewFrame& frame,
+              const PulseOptions& options) {
+  Surfaces surfaces;
+  Vector3d low_a;
+  Vector3d high_a;
+  Vector3d low_b;
+  Vector3d high_b;
+  view_bounds(*a.mesh, a.pose, frame, low_a, high_a);
+  view_bounds(*b.mesh, b.pose, frame, low_b, high_b);
+  const double low = std::max(low_a.z(), low_b.z());
+  const double high = std::min(high_a.z(), high_b.z());
+  if (!(low < high)) return surfaces;
+  constexpr double aside = 0.5;  // how far B may come in from the side
+  const double rim = options.cell_w_m;
+  const double left = std::max(low_b.y() - rim, low_a.y() - aside);
+  const double right = std::min(high_b.y() + rim, high_a.y() + aside);
+  if (!(left < right)) return surfaces;
+  const ViewGrid grid_a =
+      grid_over({low_a.y(), low}, {high_a.y(), high}, options.cell_w_m, options.cell_h_m);
+  ViewGrid grid_b = grid_over({left, low}, {right, high}, options.cell_w_m, options.cell_h_m);
+  // Rows have to be the same.
+  grid_b.rows = grid_a.rows;
+  grid_b.cell_h_m = grid_a.cell_h_m;
+  surfaces.map_a = depth_map(*a.mesh, a.pose, frame, grid_a);
+  const DepthMap map_b = depth_map(*b.mesh, b.pose, frame, grid_b);
+  surfaces.facets = detail::facets_of(map_b, low_b.x() + (high_a.x() - low_a.x()));
+  return surfaces;
+}
+
 class Pulse {
 public:
-  Pulse(const PulseBody& a, const PulseBody& b, const ViewFrame& frame, const PulseOptions& options)
+  Pulse(const PulseBody& a, const PulseBody& b, const ViewFrame& frame, const Surfaces& surfaces,
+        const PulseVariant& variant, const PulseOptions& options)
       : options_(options),
+        variant_(variant),
         frame_(frame),
         body_a_(a),
         body_b_(b),
         a_(make_planar(a.rigid, frame)),
         b_(make_planar(b.rigid, frame)),
         material_a_(a, frame),
-        material_b_(b, frame) {
-    look();
-  }
+        material_b_(b, frame),
+        map_a_(surfaces.map_a),
+        facets_(surfaces.facets),
+        crushed_(surfaces.map_a.grid.size(), 0.0) {}
 
   PulseResult run() {
     if (facets_.empty()) return result_;
@@ -116,33 +154,6 @@ public:
   }
 
 private:
-  void look() {
-    Vector3d low_a;
-    Vector3d high_a;
-    Vector3d low_b;
-    Vector3d high_b;
-    view_bounds(*body_a_.mesh, body_a_.pose, frame_, low_a, high_a);
-    view_bounds(*body_b_.mesh, body_b_.pose, frame_, low_b, high_b);
-    const double low = std::max(low_a.z(), low_b.z());
-    const double high = std::min(high_a.z(), high_b.z());
-    if (!(low < high)) return;
-    constexpr double aside = 0.5;  // how far B may come in from the side
-    const double rim = options_.cell_w_m;
-    const double left = std::max(low_b.y() - rim, low_a.y() - aside);
-    const double right = std::min(high_b.y() + rim, high_a.y() + aside);
-    if (!(left < right)) return;
-    const ViewGrid grid_a =
-        grid_over({low_a.y(), low}, {high_a.y(), high}, options_.cell_w_m, options_.cell_h_m);
-    ViewGrid grid_b = grid_over({left, low}, {right, high}, options_.cell_w_m, options_.cell_h_m);
-    // Rows have to be the same.
-    grid_b.rows = grid_a.rows;
-    grid_b.cell_h_m = grid_a.cell_h_m;
-    map_a_ = depth_map(*body_a_.mesh, body_a_.pose, frame_, grid_a);
-    const DepthMap map_b = depth_map(*body_b_.mesh, body_b_.pose, frame_, grid_b);
-    facets_ = detail::facets_of(map_b, low_b.x() + (high_a.x() - low_a.x()));
-    crushed_.assign(grid_a.size(), 0.0);
-  }
-
   /// The cell of A in front of a point and how deep the point lies in it; false where A is not.
   bool find(const Vector2d& in_a, std::size_t row, std::size_t& cell, double& depth) const {
     const ViewGrid& grid = map_a_.grid;
@@ -175,10 +186,11 @@ private:
       const CrushPressure law_a = material_a_.law(ahead, height, n_a);
       const CrushPressure law_b =
           material_b_.law(facet.point - (0.5 * depth) * facet.normal, height, -facet.normal);
-      const double pressure = share_crush(law_a, law_b, depth * along).pressure_pa;
+      const double pressure =
+          variant_.strength * share_crush(law_a, law_b, depth * along).pressure_pa;
       const double push = pressure * facet.area_m2 * std::min(1.0, advance / even_mps);
       const Vector2d across = slip - advance * n;
-      const Vector2d drag = options_.friction * push / std::max(across.norm(), even_mps) * across;
+      const Vector2d drag = variant_.friction * push / std::max(across.norm(), even_mps) * across;
       const Vector2d force = push * n + drag;
       sum.on_a += force;
       sum.moment_a += cross(at - a_.center, force);
@@ -254,16 +266,17 @@ private:
     result_.dissipated_j = std::max(0.0, -(result_.a.energy_change_j + result_.b.energy_change_j));
   }
 
-  PulseOptions options_;
-  ViewFrame frame_;
+  const PulseOptions& options_;
+  PulseVariant variant_;
+  const ViewFrame& frame_;
   const PulseBody& body_a_;
   const PulseBody& body_b_;
   Planar a_;
   Planar b_;
   Material material_a_;
   Material material_b_;
-  DepthMap map_a_;
-  std::vector<Facet> facets_;
+  const DepthMap& map_a_;
+  const std::vector<Facet>& facets_;
   std::vector<double> crushed_;  ///< by cell of A: how deep it was pushed back
   Vector2d impulse_ = Vector2d::Zero();
   double pressed_ = 0.0;
@@ -275,13 +288,27 @@ private:
 
 }  // namespace
 
-PulseResult simulate_pulse(const PulseBody& a, const PulseBody& b, const Vector3d& point_m,
-                           const Vector3d& along, const PulseOptions& options) {
+std::vector<PulseResult> simulate_pulses(const PulseBody& a, const PulseBody& b,
+                                         const Vector3d& point_m, const Vector3d& along,
+                                         View<const PulseVariant> variants,
+                                         const PulseOptions& options) {
+  std::vector<PulseResult> results(variants.size());
   if (!(along.head<2>().norm() > 0.0) || (!a.rigid.movable() && !b.rigid.movable()) ||
       (a.strength.rigid && b.strength.rigid)) {
-    return {};
+    return results;
   }
-  return Pulse(a, b, view_along(along, point_m), options).run();
+  const ViewFrame frame = view_along(along, point_m);
+  const Surfaces surfaces = look(a, b, frame, options);
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    results[i] = Pulse(a, b, frame, surfaces, variants[i], options).run();
+  }
+  return results;
+}
+
+PulseResult simulate_pulse(const PulseBody& a, const PulseBody& b, const Vector3d& point_m,
+                           const Vector3d& along, const PulseOptions& options) {
+  const PulseVariant given{options.friction, 1.0};
+  return simulate_pulses(a, b, point_m, along, {&given, 1}, options).front();
 }
 
 }  // namespace crashrank

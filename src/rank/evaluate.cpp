@@ -1,5 +1,7 @@
 #include "rank/evaluate.hpp"
 
+#include "rank/contact_severity.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -123,10 +125,12 @@ Contact make_contact(const Scene& scene, const Motion& ego, const Scratch::Hit& 
   const Eigen::Vector3d closing =
       velocity_of_point(ego_velocity, ego_pose.translation, contact.point_m) -
       velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
+  contact.closing = closing;
   contact.closing_speed_mps = closing.norm();
   contact.normal_speed_mps = std::max(0.0, closing.dot(contact.normal));
   contact.closing_energy_j =
       closing_energy_j(scene.ego.mass_kg, other.mass_kg, contact.closing_speed_mps);
+  tell_severity(scene, ego, contact);
   return contact;
 }
 
@@ -175,6 +179,20 @@ double score_of(const CandidateResult& result, Measure measure) {
     case Measure::closing_energy:
       for (const Contact& contact : result.contacts) score += contact.closing_energy_j;
       break;
+    case Measure::delta_v:
+      for (const Contact& contact : result.contacts) score += contact.severity.ego.delta_v_mps;
+      break;
+    case Measure::energy:
+      for (const Contact& contact : result.contacts) score += contact.severity.dissipated_j;
+      break;
+    case Measure::intrusion:
+      for (const Contact& contact : result.contacts) {
+        score += contact.severity.ego.intrusion_m + contact.severity.other.intrusion_m;
+      }
+      break;
+    case Measure::harm:
+      for (const Contact& contact : result.contacts) score += contact.severity.harm;
+      break;
   }
   return score;
 }
@@ -196,6 +214,10 @@ double highest_score(const Scene& scene, const Motion& ego) {
     const MotionBound bound = motion.bound(0.0, end);
     return bound.speed_mps + bound.angular_radps * body.radius_m;
   };
+  const auto most_energy = [&](const Body& body, const Motion& motion) {
+    const double speed = top_speed(body, motion);
+    return std::isfinite(body.mass_kg) ? 0.5 * body.mass_kg * speed * speed : 0.0;
+  };
   double score = 0.0;
   switch (scene.measure) {
     case Measure::polygons:
@@ -211,6 +233,35 @@ double highest_score(const Scene& scene, const Motion& ego) {
         // The point of contact may lie as far from either origin as both bodies reach.
         const double speed = top_speed(scene.ego, ego) + top_speed(body, body.motion);
         score += closing_energy_j(scene.ego.mass_kg, body.mass_kg, 1.001 * speed);
+      }
+      break;
+    case Measure::delta_v:
+      // Without rebound nobody's speed changes by more than both had.
+      for (const Body& body : scene.actors) {
+        score += 2.0 * (top_speed(scene.ego, ego) + top_speed(body, body.motion));
+      }
+      break;
+    case Measure::energy:
+      for (const Body& body : scene.actors)
+        score += most_energy(body, body.motion) + most_energy(scene.ego, ego);
+      break;
+    case Measure::intrusion:
+      for (const Body& body : scene.actors) score += 2.0 * (body.radius_m + scene.ego.radius_m);
+      break;
+    case Measure::harm:
+      for (const Body& body : scene.actors) {
+        // Risk is 1 at most, and at such a speed it is as good as that.
+        constexpr double surely_mps = 1e3;
+        HarmExposure worst;
+        worst.delta_v_mps = surely_mps;
+        worst.closing_speed_mps = surely_mps;
+        worst.crush_energy_j = most_energy(body, body.motion) + most_energy(scene.ego, ego);
+        worst.kind = scene.ego.kind;
+        worst.ego = true;
+        score += harm_of(worst, scene.harm);
+        worst.kind = body.kind;
+        worst.ego = false;
+        score += harm_of(worst, scene.harm);
       }
       break;
   }
@@ -251,6 +302,13 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
   if (approach.decided) {
     result.score = score_of(result, scene.measure);
     result.score_interval = {*result.score, *result.score};
+    if (scene.measure == Measure::harm) {
+      result.score_interval = {};
+      for (const Contact& contact : result.contacts) {
+        result.score_interval.lowest += contact.severity.harm_interval.lowest;
+        result.score_interval.highest += contact.severity.harm_interval.highest;
+      }
+    }
   } else {
     result.score_interval = {0.0, highest_score(scene, candidate.motion)};
   }

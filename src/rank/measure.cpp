@@ -11,10 +11,14 @@ struct Entry {
   const char* unit;
 };
 
-constexpr std::array<Entry, 3> entries{{
+constexpr std::array<Entry, 7> entries{{
     {Measure::polygons, "polygons", "triangles"},
     {Measure::area, "area", "m2"},
     {Measure::closing_energy, "closing-energy", "J"},
+    {Measure::delta_v, "delta-v", "m/s"},
+    {Measure::energy, "energy", "J"},
+    {Measure::intrusion, "intrusion", "m"},
+    {Measure::harm, "harm", "persons"},
 }};
 
 const Entry& entry_of(Measure measure) noexcept {
@@ -29,6 +33,21 @@ const Entry& entry_of(Measure measure) noexcept {
 const char* measure_name(Measure measure) noexcept { return entry_of(measure).name; }
 
 const char* measure_unit(Measure measure) noexcept { return entry_of(measure).unit; }
+
+bool needs_crash(Measure measure) noexcept {
+  switch (measure) {
+    case Measure::delta_v:
+    case Measure::energy:
+    case Measure::intrusion:
+    case Measure::harm:
+      return true;
+    case Measure::polygons:
+    case Measure::area:
+    case Measure::closing_energy:
+      break;
+  }
+  return false;
+}
 
 Result<Measure> measure_from_name(const std::string& name) {
   std::string known;

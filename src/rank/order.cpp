@@ -6,9 +6,10 @@
 namespace crashrank::detail {
 
 bool ranks_before(const CandidateResult& a, const CandidateResult& b) {
-  if (a.score_interval.highest != b.score_interval.highest) {
-    return a.score_interval.highest < b.score_interval.highest;
-  }
+  // A score where it is known, the worst that may come where it is not.
+  const double worth_a = a.score.value_or(a.score_interval.highest);
+  const double worth_b = b.score.value_or(b.score_interval.highest);
+  if (worth_a != worth_b) return worth_a < worth_b;
   if (a.score.has_value() != b.score.has_value()) return a.score.has_value();
   if (a.collides != b.collides) return !a.collides;
   if (a.grazes.empty() != b.grazes.empty()) return a.grazes.empty();
@@ -32,7 +33,7 @@ void put_in_order(RankResult& result) {
   // in the race unless somebody's highest score is below their lowest.
   double lowest_high = std::numeric_limits<double>::infinity();
   for (const CandidateResult& c : ranking) {
-    lowest_high = std::min(lowest_high, c.score_interval.highest);
+    lowest_high = std::min(lowest_high, c.score.value_or(c.score_interval.highest));
   }
   bool winner_seen = false;
   for (const CandidateResult& c : ranking) {

@@ -21,6 +21,7 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   const Result<detail::Scene> scene = detail::make_scene(scenario, models, options, result);
   if (!scene) return scene.error();
   result.measure = scene->measure;
+  result.harm = options.harm;
   const double ego_length_m = models[result.ego.model].mesh.bounds().extent().x();
   Result<std::vector<Candidate>> candidates = make_candidates(scenario, ego_length_m);
   if (!candidates) return candidates.error();

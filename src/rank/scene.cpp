@@ -1,5 +1,7 @@
 #include "rank/scene.hpp"
 
+#include "rank/contact_severity.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -95,6 +97,8 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   Scene scene;
   scene.crush = scenario.crush;
   scene.measure = options.measure.value_or(scenario.measure);
+  scene.harm = options.harm;
+  scene.pulses = needs_crash(scene.measure);
   scene.impact = options.impact;
   scene.impact.start_is_apart = false;
   scene.ego_start = scenario.ego.pose;
@@ -112,6 +116,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
         "give the ego's model a mass"};
   }
   scene.ego = make_body(models[ego->model], ego->mass_kg, {});
+  prepare_body(scenario.models[ego->model], scene.ego);
 
   for (const ScenarioActor& actor : scenario.actors) {
     const Result<RankedBody> body = ranked_body(scenario, models, actor.model);
@@ -120,6 +125,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     if (!motion) return motion.error();
     result.actors.push_back(*body);
     scene.actors.push_back(make_body(models[body->model], body->mass_kg, std::move(*motion)));
+    prepare_body(scenario.models[body->model], scene.actors.back());
   }
 
   const double slices = std::clamp(std::ceil(scenario.horizon_s / slice_length_s), 1.0, max_slices);

@@ -4,7 +4,9 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/collide/broad_phase.hpp"
+#include "crashrank/crash/impulse.hpp"
 #include "crashrank/crash/motion.hpp"
+#include "crashrank/crash/strength.hpp"
 #include "crashrank/crash/time_of_impact.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/tree/model.hpp"
@@ -24,6 +26,11 @@ struct Body {
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
   double radius_m = 0.0;  ///< no point of the body is further from its origin
+  BodyKind kind = BodyKind::car;
+  /// As an even block of its box would have it.
+  MassProperties mass;
+  CrushStrength strength;
+  double leading_edge_m = 0.0;  ///< see crash/injury.hpp
 };
 
 /// A box in world coordinates that holds every point of the body at every time of [from, until],
@@ -43,6 +50,8 @@ struct Scene {
   std::vector<char> apart_at_start;
   Crush crush;
   Measure measure = Measure::polygons;
+  HarmOptions harm;
+  bool pulses = false;  ///< the measure needs the crash itself
   ImpactOptions impact;
   RankWork work;  ///< spent on preparing
 };

@@ -49,6 +49,61 @@ template <class T> Json both(T ego, T other) {
   return {{"ego", std::move(ego)}, {"other", std::move(other)}};
 }
 
+Json outcome_json(const BodyOutcome& o, bool simulated) {
+  constexpr double degrees = 180.0 / 3.14159265358979323846;
+  Json entry{{"delta_v_mps", o.delta_v_mps},
+             {"delta_v_x_mps", o.delta_v_x_mps},
+             {"delta_v_y_mps", o.delta_v_y_mps},
+             {"yaw_rate_change_dps", o.yaw_rate_change_radps * degrees},
+             {"pdof_deg", o.pdof_deg},
+             {"clock", o.clock}};
+  if (!simulated) return entry;
+  entry["crush_energy_j"] = o.crush_energy_j;
+  entry["ees_mps"] = o.ees_mps;
+  entry["crush_m"] = o.crush_m;
+  entry["intrusion_m"] = o.intrusion_m;
+  entry["cdc"] = o.cdc;
+  entry["harm"] = o.harm;
+  return entry;
+}
+
+Json severity_json(const ContactSeverity& s) {
+  Json entry{{"simulated", s.simulated},
+             {"slides", s.slides},
+             {"dissipated_j", s.dissipated_j},
+             {"ego", outcome_json(s.ego, s.simulated)},
+             {"other", outcome_json(s.other, s.simulated)}};
+  if (s.simulated) {
+    entry["duration_s"] = s.duration_s;
+    entry["harm"] = s.harm;
+    entry["harm_interval"] = Json::array({s.harm_interval.lowest, s.harm_interval.highest});
+  }
+  return entry;
+}
+
+Json harm_json(const HarmOptions& harm) {
+  const HarmWeights& w = harm.weights;
+  const HarmRanges& r = harm.ranges;
+  return {{"risk_model", risk_model_name(harm.model)},
+          {"outcome", risk_outcome(harm.model)},
+          {"friction", harm.friction},
+          {"weights",
+           {{"ego_occupant", w.ego_occupant},
+            {"other_occupant", w.other_occupant},
+            {"pedestrian", w.pedestrian},
+            {"cyclist", w.cyclist},
+            {"motorcyclist", w.motorcyclist},
+            {"property_per_mj", w.property_per_mj},
+            {"people_in_ego", w.people_in_ego},
+            {"people_in_car", w.people_in_car},
+            {"people_in_truck", w.people_in_truck},
+            {"people_in_bus", w.people_in_bus}}},
+          {"ranges",
+           {{"friction", Json::array({r.least_friction, r.most_friction})},
+            {"strength", Json::array({r.least_strength, r.most_strength})},
+            {"restitution", Json::array({0.0, r.most_restitution})}}}};
+}
+
 void add_damage(Json& entry, const DamageSummary& ego, const DamageSummary& other) {
   entry["damaged_triangles"] = both(ego.triangles, other.triangles);
   entry["damaged_area_m2"] = both(ego.area_m2, other.area_m2);
@@ -74,6 +129,7 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
              {"crush_s", contact.crush_s},
              {"crush_m", contact.crush_m},
              {"region_m", both(region(contact.ego.region), region(contact.other.region))}};
+  entry["severity"] = severity_json(contact.severity);
   add_damage(
       entry, detail::summary_of(contact.ego, models[scenario.ego.model].mesh),
       detail::summary_of(contact.other, detail::mesh_of_actor(scenario, models, contact.actor)));
@@ -101,12 +157,17 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
              {"contacts", std::move(contacts)},
              {"other", nullptr},
              {"time_of_impact_s", nullptr},
-             {"closing_speed_mps", nullptr}};
+             {"closing_speed_mps", nullptr},
+             {"delta_v_mps", nullptr},
+             {"pdof_deg", nullptr}};
   if (!ranked.contacts.empty()) {
     const Contact& first = ranked.contacts.front();
     entry["other"] = scenario.actors[first.actor].name;
     entry["time_of_impact_s"] = first.time_of_impact_s;
     entry["closing_speed_mps"] = first.closing_speed_mps;
+    const ContactSeverity& crash = first.severity;
+    entry["delta_v_mps"] = both(crash.ego.delta_v_mps, crash.other.delta_v_mps);
+    entry["pdof_deg"] = both(crash.ego.pdof_deg, crash.other.pdof_deg);
   }
   add_damage(entry, detail::summary_of(ranked.ego, models[scenario.ego.model].mesh),
              detail::summary_of_others(scenario, models, ranked));
@@ -145,6 +206,7 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
   const Json document{{"scenario", scenario.name},
                       {"measure", measure_name(result.measure)},
                       {"measure_unit", measure_unit(result.measure)},
+                      {"harm", result.measure == Measure::harm ? harm_json(result.harm) : nullptr},
                       {"complete", result.complete},
                       {"proved", result.proved},
                       {"in_race", std::move(in_race)},

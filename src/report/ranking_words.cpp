@@ -17,6 +17,14 @@ const char* what_counts(Measure measure) {
       return "damaged triangles of all bodies";
     case Measure::area:
       return "damaged surface of all bodies";
+    case Measure::delta_v:
+      return "the own vehicle's change of velocity";
+    case Measure::energy:
+      return "energy turned into damage";
+    case Measure::intrusion:
+      return "depth of the crush in passengers' cages";
+    case Measure::harm:
+      return "people hurt, as weighted";
     case Measure::closing_energy:
       break;
   }

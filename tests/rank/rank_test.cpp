@@ -365,7 +365,9 @@ TEST(Rank, AQuestionLeftUndecidedIsToldAsAnInterval) {
   scene.models[0] = *make_model(box_mesh({2, 1, 0.75}, 12));
   scene.add_candidate("keep going", 0.0);
   scene.add_candidate("stop", -9.0);
-  for (const Measure measure : {Measure::polygons, Measure::area, Measure::closing_energy}) {
+  for (const Measure measure :
+       {Measure::polygons, Measure::area, Measure::closing_energy, Measure::delta_v,
+        Measure::energy, Measure::intrusion, Measure::harm}) {
     const RankResult full = scene.ranked(measure);
     RankOptions options;
     options.measure = measure;

@@ -2,11 +2,14 @@
 
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
+#include "crashrank/base/view.hpp"
 #include "crashrank/crash/impulse.hpp"
 #include "crashrank/crash/strength.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>
+
+#include <vector>
 
 namespace crashrank {
 
@@ -61,5 +64,18 @@ CRASHRANK_API PulseResult simulate_pulse(const PulseBody& a, const PulseBody& b,
                                          const Eigen::Vector3d& point_m,
                                          const Eigen::Vector3d& along,
                                          const PulseOptions& options = {});
+
+/// What may be varied while bodies and their surfaces stay as they are.
+struct PulseVariant {
+  double friction = 0.3;
+  double strength = 1.0;  ///< times what both bodies' laws say
+};
+
+/// The pulse once for each variant, in their order, for the price of looking at the surfaces once.
+CRASHRANK_API std::vector<PulseResult> simulate_pulses(const PulseBody& a, const PulseBody& b,
+                                                       const Eigen::Vector3d& point_m,
+                                                       const Eigen::Vector3d& along,
+                                                       View<const PulseVariant> variants,
+                                                       const PulseOptions& options = {});
 
 }  // namespace crashrank

@@ -10,6 +10,7 @@
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
 #include "crashrank/rank/candidate.hpp"
+#include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/measure.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/tree/model.hpp"
@@ -32,7 +33,8 @@ struct RankOptions {
   unsigned workers = 1;
   Policy policy = Policy::late_match;  ///< how the dispatch's jobs find their workers
   std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
-  ImpactOptions impact;                ///< `start_is_apart` is decided inside
+  HarmOptions harm;
+  ImpactOptions impact;  ///< `start_is_apart` is decided inside
 };
 
 /// What a crash does to one body.
@@ -46,6 +48,43 @@ struct BodyDamage {
   Pose pose;   ///< body to world at first contact
 };
 
+/// Bounds on a score; equal where it is known, but for harm: what the ranges of
+/// HarmOptions leave open.
+struct ScoreInterval {
+  double lowest = 0.0;
+  double highest = 0.0;
+};
+
+/// What a crash does to one body. Velocities in its own axes before the crash.
+struct BodyOutcome {
+  double delta_v_mps = 0.0;  ///< magnitude
+  double delta_v_x_mps = 0.0;
+  double delta_v_y_mps = 0.0;
+  double yaw_rate_change_radps = 0.0;
+  double pdof_deg = 0.0;  ///< where the force comes from, clockwise from ahead, [0, 360)
+  int clock = 12;
+  double crush_energy_j = 0.0;  ///< from here on 0 unless the crash was simulated
+  double ees_mps = 0.0;
+  double crush_m = 0.0;
+  double intrusion_m = 0.0;
+  double harm = 0.0;
+  std::string cdc;
+};
+
+/// The crash that begins with a contact, taken by itself: bodies as they move when it begins.
+struct ContactSeverity {
+  /// The crush phase was followed (measures that need it); otherwise one rigid impulse at the point
+  /// of first contact.
+  bool simulated = false;
+  bool slides = false;
+  double duration_s = 0.0;
+  double dissipated_j = 0.0;
+  BodyOutcome ego;
+  BodyOutcome other;
+  double harm = 0.0;
+  ScoreInterval harm_interval;
+};
+
 /// One body hit by a candidate. Points and directions in world coordinates.
 struct Contact {
   std::size_t actor = 0;  ///< index into Scenario::actors
@@ -55,7 +94,8 @@ struct Contact {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
   /// Unit, from the ego towards the other; zero for a body that lies inside another.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  /// Length of the difference of the two bodies' velocities at the point.
+  Eigen::Vector3d closing = Eigen::Vector3d::Zero();  ///< ego's velocity less the other's there
+  /// Its length.
   double closing_speed_mps = 0.0;
   /// Its share along the normal: what brings the surfaces together. Depends on the facet met first.
   double normal_speed_mps = 0.0;
@@ -66,18 +106,13 @@ struct Contact {
   double crush_m = 0.0;  ///< way of the contact point relative to the other body in that
   BodyDamage ego;
   BodyDamage other;
+  ContactSeverity severity;
 };
 
 /// A pass closer than the tolerance that touches nothing.
 struct Graze {
   std::size_t actor = 0;
   double time_s = 0.0;
-};
-
-/// Bounds on a score; equal where it is known.
-struct ScoreInterval {
-  double lowest = 0.0;
-  double highest = 0.0;
 };
 
 /// What choosing a candidate leads to.
@@ -125,6 +160,7 @@ struct RankWork {
 /// The answer, least harmful first.
 struct RankResult {
   Measure measure = Measure::polygons;
+  HarmOptions harm;                      ///< as it was counted with
   std::vector<Candidate> candidates;     ///< in the order of `make_candidates`
   std::vector<CandidateResult> ranking;  ///< every candidate once, best first
   bool complete = true;                  ///< every score is known
@@ -148,9 +184,12 @@ struct RankResult {
 /// inside a wall counts.
 ///
 /// Scores add up over the contacts: `polygons` counts damaged triangles of the ego and of all hit,
-/// `area` adds their areas, `closing-energy` the contacts' energies. Order: lower score; then what
-/// touches nothing before what does, a clean miss before a graze; then the later first contact;
-/// then the lower closing speed; then the order of the candidates. No two places are equal.
+/// `area` adds their areas, `closing-energy` and `energy` the contacts' energies, `delta-v` the
+/// ego's changes of velocity, `intrusion` both bodies', `harm` everybody's risk as weighted.
+/// Contacts of one manoeuvre are taken each by itself, with the velocities that the motions have,
+/// so what the first takes off the second is counted twice. Order: lower score; then what touches
+/// nothing before what does, a clean miss before a graze; then the later first contact; then the
+/// lower closing speed; then the order of the candidates. No two places are equal.
 ///
 /// Cost: about the candidates times the bodies they come near. Errors: bad_input (numbers out
 /// of `scenario_limits` or not finite, poses not rigid or out of order, missing or empty model, ego
