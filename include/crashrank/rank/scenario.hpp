@@ -156,9 +156,9 @@ struct ScenarioPaths {
 /// scenario's folder or below it; or, when a folder above that not everybody may write to holds a
 /// file named `crashrank.root`, below the nearest such folder; or below an allowed one. So a
 /// scenario from a stranger reaches nothing but what came with it, and a project whose scenarios
-/// share a folder of models says so with one file. Errors: bad_input when it lies elsewhere. Whether
-/// the mesh exists is for the one who reads it to find out. `scenario_file` may be a name that does
-/// not exist in a folder that does (text from a pipe).
+/// share a folder of models says so with one file. Errors: bad_input when it lies elsewhere.
+/// Whether the mesh exists is for the one who reads it to find out. `scenario_file` may be a name
+/// that does not exist in a folder that does (text from a pipe).
 CRASHRANK_API Result<std::string> resolve_mesh_path(const std::string& scenario_file,
                                                     const std::string& mesh,
                                                     const ScenarioPaths& paths = {});
