@@ -1,5 +1,6 @@
 #include "crashrank/crash/crush.hpp"
 
+#include "crash/look.hpp"
 #include "crash/material.hpp"
 
 #include <Eigen/Geometry>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace crashrank {
 namespace {
@@ -101,11 +103,15 @@ public:
   Reader(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, double side,
          BodyCrush& told)
       : mesh_(*body.mesh), map_(map), side_(side), told_(told) {
-    const Eigen::Matrix3d turn = frame.axes * body.pose.rotation;
-    const Vector3d shift = frame.into(body.pose.translation);
+    const detail::ViewOfBody view(body.pose, frame);
     seen_.reserve(mesh_.vertices.size());
-    for (const Eigen::Vector3f& vertex : mesh_.vertices) {
-      seen_.emplace_back(turn * vertex.cast<double>() + shift);
+    for (const Eigen::Vector3f& vertex : mesh_.vertices) seen_.emplace_back(view(vertex));
+    // Nothing is pushed that lies behind all of the crush.
+    for (std::size_t cell = 0; cell < told.depth_m.size(); ++cell) {
+      if (!(told.depth_m[cell] > 0.0)) continue;
+      const double end = side > 0.0 ? map.greatest_m[cell] - told.depth_m[cell]
+                                    : -map.least_m[cell] - told.depth_m[cell];
+      crushed_to_ = std::min(crushed_to_, end);
     }
   }
 
@@ -166,6 +172,8 @@ private:
     if (high.y() < grid.low_w_m || low.y() > right || high.z() < grid.low_h_m || low.z() > top) {
       return 0.0;
     }
+    constexpr double rounding_m = 1e-9;
+    if ((side_ > 0.0 ? high.x() : -low.x()) < crushed_to_ - rounding_m) return 0.0;
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     const double cuts = std::clamp(std::ceil(longest / grid.cell_w_m), 1.0, most_cuts);
     const double piece = 0.5 * (b - a).cross(c - a).norm() / (cuts * cuts);
@@ -191,6 +199,8 @@ private:
   double side_;
   BodyCrush& told_;
   std::vector<Vector3d> seen_;
+  /// No surface is moved that is further back than this, along the side looked at.
+  double crushed_to_ = std::numeric_limits<double>::infinity();
 };
 
 void read(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, double side,
@@ -217,8 +227,9 @@ CrushResult crush(const PulseBody& a, const PulseBody& b, const Vector3d& point_
   Vector3d high_a;
   Vector3d low_b;
   Vector3d high_b;
-  view_bounds(*a.mesh, a.pose, result.frame, low_a, high_a);
-  view_bounds(*b.mesh, b.pose, result.frame, low_b, high_b);
+  detail::LookStack stack;
+  detail::view_bounds(a, result.frame, low_a, high_a, stack);
+  detail::view_bounds(b, result.frame, low_b, high_b, stack);
   const Vector3d low = low_a.cwiseMax(low_b);
   const Vector3d high = high_a.cwiseMin(high_b);
   if (!(low.y() < high.y() && low.z() < high.z())) return result;
@@ -228,8 +239,10 @@ CrushResult crush(const PulseBody& a, const PulseBody& b, const Vector3d& point_
   result.a.end_m.assign(result.grid.size(), 0.0);
   result.b.end_m.assign(result.grid.size(), 0.0);
   if ((a.strength.rigid && b.strength.rigid) || !(energy_j > 0.0)) return result;
-  const DepthMap map_a = depth_map(*a.mesh, a.pose, result.frame, result.grid);
-  const DepthMap map_b = depth_map(*b.mesh, b.pose, result.frame, result.grid);
+  DepthMap map_a;
+  DepthMap map_b;
+  detail::depth_map(a, result.frame, result.grid, map_a, stack);
+  detail::depth_map(b, result.frame, result.grid, map_b, stack);
   Press press(a, b, result.frame, map_a, map_b);
   if (press.empty()) return result;
 

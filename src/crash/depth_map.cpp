@@ -1,8 +1,11 @@
 #include "crashrank/crash/depth_map.hpp"
 
+#include "crash/look.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 
 namespace crashrank {
 namespace {
@@ -30,15 +33,16 @@ Span cells_between(double low, double high, double start, double cell, std::size
 
 void draw(const Vector3d& a, const Vector3d& b, const Vector3d& c, DepthMap& map) {
   const ViewGrid& grid = map.grid;
-  const Vector3d ab = b - a;
-  const Vector3d ac = c - a;
-  const double twice_area = ab.y() * ac.z() - ab.z() * ac.y();
-  if (twice_area == 0.0) return;
   const Vector3d low = a.cwiseMin(b).cwiseMin(c);
   const Vector3d high = a.cwiseMax(b).cwiseMax(c);
   const Span columns = cells_between(low.y(), high.y(), grid.low_w_m, grid.cell_w_m, grid.columns);
   if (columns.first >= columns.end) return;
   const Span rows = cells_between(low.z(), high.z(), grid.low_h_m, grid.cell_h_m, grid.rows);
+  if (rows.first >= rows.end) return;
+  const Vector3d ab = b - a;
+  const Vector3d ac = c - a;
+  const double twice_area = ab.y() * ac.z() - ab.z() * ac.y();
+  if (twice_area == 0.0) return;
   constexpr double rim = 1e-9;
   for (std::size_t row = rows.first; row < rows.end; ++row) {
     const double dh = grid.h_of(row) - a.z();
@@ -92,12 +96,13 @@ void view_bounds(const TriangleMesh& mesh, const Pose& body_in_world, const View
                  Vector3d& low, Vector3d& high) {
   low = Vector3d::Constant(endless);
   high = -low;
-  const Eigen::Matrix3d turn = frame.axes * body_in_world.rotation;
-  const Vector3d shift = frame.into(body_in_world.translation);
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    const Vector3d p = turn * vertex.cast<double>() + shift;
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
+  const detail::ViewOfBody view(body_in_world, frame);
+  for (const std::array<std::uint32_t, 3>& t : mesh.triangles) {
+    for (const std::uint32_t vertex : t) {
+      const Vector3d p = view(mesh.vertices[vertex]);
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
   }
 }
 
@@ -107,17 +112,148 @@ DepthMap depth_map(const TriangleMesh& mesh, const Pose& body_in_world, const Vi
   map.grid = grid;
   map.least_m.assign(grid.size(), endless);
   map.greatest_m.assign(grid.size(), -endless);
-  const Eigen::Matrix3d turn = frame.axes * body_in_world.rotation;
-  const Vector3d shift = frame.into(body_in_world.translation);
+  const detail::ViewOfBody view(body_in_world, frame);
   std::vector<Vector3d> seen;
   seen.reserve(mesh.vertices.size());
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    seen.emplace_back(turn * vertex.cast<double>() + shift);
-  }
+  for (const Eigen::Vector3f& vertex : mesh.vertices) seen.emplace_back(view(vertex));
   for (const std::array<std::uint32_t, 3>& t : mesh.triangles) {
     draw(seen[t[0]], seen[t[1]], seen[t[2]], map);
   }
   return map;
 }
 
+namespace detail {
+namespace {
+
+/// Boxes of a tree as they are seen, a little larger than they are: what rounding may take off a
+/// vertex is far less.
+class SeenBoxes {
+public:
+  SeenBoxes(const AabbTree& tree, const ViewOfBody& view)
+      : turn_(tree.axes_are_world ? view.turn : Eigen::Matrix3d(view.turn * tree.axes)),
+        spread_(turn_.cwiseAbs()),
+        shift_(view.shift) {
+    const Box& root = tree.nodes[0].box;
+    const Vector3d far =
+        root.min.cast<double>().cwiseAbs().cwiseMax(root.max.cast<double>().cwiseAbs());
+    margin_ = 1e-9 * (far.sum() + shift_.cwiseAbs().sum() + 1.0);
+    if (!tree.axes_are_world) margin_ += 1e-6 * far.sum();
+  }
+
+  void see(const Box& box, Vector3d& low, Vector3d& high) const {
+    const Vector3d from = box.min.cast<double>();
+    const Vector3d to = box.max.cast<double>();
+    const Vector3d middle = rotate(turn_, 0.5 * (from + to)) + shift_;
+    const Vector3d half = rotate(spread_, 0.5 * (to - from));
+    low = (middle - half).array() - margin_;
+    high = (middle + half).array() + margin_;
+  }
+
+private:
+  Eigen::Matrix3d turn_;
+  Eigen::Matrix3d spread_;
+  Vector3d shift_;
+  double margin_ = 0.0;
+};
+
+/// Whether a box could still show anywhere: some middle of a cell lies before it, where what has
+/// been seen so far does not reach past it on both sides.
+bool may_show(const DepthMap& map, const Vector3d& low, const Vector3d& high) {
+  const ViewGrid& grid = map.grid;
+  const Span columns = cells_between(low.y(), high.y(), grid.low_w_m, grid.cell_w_m, grid.columns);
+  if (columns.first >= columns.end) return false;
+  const Span rows = cells_between(low.z(), high.z(), grid.low_h_m, grid.cell_h_m, grid.rows);
+  for (std::size_t row = rows.first; row < rows.end; ++row) {
+    for (std::size_t column = columns.first; column < columns.end; ++column) {
+      const std::size_t cell = grid.index(column, row);
+      if (map.least_m[cell] > low.x() || map.greatest_m[cell] < high.x()) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void view_bounds(const AabbTree& tree, const ViewOfBody& view, Vector3d& low, Vector3d& high,
+                 LookStack& stack) {
+  low = Vector3d::Constant(endless);
+  high = -low;
+  if (tree.empty()) return;
+  const SeenBoxes boxes(tree, view);
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const Node& node = tree.nodes[stack.back()];
+    stack.pop_back();
+    Vector3d from;
+    Vector3d to;
+    boxes.see(node.box, from, to);
+    if ((from.array() >= low.array()).all() && (to.array() <= high.array()).all()) continue;
+    if (!node.is_leaf()) {
+      stack.push_back(node.first + 1);
+      stack.push_back(node.first);
+      continue;
+    }
+    for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
+      for (const Eigen::Vector3f& corner : tree.triangles[slot].corner) {
+        const Vector3d p = view(corner);
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+      }
+    }
+  }
+}
+
+void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookStack& stack) {
+  map.least_m.assign(map.grid.size(), endless);
+  map.greatest_m.assign(map.grid.size(), -endless);
+  if (tree.empty()) return;
+  const SeenBoxes boxes(tree, view);
+  Vector3d from;
+  Vector3d to;
+  boxes.see(tree.nodes[0].box, from, to);
+  const double middle = 0.5 * (from.x() + to.x());
+  const auto outer = [&](std::uint32_t node) {
+    boxes.see(tree.nodes[node].box, from, to);
+    return std::max(to.x() - middle, middle - from.x());
+  };
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const Node& node = tree.nodes[stack.back()];
+    stack.pop_back();
+    boxes.see(node.box, from, to);
+    if (!may_show(map, from, to)) continue;
+    if (!node.is_leaf()) {
+      // What is further out hides more.
+      const bool right_first = outer(node.first + 1) > outer(node.first);
+      stack.push_back(right_first ? node.first : node.first + 1);
+      stack.push_back(right_first ? node.first + 1 : node.first);
+      continue;
+    }
+    for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
+      const auto& [a, b, c] = tree.triangles[slot].corner;
+      draw(view(a), view(b), view(c), map);
+    }
+  }
+}
+
+void view_bounds(const PulseBody& body, const ViewFrame& frame, Vector3d& low, Vector3d& high,
+                 LookStack& stack) {
+  if (body.tree != nullptr) {
+    view_bounds(*body.tree, ViewOfBody(body.pose, frame), low, high, stack);
+  } else {
+    crashrank::view_bounds(*body.mesh, body.pose, frame, low, high);
+  }
+}
+
+void depth_map(const PulseBody& body, const ViewFrame& frame, const ViewGrid& grid, DepthMap& map,
+               LookStack& stack) {
+  if (body.tree != nullptr) {
+    map.grid = grid;
+    depth_map(*body.tree, ViewOfBody(body.pose, frame), map, stack);
+  } else {
+    map = crashrank::depth_map(*body.mesh, body.pose, frame, grid);
+  }
+}
+
+}  // namespace detail
 }  // namespace crashrank

@@ -45,8 +45,8 @@ private:
 
 }  // namespace
 
-std::vector<Facet> facets_of(const DepthMap& map, double deepest_m) {
-  std::vector<Facet> facets;
+void facets_of(const DepthMap& map, double deepest_m, std::vector<Facet>& facets) {
+  facets.clear();
   const ViewGrid& grid = map.grid;
   Line line(grid, deepest_m, facets);
   const Vector2d half(0.0, 0.5 * grid.cell_w_m);
@@ -74,7 +74,6 @@ std::vector<Facet> facets_of(const DepthMap& map, double deepest_m) {
       }
     }
   }
-  return facets;
 }
 
 }  // namespace crashrank::detail

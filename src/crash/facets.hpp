@@ -19,7 +19,7 @@ struct Facet {
 
 /// The side of a body that looks against the view, row by row: a line through the cells' middles,
 /// cut into pieces no longer than a cell, closed by the flanks where the body ends. Only what lies
-/// before `deepest_m` counts.
-std::vector<Facet> facets_of(const DepthMap& map, double deepest_m);
+/// before `deepest_m` counts. `facets` is emptied first.
+void facets_of(const DepthMap& map, double deepest_m, std::vector<Facet>& facets);
 
 }  // namespace crashrank::detail

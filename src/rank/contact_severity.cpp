@@ -63,6 +63,7 @@ PulseBody pulse_body(const Body& body, const Motion& motion, double time_s) {
   Velocity velocity;
   motion.state_at(time_s, placed.pose, velocity);
   placed.mesh = &body.model->mesh;
+  placed.tree = &body.model->tree;
   placed.rigid = place(body.mass, placed.pose, velocity);
   placed.strength = body.strength;
   if (!placed.rigid.movable()) {

@@ -64,7 +64,7 @@ struct DepthMap {
   bool covered(std::size_t cell) const { return least_m[cell] <= greatest_m[cell]; }
 };
 
-/// Bounds of a body in a view: (u, w, h).
+/// Bounds of a body's triangles in a view: (u, w, h).
 CRASHRANK_API void view_bounds(const TriangleMesh& mesh, const Pose& body_in_world,
                                const ViewFrame& frame, Eigen::Vector3d& low, Eigen::Vector3d& high);
 

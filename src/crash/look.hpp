@@ -1,0 +1,47 @@
+#pragma once
+
+#include "crashrank/base/pose.hpp"
+#include "crashrank/crash/depth_map.hpp"
+#include "crashrank/crash/pulse.hpp"
+#include "crashrank/tree/aabb_tree.hpp"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// A body's coordinates carried into a view.
+struct ViewOfBody {
+  Eigen::Matrix3d turn;
+  Eigen::Vector3d shift;
+
+  ViewOfBody(const Pose& body_in_world, const ViewFrame& frame)
+      : turn(frame.axes * body_in_world.rotation), shift(frame.into(body_in_world.translation)) {}
+
+  /// The one order of operations for every vertex, however it is come by.
+  Eigen::Vector3d operator()(const Eigen::Vector3f& vertex) const {
+    return rotate(turn, vertex.cast<double>()) + shift;
+  }
+};
+
+/// Memory of the looks at a body's tree.
+using LookStack = std::vector<std::uint32_t>;
+
+/// As `view_bounds` of the tree's mesh, to the bit, without looking at vertices inside the bounds
+/// known already.
+void view_bounds(const AabbTree& tree, const ViewOfBody& view, Eigen::Vector3d& low,
+                 Eigen::Vector3d& high, LookStack& stack);
+
+/// As `depth_map` of the tree's mesh into `map.grid`, to the bit, without looking at triangles
+/// between the middles of cells or behind what is seen already.
+void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookStack& stack);
+
+/// The body's tree is looked at where it has one, its mesh otherwise.
+void view_bounds(const PulseBody& body, const ViewFrame& frame, Eigen::Vector3d& low,
+                 Eigen::Vector3d& high, LookStack& stack);
+void depth_map(const PulseBody& body, const ViewFrame& frame, const ViewGrid& grid, DepthMap& map,
+               LookStack& stack);
+
+}  // namespace crashrank::detail
