@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "console.hpp"
+#include "suggest.hpp"
 
 #include "crashrank/base/library_version.hpp"
 
@@ -7,6 +8,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace crashrank::cli {
 namespace {
@@ -21,8 +23,23 @@ Examples:
   crashrank collide car.obj truck.glb --pose 4.2,0.3,0,180,0,0
   crashrank rank scenario.json --damage out)";
 
-/// The first line of what the parser has to say, and where to read on. `word` is the first argument
-/// or null.
+/// "; did you mean 'rank'?", or nothing where no known word is near.
+std::string meant(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_word(word, known);
+  return nearest.empty() ? std::string() : "; did you mean '" + nearest + "'?";
+}
+
+/// Names of a command's options as they are typed: "--json".
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// The first line of what the parser has to say, what was meant, and where to read on. `word` is
+/// the first argument or null.
 int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word) {
   const CLI::App* named = &app;
   while (!named->get_subcommands().empty()) named = named->get_subcommands().front();
@@ -32,8 +49,15 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
   text.resize(std::min(text.find('\n'), text.size()));
   if (named == &app && word != nullptr && word[0] != '-') {
     text = "there is no command '" + std::string(word) + "'; choose";
-    for (const CLI::App* known : app.get_subcommands({})) text += " " + known->get_name() + ",";
+    std::vector<std::string> commands;
+    for (const CLI::App* known : app.get_subcommands({})) commands.push_back(known->get_name());
+    for (const std::string& command : commands) text += " " + command + ",";
     text.pop_back();
+    text += meant(word, commands);
+  }
+  for (const std::string& unknown : named->remaining()) {
+    const std::string option = unknown.substr(0, unknown.find('='));
+    if (option.rfind("--", 0) == 0) text += meant(option, option_names(*named));
   }
   return fail(make_error(ErrorCode::usage, text, "see " + help));
 }
@@ -53,8 +77,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const auto named = app.get_subcommands();
-    print(named.empty() ? app.help()
-                        : named.front()->help("crashrank " + named.front()->get_name()));
+    print(named.empty() ? app.help() : named.front()->help("crashrank"));
     return finish(exit_done);
   } catch (const CLI::CallForVersion&) {
     print(app.version() + "\n");

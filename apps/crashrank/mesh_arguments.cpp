@@ -22,6 +22,14 @@ constexpr std::array<std::pair<const char*, Axis>, 6> axis_names{{{"+x", Axis::p
                                                                   {"+z", Axis::plus_z},
                                                                   {"-z", Axis::minus_z}}};
 
+/// Names what the user knows in place of the file that standard input was kept in.
+void name_standard_input(std::string& text, const std::string& path) {
+  const std::string shown = "standard input";
+  for (std::size_t at = 0; (at = text.find(path, at)) != std::string::npos; at += shown.size()) {
+    text.replace(at, path.size(), shown);
+  }
+}
+
 /// "+x", "-x", "x" and so on.
 std::optional<Axis> parse_axis(std::string text) {
   if (text.size() == 1) text.insert(0, 1, '+');
@@ -97,7 +105,15 @@ Result<ImportedMesh> load_mesh(const std::string& path, const MeshArguments& arg
   if (!imported) {
     Error error = imported.error();
     error.file = shown;
+    if (received) {
+      for (std::string* text : {&error.place, &error.reason, &error.remedy}) {
+        name_standard_input(*text, received->path());
+      }
+    }
     return error;
+  }
+  if (received) {
+    for (std::string& warning : imported->warnings) name_standard_input(warning, received->path());
   }
   if (tell) {
     for (const std::string& warning : imported->warnings) warn(shown, warning);

@@ -74,7 +74,7 @@ Result<std::string> read_text(const std::string& path, std::size_t limit) {
 
 void StandardInputFile::Remove::operator()(const std::string* path) const {
   std::error_code ignored;
-  fs::remove(*path, ignored);
+  fs::remove_all(fs::path(*path).parent_path(), ignored);
   delete path;
 }
 
@@ -82,16 +82,18 @@ Result<StandardInputFile> StandardInputFile::receive(std::size_t limit,
                                                      const std::string& extension) {
   std::error_code failure;
   const fs::path folder = fs::temp_directory_path(failure);
-  std::string name = (folder / ("crashrank-XXXXXX." + extension)).string();
-  const int suffix = static_cast<int>(extension.size()) + 1;
-  const int descriptor = failure ? -1 : mkstemps(name.data(), suffix);
-  if (descriptor < 0) {
+  std::string own = (folder / "crashrank-XXXXXX").string();
+  if (failure || mkdtemp(own.data()) == nullptr) {
     return file_error(ErrorCode::internal, "-", "cannot keep it in a temporary file",
                       "let TMPDIR name a folder that can be written to");
   }
   StandardInputFile received;
-  received.path_.reset(new std::string(name));
-  const File file(fdopen(descriptor, "wb"));
+  received.path_.reset(new std::string((fs::path(own) / ("stdin." + extension)).string()));
+  const File file(std::fopen(received.path().c_str(), "wbx"));
+  if (!file) {
+    return file_error(ErrorCode::internal, "-", "cannot keep it in a temporary file",
+                      "let TMPDIR name a folder that can be written to");
+  }
   const Status status = read_pieces("-", limit, [&](const char* data, std::size_t size) {
     return std::fwrite(data, 1, size, file.get()) == size;
   });

@@ -15,7 +15,8 @@ inline bool is_standard(const std::string& path) { return path == "-"; }
 /// A whole text file, or standard input for "-". Refuses more than `limit` bytes.
 Result<std::string> read_text(const std::string& path, std::size_t limit);
 
-/// Standard input kept in a file while this lives, for readers that need a file with an extension.
+/// Standard input kept in a file while this lives, for readers that need a file with an extension:
+/// "stdin.EXTENSION" alone in a folder of its own.
 class StandardInputFile {
 public:
   static Result<StandardInputFile> receive(std::size_t limit, const std::string& extension);

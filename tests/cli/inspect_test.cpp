@@ -66,6 +66,23 @@ TEST(Inspect, StandardInputIsReadWhenItsFormatIsSaid) {
   EXPECT_EQ(run.json()["files"][0]["triangles"], 12);
 }
 
+TEST(Inspect, StandardInputIsNeverCalledByItsTemporaryName) {
+  const Workplace place;
+  const std::string off = "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";
+  const Outcome good = place.crashrank({"inspect", "-", "--format", "off", "--json"}, off);
+  ASSERT_EQ(good.code, 0) << good.err;
+  EXPECT_EQ(good.json()["files"][0]["parts"][0]["name"], "stdin");
+  for (const std::string& format :
+       std::vector<std::string>{"obj", "stl", "glb", "off", "nonsense"}) {
+    for (const std::string& input : std::vector<std::string>{"", "garbage", "v 0 0 0\nf 1 2 9\n"}) {
+      const Outcome bad = place.crashrank({"inspect", "-", "--format", format}, input);
+      EXPECT_EQ(bad.code, 3) << format << bad.out;
+      EXPECT_EQ((bad.out + bad.err).find("crashrank-"), std::string::npos) << bad.out << bad.err;
+      EXPECT_NE(bad.err.find("standard input"), std::string::npos) << bad.err;
+    }
+  }
+}
+
 TEST(Inspect, OneBadFileDoesNotHideTheOthers) {
   const Workplace place;
   place.write("good.obj", cli_test::box_obj("body", 0, 0, 0, 1, 1, 1));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -34,6 +35,35 @@ TEST(Usage, AWrongCommandIsNamedBesideTheRightOnes) {
   EXPECT_EQ(run.code, 2);
   EXPECT_NE(run.err.find("no command 'rnak'"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("rank"), std::string::npos) << run.err;
+}
+
+TEST(Usage, WhatWasMeantIsSaid) {
+  const Workplace place;
+  place.write("a.obj", cli_test::box_obj("a", 0, 0, 0, 1, 1, 1));
+  for (const auto& [arguments, meant] :
+       std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"rnak", "s.json"}, "did you mean 'rank'?"},
+           {{"colide", "a.obj", "a.obj"}, "did you mean 'collide'?"},
+           {{"inspect", "a.obj", "--jsno"}, "did you mean '--json'?"},
+           {{"inspect", "a.obj", "--scael=2"}, "did you mean '--scale'?"},
+           {{"rank", "s.json", "--mesure", "area"}, "did you mean '--measure'?"}}) {
+    const Outcome run = place.crashrank(arguments);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find(meant), std::string::npos) << run.err;
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+  }
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"fly"}, {"inspect", "a.obj", "--elephant"}, {std::string(100'000, 'r')}}) {
+    const Outcome run = place.crashrank(arguments);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_EQ(run.err.find("did you mean"), std::string::npos) << run.err;
+  }
+}
+
+TEST(Usage, HelpShowsTheCommandOnce) {
+  const Workplace place;
+  const Outcome help = place.crashrank({"inspect", "--help"});
+  EXPECT_NE(help.out.find("Usage: crashrank inspect [OPTIONS]"), std::string::npos) << help.out;
 }
 
 TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
