@@ -3,6 +3,7 @@
 /// Everything that the targets crashrank::core and crashrank::crashrank offer. Mesh files are read
 /// by crashrank::import, whose header is crashrank/mesh/import.hpp.
 
+#include "crashrank/base/frames.hpp"
 #include "crashrank/base/library_version.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
