@@ -19,3 +19,14 @@ function(crashrank_compile target)
   set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
 endfunction()
+
+# What a shared library offers, said to the linker: hidden visibility does not reach what the
+# standard library marks as visible.
+function(crashrank_exports target)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY" AND UNIX AND NOT APPLE)
+    set(map ${PROJECT_SOURCE_DIR}/src/crashrank.map)
+    target_link_options(${target} PRIVATE LINKER:--version-script=${map})
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${map})
+  endif()
+endfunction()

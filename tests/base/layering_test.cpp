@@ -11,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> stages{"base",     "mesh",  "tree", "collide",
-                                      "dispatch", "crash", "rank", "report"};
+const std::vector<std::string> stages{"base",  "mesh", "tree",   "collide", "dispatch",
+                                      "crash", "rank", "report", "c"};
 
 int level(const std::string& stage) {
   for (std::size_t i = 0; i < stages.size(); ++i) {

@@ -1,0 +1,299 @@
+#ifndef CRASHRANK_CRASHRANK_H
+#define CRASHRANK_CRASHRANK_H
+
+/// \file
+/// The C interface, for C11 and for every language that can call C. It stands in the library
+/// crashrank, but for the two functions at the end, which read mesh files: those are in
+/// crashrank_import. Every answer is the C++ library's.
+///
+/// Errors: a function that can fail returns a crashrank_status and, where `error` is not NULL,
+/// writes there what went wrong. Nothing is written to its other outputs then. No exception leaves
+/// a function, nothing is printed, nothing ends the process.
+/// Ownership: what a function named *_create, *_load or *_import gives is the caller's, to be given
+/// to the *_free of its type; freeing NULL does nothing. Strings and arrays that an object gives
+/// belong to it and live as long as it does, where nothing else is said. What is passed in is
+/// copied or read during the call only.
+/// Threads: different objects may be used from different threads at a time. Rankings do not
+/// change and may be shared; so may models and scenarios while nobody changes them. A query belongs
+/// to one thread at a time.
+/// Strings are UTF-8. Units are SI, angles radians. Frames follow ISO 8855: x forward, y left,
+/// z up. A pose is a row-major 4x4 matrix of a rigid motion, 16 numbers, last row 0 0 0 1.
+
+#include "crashrank/base/export.hpp"
+
+// NOLINTBEGIN(modernize-*): this is C.
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Rises with every change after which programs compiled before would misunderstand the library.
+#define CRASHRANK_ABI_VERSION 1
+
+/// The library's CRASHRANK_ABI_VERSION; other than the header's: do not go on.
+CRASHRANK_API int32_t crashrank_abi_version(void);
+/// The library's version, "major.minor.patch".
+CRASHRANK_API const char* crashrank_version(void);
+
+/// How a call ended.
+typedef int32_t crashrank_status;
+/// Values of crashrank_status.
+enum {
+  CRASHRANK_OK = 0,             ///< done
+  CRASHRANK_INTERNAL = 1,       ///< the library's or the machine's own failure; no memory
+  CRASHRANK_USAGE = 2,          ///< a call that has no meaning: NULL, an index out of range
+  CRASHRANK_BAD_INPUT = 3,      ///< a file, mesh, scenario or pose is not acceptable
+  CRASHRANK_OUT_OF_BUDGET = 4,  ///< a deadline, memory or work budget ended the work
+  CRASHRANK_NOT_FOUND = 5,      ///< a file or program is missing or unreadable
+  CRASHRANK_LIMIT_EXCEEDED = 6  ///< input larger than a stated limit
+};
+
+/// What went wrong, in the caller's memory. A call that succeeds leaves it alone.
+typedef struct crashrank_error {
+  crashrank_status status;  ///< as the call returned it
+  /// One line, "FILE: PLACE: REASON; REMEDY", ended by a zero; names in it are escaped for a
+  /// terminal; cut where it is longer.
+  char message[508];
+} crashrank_error;
+
+/// Bodies' surfaces with the trees over them, a list.
+typedef struct crashrank_models crashrank_models;
+/// Working memory of collision queries.
+typedef struct crashrank_query crashrank_query;
+/// One moment of decision: the ego, what it can do, who else is there.
+typedef struct crashrank_scenario crashrank_scenario;
+/// Candidates in order, least harmful first.
+typedef struct crashrank_ranking crashrank_ranking;
+
+// ---- Models -------------------------------------------------------------------------------------
+
+/// An empty list. Errors: internal without memory.
+CRASHRANK_API crashrank_status crashrank_models_create(crashrank_models** models,
+                                                       crashrank_error* error);
+/// Ends it; NULL is left alone.
+CRASHRANK_API void crashrank_models_free(crashrank_models* models);
+
+/// A named run of a model's triangles.
+typedef struct crashrank_part {
+  const char* name;         ///< unique within the model
+  uint32_t triangle_count;  ///< the triangles that follow those of the parts before
+} crashrank_part;
+
+/// Builds a model from arrays; its index is the number there were before. `vertices_m`: 3 floats a
+/// vertex, body coordinates; `triangles`: 3 vertex indices each. `parts` cover all triangles in
+/// order; with none all are one part "body". Errors: usage; bad_input for no triangles, an index
+/// out of range, a number that is not finite, parts that do not cover the triangles or share a
+/// name; limit_exceeded. O(n log n), allocates.
+CRASHRANK_API crashrank_status crashrank_models_add(crashrank_models* models,
+                                                    const float* vertices_m, size_t vertex_count,
+                                                    const uint32_t* triangles,
+                                                    size_t triangle_count,
+                                                    const crashrank_part* parts, size_t part_count,
+                                                    crashrank_error* error);
+/// Number of models, 0 for NULL.
+CRASHRANK_API size_t crashrank_models_size(const crashrank_models* models);
+/// Number of triangles of a model, 0 where there is none.
+CRASHRANK_API size_t crashrank_models_triangles(const crashrank_models* models, size_t index);
+/// Number of parts of a model, 0 where there is none.
+CRASHRANK_API size_t crashrank_models_parts(const crashrank_models* models, size_t index);
+/// Name of a model's part, NULL where there is none. The list's, until it changes.
+CRASHRANK_API const char* crashrank_models_part_name(const crashrank_models* models, size_t index,
+                                                     size_t part);
+
+// ---- Collision ----------------------------------------------------------------------------------
+
+/// Triangles of A and B that share a point, by their places in the models.
+typedef struct crashrank_pair {
+  int32_t a;  ///< triangle of the first model
+  int32_t b;  ///< triangle of the second
+} crashrank_pair;
+
+/// Working memory for one thread. Errors: internal without memory.
+CRASHRANK_API crashrank_status crashrank_query_create(crashrank_query** query,
+                                                      crashrank_error* error);
+/// Ends it; NULL is left alone.
+CRASHRANK_API void crashrank_query_free(crashrank_query* query);
+
+/// Whether model `b`, at `b_in_a` in the frame of model `a`, shares a point with it: 1 or 0. A body
+/// wholly inside the other touches nothing. Exact. Allocates nothing once the query has met trees
+/// as deep. Errors: usage; bad_input for a pose off a rigid motion by more than 1e-6.
+CRASHRANK_API crashrank_status crashrank_collide_any(crashrank_query* query,
+                                                     const crashrank_models* models, size_t a,
+                                                     size_t b, const double b_in_a[16],
+                                                     int32_t* intersecting, crashrank_error* error);
+/// All pairs, sorted by a, then b. `pairs` belongs to the query until its next use; not to be read
+/// where `count` is 0. Allocates only to hold more pairs than ever before. Otherwise as
+/// crashrank_collide_any.
+CRASHRANK_API crashrank_status crashrank_collide_all(crashrank_query* query,
+                                                     const crashrank_models* models, size_t a,
+                                                     size_t b, const double b_in_a[16],
+                                                     const crashrank_pair** pairs, size_t* count,
+                                                     crashrank_error* error);
+/// Fingerprint of sorted pairs, the same on every machine: 16 hex digits and a zero.
+CRASHRANK_API crashrank_status crashrank_pairs_hash(const crashrank_pair* pairs, size_t count,
+                                                    char hash[17], crashrank_error* error);
+
+// ---- Scenarios ----------------------------------------------------------------------------------
+
+/// Reads a scenario file (data/scenario.schema.json) and finds its meshes, reading none.
+/// Errors: bad_input naming the key, limit_exceeded, not_found.
+CRASHRANK_API crashrank_status crashrank_scenario_load(const char* file,
+                                                       crashrank_scenario** scenario,
+                                                       crashrank_error* error);
+/// The same from text; `name` stands for the file in messages. Touches no file, so that the models
+/// have no paths. Errors: bad_input, limit_exceeded.
+CRASHRANK_API crashrank_status crashrank_scenario_create_from_text(const char* text, size_t length,
+                                                                   const char* name,
+                                                                   crashrank_scenario** scenario,
+                                                                   crashrank_error* error);
+/// An empty scenario, to be filled by the functions below: no grid of candidates, straight braking
+/// not added, horizon 4 s, grip 0.8. What does not fit together is found by crashrank_rank.
+CRASHRANK_API crashrank_status crashrank_scenario_create(const char* name,
+                                                         crashrank_scenario** scenario,
+                                                         crashrank_error* error);
+/// Ends it; NULL is left alone.
+CRASHRANK_API void crashrank_scenario_free(crashrank_scenario* scenario);
+
+/// Adds a shape; its index is the number added before. `kind`: car, truck, bus, motorcycle,
+/// bicycle, pedestrian, barrier, pole or building; `mass_kg` 0: guessed from kind and size.
+CRASHRANK_API crashrank_status crashrank_scenario_add_model(crashrank_scenario* scenario,
+                                                            const char* name, const char* kind,
+                                                            double mass_kg, crashrank_error* error);
+
+/// A pose that a body has at a time, s from now.
+typedef struct crashrank_timed_pose {
+  double time_s;    ///< later than that of the pose before
+  double pose[16];  ///< body to world
+} crashrank_timed_pose;
+
+/// How the ego moves now.
+typedef struct crashrank_ego {
+  size_t model;           ///< index of its shape
+  double pose[16];        ///< body to world; the origin is the centre of the rear axle
+  double speed_mps;       ///< along its forward axis
+  double yaw_rate_radps;  ///< left positive
+  double wheelbase_m;     ///< 0: 0.6 of the mesh's length
+} crashrank_ego;
+/// Says how the ego moves. Errors: usage; bad_input for a pose that is no rigid motion.
+CRASHRANK_API crashrank_status crashrank_scenario_set_ego(crashrank_scenario* scenario,
+                                                          const crashrank_ego* ego,
+                                                          crashrank_error* error);
+
+/// Something that can be hit.
+typedef struct crashrank_actor {
+  const char* name;                   ///< unique
+  size_t model;                       ///< index of its shape
+  double pose[16];                    ///< body to world
+  double speed_mps;                   ///< along its forward axis
+  double acceleration_mps2;           ///< against the speed it brakes, until standstill
+  double yaw_rate_radps;              ///< held while it moves
+  const crashrank_timed_pose* poses;  ///< where there are any, they say all about its motion
+  size_t pose_count;                  ///< 0: they are not read
+} crashrank_actor;
+/// Adds something that can be hit. Errors: usage; bad_input for a pose that is no rigid motion.
+CRASHRANK_API crashrank_status crashrank_scenario_add_actor(crashrank_scenario* scenario,
+                                                            const crashrank_actor* actor,
+                                                            crashrank_error* error);
+
+/// A manoeuvre that the ego can choose: constant acceleration and steering, or timed poses.
+typedef struct crashrank_candidate {
+  const char* name;                   ///< unique
+  double acceleration_mps2;           ///< along the forward axis; against the speed it brakes
+  double steering_rad;                ///< of the road wheels, left positive
+  const crashrank_timed_pose* poses;  ///< where there are any, they say all
+  size_t pose_count;                  ///< 0: they are not read
+} crashrank_candidate;
+/// Adds a manoeuvre. Errors: usage; bad_input for a pose that is no rigid motion.
+CRASHRANK_API crashrank_status crashrank_scenario_add_candidate(
+    crashrank_scenario* scenario, const crashrank_candidate* candidate, crashrank_error* error);
+/// Adds straight braking and a grid of accelerations x steerings inside the grip of the tyres;
+/// 0 x 0 takes the grid away.
+CRASHRANK_API crashrank_status crashrank_scenario_set_grid(crashrank_scenario* scenario,
+                                                           size_t accelerations, size_t steerings,
+                                                           crashrank_error* error);
+/// How long the motions are looked at, s, and the friction between tyre and road.
+CRASHRANK_API crashrank_status crashrank_scenario_set_horizon(crashrank_scenario* scenario,
+                                                              double horizon_s, double grip,
+                                                              crashrank_error* error);
+
+/// Number of shapes, in the order in which crashrank_rank wants their models. 0 for NULL.
+CRASHRANK_API size_t crashrank_scenario_model_count(const crashrank_scenario* scenario);
+/// Name of a shape, NULL where there is none.
+CRASHRANK_API const char* crashrank_scenario_model_name(const crashrank_scenario* scenario,
+                                                        size_t index);
+/// Where its mesh is: empty unless crashrank_scenario_load found it, NULL where there is none.
+CRASHRANK_API const char* crashrank_scenario_model_path(const crashrank_scenario* scenario,
+                                                        size_t index);
+
+// ---- Ranking ------------------------------------------------------------------------------------
+
+/// Begin with all zero: that is the default of everything.
+typedef struct crashrank_rank_options {
+  const char* measure;  ///< polygons, area, closing-energy, delta-v, energy, intrusion or harm;
+                        ///< NULL: as the scenario says (a scenario made here: polygons)
+  uint32_t workers;     ///< threads that share the work, 64 at most; the answer is the same
+  int32_t json;         ///< other than 0: crashrank_ranking_json has an answer
+} crashrank_rank_options;
+
+/// Ranks the candidates by what they would destroy. The model with index i is that of the shape
+/// with index i. `options` may be NULL. Errors: usage (number of models, measure), bad_input,
+/// internal. Cost: about the candidates times the bodies they come near. Allocates, may start
+/// threads.
+CRASHRANK_API crashrank_status crashrank_rank(const crashrank_scenario* scenario,
+                                              const crashrank_models* models,
+                                              const crashrank_rank_options* options,
+                                              crashrank_ranking** ranking, crashrank_error* error);
+/// Ends it; NULL is left alone.
+CRASHRANK_API void crashrank_ranking_free(crashrank_ranking* ranking);
+
+/// What choosing a candidate leads to. Of contacts the first is told; without one its numbers are
+/// NaN.
+typedef struct crashrank_choice {
+  const char* candidate;       ///< its name; the ranking's
+  const char* other;           ///< who is hit first, NULL for nobody; the ranking's
+  double score;                ///< in the measure's unit, lower is better, 0 without contact; NaN
+                               ///< where only the interval is known
+  double lowest_score;         ///< the interval that contains the score
+  double highest_score;        ///< and its upper end
+  double time_of_impact_s;     ///< from now
+  double closing_speed_mps;    ///< of the points that meet
+  double delta_v_mps;          ///< the ego's change of velocity, magnitude
+  double other_delta_v_mps;    ///< and that of who is hit
+  double pdof_deg;             ///< where the force on the ego comes from, clockwise from ahead
+  uint64_t damaged_triangles;  ///< of the ego, from all contacts
+  uint64_t contacts;           ///< bodies hit together
+} crashrank_choice;
+
+/// Number of candidates, 0 for NULL.
+CRASHRANK_API size_t crashrank_ranking_size(const crashrank_ranking* ranking);
+/// The candidate in a place, 0 the least harmful. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_ranking_get(const crashrank_ranking* ranking, size_t place,
+                                                     crashrank_choice* choice,
+                                                     crashrank_error* error);
+/// Unit of the scores: "triangles", "m2", "J", "m/s", "m", "persons". NULL for NULL.
+CRASHRANK_API const char* crashrank_ranking_unit(const crashrank_ranking* ranking);
+/// The whole answer as `crashrank rank --json` prints it (data/schemas/rank.schema.json), ended by
+/// a zero; the ranking's. NULL where the options did not ask for it.
+CRASHRANK_API const char* crashrank_ranking_json(const crashrank_ranking* ranking);
+
+// ---- Mesh files: in the library crashrank_import ------------------------------------------------
+
+/// Reads a mesh file (OBJ, STL, PLY, OFF, glTF, Collada, FBX, 3DS, AC3D) as it stands, in a process
+/// of its own, and adds its model. Blocks until that has ended. Errors: bad_input, not_found,
+/// limit_exceeded; internal where the importer cannot be started.
+CRASHRANK_API crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
+                                                       crashrank_error* error);
+/// Adds the models of all shapes of a loaded scenario, in their order, read as the scenario says;
+/// none where one fails. Errors as above; usage for a shape without a path.
+CRASHRANK_API crashrank_status crashrank_models_import_scenario(crashrank_models* models,
+                                                                const crashrank_scenario* scenario,
+                                                                crashrank_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+// NOLINTEND(modernize-*)
+
+#endif

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "crashrank/crashrank.h"
+
+#include "crashrank/base/pose.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/collide/pair.hpp"
+#include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/scenario.hpp"
+#include "crashrank/report/escape.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+// What the C interface's names stand for. Both libraries include this: it is compiled into each.
+
+struct crashrank_models {
+  std::vector<crashrank::Model> list;
+};
+
+struct crashrank_query {
+  crashrank::ModelWorkspace workspace;
+  std::vector<crashrank::Pair> pairs;
+  std::vector<crashrank_pair> told;  ///< the same, as the caller knows them
+};
+
+struct crashrank_scenario {
+  crashrank::Scenario scenario;
+};
+
+struct crashrank_ranking {
+  crashrank::RankResult result;
+  std::vector<std::string> actors;
+  std::string json;
+};
+
+namespace crashrank::c {
+
+inline crashrank_status status_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::usage:
+      return CRASHRANK_USAGE;
+    case ErrorCode::bad_input:
+      return CRASHRANK_BAD_INPUT;
+    case ErrorCode::not_found:
+      return CRASHRANK_NOT_FOUND;
+    case ErrorCode::limit_exceeded:
+      return CRASHRANK_LIMIT_EXCEEDED;
+    case ErrorCode::out_of_budget:
+      return CRASHRANK_OUT_OF_BUDGET;
+    default:
+      return CRASHRANK_INTERNAL;
+  }
+}
+
+/// Tells the caller about an error; allocates nothing, so that it can tell of lost memory.
+inline crashrank_status refuse(crashrank_status status, const char* message,
+                               crashrank_error* error) noexcept {
+  if (error == nullptr) return status;
+  error->status = status;
+  std::size_t length = std::min(std::strlen(message), sizeof error->message - 1);
+  // A character is not cut in half: its later bytes are 10xxxxxx.
+  if (message[length] != '\0') {
+    while (length > 0 && (static_cast<unsigned char>(message[length]) & 0xC0U) == 0x80U) --length;
+  }
+  std::memcpy(error->message, message, length);
+  error->message[length] = '\0';
+  return status;
+}
+
+/// The same for the library's errors.
+inline crashrank_status refuse(const Error& why, crashrank_error* error) {
+  return refuse(status_of(why.code), escape_terminal(why.message()).c_str(), error);
+}
+
+/// NULL where there has to be something.
+inline crashrank_status refuse_null(crashrank_error* error) noexcept {
+  return refuse(CRASHRANK_USAGE, "an argument is NULL that has to be given", error);
+}
+
+/// Runs a function that answers a status; nothing that it throws gets out.
+template <class Function>
+crashrank_status guarded(crashrank_error* error, const Function& function) noexcept {
+  try {
+    return function();
+  } catch (const std::bad_alloc&) {
+    return refuse(CRASHRANK_INTERNAL, "there is not enough memory", error);
+  } catch (const std::exception& problem) {
+    return refuse(CRASHRANK_INTERNAL, problem.what(), error);
+  } catch (...) {
+    return refuse(CRASHRANK_INTERNAL, "an unknown failure; report this as a defect", error);
+  }
+}
+
+/// A pose from its 16 numbers. Errors: bad_input.
+inline Result<Pose> to_pose(const double* row_major) {
+  return pose_from_matrix(View<const double>(row_major, 16));
+}
+
+}  // namespace crashrank::c

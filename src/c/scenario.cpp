@@ -1,0 +1,196 @@
+#include "c/handles.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace {
+
+using namespace crashrank;
+using c::guarded;
+using c::refuse;
+using c::refuse_null;
+
+/// Hands a scenario out.
+crashrank_status give(Result<Scenario> made, crashrank_scenario** scenario,
+                      crashrank_error* error) {
+  if (!made) return refuse(made.error(), error);
+  *scenario = new crashrank_scenario{std::move(*made)};
+  return CRASHRANK_OK;
+}
+
+Result<BodyKind> kind_from_name(const std::string& name) {
+  for (int i = 0; i <= static_cast<int>(BodyKind::building); ++i) {
+    const auto kind = static_cast<BodyKind>(i);
+    if (name == body_kind_name(kind)) return kind;
+  }
+  return make_error(ErrorCode::usage, "'" + name + "' is no kind of body",
+                    "choose car, truck, bus, motorcycle, bicycle, pedestrian, barrier, pole or "
+                    "building");
+}
+
+Result<std::vector<TimedPose>> to_poses(const crashrank_timed_pose* poses, std::size_t count) {
+  std::vector<TimedPose> made;
+  if (count > scenario_limits::poses) {
+    return make_error(ErrorCode::limit_exceeded, "a motion has at most 10000 poses");
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Result<Pose> pose = c::to_pose(poses[i].pose);
+    if (!pose) return pose.error();
+    made.push_back({poses[i].time_s, *pose});
+  }
+  return made;
+}
+
+}  // namespace
+
+crashrank_status crashrank_scenario_load(const char* file, crashrank_scenario** scenario,
+                                         crashrank_error* error) {
+  if (file == nullptr || scenario == nullptr) return refuse_null(error);
+  return guarded(error, [&] { return give(load_scenario_file(file), scenario, error); });
+}
+
+crashrank_status crashrank_scenario_create_from_text(const char* text, size_t length,
+                                                     const char* name,
+                                                     crashrank_scenario** scenario,
+                                                     crashrank_error* error) {
+  if (text == nullptr || name == nullptr || scenario == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    if (length > scenario_limits::file_bytes) {
+      return refuse(CRASHRANK_LIMIT_EXCEEDED, "a scenario has at most 16 MiB of text", error);
+    }
+    return give(parse_scenario(std::string(text, length), name), scenario, error);
+  });
+}
+
+crashrank_status crashrank_scenario_create(const char* name, crashrank_scenario** scenario,
+                                           crashrank_error* error) {
+  if (name == nullptr || scenario == nullptr) return refuse_null(error);
+  return guarded(error, [&] {
+    Scenario made;
+    made.name = name;
+    made.grid.reset();
+    made.add_straight_braking = false;
+    return give(std::move(made), scenario, error);
+  });
+}
+
+void crashrank_scenario_free(crashrank_scenario* scenario) { delete scenario; }
+
+crashrank_status crashrank_scenario_add_model(crashrank_scenario* scenario, const char* name,
+                                              const char* kind, double mass_kg,
+                                              crashrank_error* error) {
+  if (scenario == nullptr || name == nullptr || kind == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    const Result<BodyKind> known = kind_from_name(kind);
+    if (!known) return refuse(known.error(), error);
+    ScenarioModel model;
+    model.name = name;
+    model.kind = *known;
+    if (mass_kg != 0.0) model.mass_kg = mass_kg;
+    scenario->scenario.models.push_back(std::move(model));
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_scenario_set_ego(crashrank_scenario* scenario, const crashrank_ego* ego,
+                                            crashrank_error* error) {
+  if (scenario == nullptr || ego == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    const Result<Pose> pose = c::to_pose(ego->pose);
+    if (!pose) return refuse(pose.error(), error);
+    ScenarioEgo made = scenario->scenario.ego;
+    made.model = ego->model;
+    made.pose = *pose;
+    made.speed_mps = ego->speed_mps;
+    made.yaw_rate_radps = ego->yaw_rate_radps;
+    made.wheelbase_m.reset();
+    if (ego->wheelbase_m != 0.0) made.wheelbase_m = ego->wheelbase_m;
+    scenario->scenario.ego = made;
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_scenario_add_actor(crashrank_scenario* scenario,
+                                              const crashrank_actor* actor,
+                                              crashrank_error* error) {
+  if (scenario == nullptr || actor == nullptr || actor->name == nullptr ||
+      (actor->poses == nullptr && actor->pose_count > 0)) {
+    return refuse_null(error);
+  }
+  return guarded(error, [&]() -> crashrank_status {
+    const Result<Pose> pose = c::to_pose(actor->pose);
+    if (!pose) return refuse(pose.error(), error);
+    Result<std::vector<TimedPose>> poses = to_poses(actor->poses, actor->pose_count);
+    if (!poses) return refuse(poses.error(), error);
+    ScenarioActor made;
+    made.name = actor->name;
+    made.model = actor->model;
+    made.pose = *pose;
+    made.speed_mps = actor->speed_mps;
+    made.acceleration_mps2 = actor->acceleration_mps2;
+    made.yaw_rate_radps = actor->yaw_rate_radps;
+    made.poses = std::move(*poses);
+    scenario->scenario.actors.push_back(std::move(made));
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_scenario_add_candidate(crashrank_scenario* scenario,
+                                                  const crashrank_candidate* candidate,
+                                                  crashrank_error* error) {
+  if (scenario == nullptr || candidate == nullptr || candidate->name == nullptr ||
+      (candidate->poses == nullptr && candidate->pose_count > 0)) {
+    return refuse_null(error);
+  }
+  return guarded(error, [&]() -> crashrank_status {
+    Result<std::vector<TimedPose>> poses = to_poses(candidate->poses, candidate->pose_count);
+    if (!poses) return refuse(poses.error(), error);
+    ListedCandidate made;
+    made.name = candidate->name;
+    made.acceleration_mps2 = candidate->acceleration_mps2;
+    if (poses->empty()) made.steering_rad = candidate->steering_rad;
+    made.poses = std::move(*poses);
+    scenario->scenario.listed.push_back(std::move(made));
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_scenario_set_grid(crashrank_scenario* scenario, size_t accelerations,
+                                             size_t steerings, crashrank_error* error) {
+  if (scenario == nullptr) return refuse_null(error);
+  Scenario& changed = scenario->scenario;
+  if (accelerations == 0 && steerings == 0) {
+    changed.grid.reset();
+    changed.add_straight_braking = false;
+    return CRASHRANK_OK;
+  }
+  if (accelerations < 1 || steerings < 1 || accelerations > scenario_limits::grid_side ||
+      steerings > scenario_limits::grid_side) {
+    return refuse(CRASHRANK_USAGE, "a grid has 1 to 101 accelerations and steerings", error);
+  }
+  changed.grid = CandidateGrid{accelerations, steerings};
+  changed.add_straight_braking = true;
+  return CRASHRANK_OK;
+}
+
+crashrank_status crashrank_scenario_set_horizon(crashrank_scenario* scenario, double horizon_s,
+                                                double grip, crashrank_error* error) {
+  if (scenario == nullptr) return refuse_null(error);
+  scenario->scenario.horizon_s = horizon_s;
+  scenario->scenario.grip = grip;
+  return CRASHRANK_OK;
+}
+
+size_t crashrank_scenario_model_count(const crashrank_scenario* scenario) {
+  return scenario == nullptr ? 0 : scenario->scenario.models.size();
+}
+
+const char* crashrank_scenario_model_name(const crashrank_scenario* scenario, size_t index) {
+  if (index >= crashrank_scenario_model_count(scenario)) return nullptr;
+  return scenario->scenario.models[index].name.c_str();
+}
+
+const char* crashrank_scenario_model_path(const crashrank_scenario* scenario, size_t index) {
+  if (index >= crashrank_scenario_model_count(scenario)) return nullptr;
+  return scenario->scenario.models[index].path.c_str();
+}

@@ -1,0 +1,259 @@
+#include "crashrank/crashrank.h"
+#include "crashrank/crashrank.hpp"
+#include "crashrank/mesh/import.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace {
+
+template <auto Free> struct With {
+  template <class T> void operator()(T* object) const { Free(object); }
+};
+using Models = std::unique_ptr<crashrank_models, With<crashrank_models_free>>;
+using Query = std::unique_ptr<crashrank_query, With<crashrank_query_free>>;
+using Scenario = std::unique_ptr<crashrank_scenario, With<crashrank_scenario_free>>;
+using Ranking = std::unique_ptr<crashrank_ranking, With<crashrank_ranking_free>>;
+
+/// Two crossing triangles and one apart.
+const std::vector<float> vertices{0,  0,    0,    1, 0,    0,    0, 1, 0, 0.2F, 0.2F,
+                                  -1, 0.2F, 0.2F, 1, 0.3F, 0.4F, 0, 9, 9, 9};
+const std::vector<uint32_t> triangles{0, 1, 2, 3, 4, 5, 6, 6, 6};
+
+constexpr double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+Models make_models() {
+  crashrank_models* made = nullptr;
+  EXPECT_EQ(crashrank_models_create(&made, nullptr), CRASHRANK_OK);
+  return Models(made);
+}
+
+crashrank_status add(crashrank_models* models, const std::vector<crashrank_part>& parts = {},
+                     crashrank_error* error = nullptr) {
+  return crashrank_models_add(models, vertices.data(), vertices.size() / 3, triangles.data(),
+                              triangles.size() / 3, parts.data(), parts.size(), error);
+}
+
+Query make_query() {
+  crashrank_query* made = nullptr;
+  EXPECT_EQ(crashrank_query_create(&made, nullptr), CRASHRANK_OK);
+  return Query(made);
+}
+
+TEST(CApi, VersionsAreTheHeaders) {
+  EXPECT_EQ(crashrank_abi_version(), CRASHRANK_ABI_VERSION);
+  EXPECT_STREQ(crashrank_version(), CRASHRANK_VERSION_STRING);
+}
+
+TEST(CApi, PairsAreTheLibrarys) {
+  const Models models = make_models();
+  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  EXPECT_EQ(crashrank_models_size(models.get()), 2U);
+  EXPECT_EQ(crashrank_models_triangles(models.get(), 1), 3U);
+  EXPECT_STREQ(crashrank_models_part_name(models.get(), 0, 0), "body");
+  const Query query = make_query();
+  const crashrank_pair* pairs = nullptr;
+  size_t count = 0;
+  ASSERT_EQ(
+      crashrank_collide_all(query.get(), models.get(), 0, 1, identity, &pairs, &count, nullptr),
+      CRASHRANK_OK);
+  // Each triangle touches itself, and the first two each other.
+  const std::vector<crashrank::Pair> expected{{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 2}};
+  ASSERT_EQ(count, expected.size());
+  for (size_t i = 0; i < count; ++i) {
+    EXPECT_EQ(pairs[i].a, expected[i].a);
+    EXPECT_EQ(pairs[i].b, expected[i].b);
+  }
+  char hash[17];
+  ASSERT_EQ(crashrank_pairs_hash(pairs, count, hash, nullptr), CRASHRANK_OK);
+  EXPECT_EQ(hash, crashrank::pairs_hash(expected));
+
+  int32_t touching = -1;
+  ASSERT_EQ(crashrank_collide_any(query.get(), models.get(), 0, 1, identity, &touching, nullptr),
+            CRASHRANK_OK);
+  EXPECT_EQ(touching, 1);
+  double away[16];
+  std::memcpy(away, identity, sizeof away);
+  away[3] = 20.0;
+  ASSERT_EQ(crashrank_collide_any(query.get(), models.get(), 0, 1, away, &touching, nullptr),
+            CRASHRANK_OK);
+  EXPECT_EQ(touching, 0);
+}
+
+TEST(CApi, PartsHaveToCoverTheTriangles) {
+  const Models models = make_models();
+  ASSERT_EQ(add(models.get(), {{"front", 1}, {"rear", 2}}), CRASHRANK_OK);
+  EXPECT_EQ(crashrank_models_parts(models.get(), 0), 2U);
+  EXPECT_STREQ(crashrank_models_part_name(models.get(), 0, 1), "rear");
+  EXPECT_EQ(crashrank_models_part_name(models.get(), 0, 2), nullptr);
+  crashrank_error error{};
+  for (const std::vector<crashrank_part>& parts :
+       std::vector<std::vector<crashrank_part>>{{{"front", 2}},
+                                                {{"front", 2}, {"rear", 2}},
+                                                {{"front", UINT32_MAX}, {"rear", 4}},
+                                                {{"same", 1}, {"same", 2}},
+                                                {{nullptr, 3}}}) {
+    EXPECT_EQ(add(models.get(), parts, &error), CRASHRANK_BAD_INPUT);
+    EXPECT_EQ(error.status, CRASHRANK_BAD_INPUT);
+  }
+  EXPECT_EQ(crashrank_models_size(models.get()), 1U);
+}
+
+TEST(CApi, MistakesAreStatusesWithAMessage) {
+  crashrank_error error{};
+  EXPECT_EQ(crashrank_models_create(nullptr, &error), CRASHRANK_USAGE);
+  EXPECT_NE(error.message[0], '\0');
+  const Models models = make_models();
+  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  const uint32_t beyond[3] = {0, 1, 7};
+  EXPECT_EQ(crashrank_models_add(models.get(), vertices.data(), 7, beyond, 1, nullptr, 0, &error),
+            CRASHRANK_BAD_INPUT);
+  EXPECT_EQ(crashrank_models_add(models.get(), vertices.data(), 7, beyond, 0, nullptr, 0, &error),
+            CRASHRANK_BAD_INPUT);
+  const float infinite[9] = {0, 0, 0, 1, 0, 0, 0, std::numeric_limits<float>::infinity(), 0};
+  const uint32_t one[3] = {0, 1, 2};
+  EXPECT_EQ(crashrank_models_add(models.get(), infinite, 3, one, 1, nullptr, 0, &error),
+            CRASHRANK_BAD_INPUT);
+
+  const Query query = make_query();
+  int32_t touching = 7;
+  double mirror[16];
+  std::memcpy(mirror, identity, sizeof mirror);
+  mirror[0] = -1.0;
+  EXPECT_EQ(crashrank_collide_any(query.get(), models.get(), 0, 0, mirror, &touching, &error),
+            CRASHRANK_BAD_INPUT);
+  mirror[0] = std::nan("");
+  EXPECT_EQ(crashrank_collide_any(query.get(), models.get(), 0, 0, mirror, &touching, &error),
+            CRASHRANK_BAD_INPUT);
+  EXPECT_EQ(crashrank_collide_any(query.get(), models.get(), 0, 1, identity, &touching, &error),
+            CRASHRANK_USAGE);
+  EXPECT_EQ(touching, 7);
+
+  crashrank_scenario* none = nullptr;
+  EXPECT_EQ(crashrank_scenario_load("no/such/scenario.json", &none, &error), CRASHRANK_NOT_FOUND);
+  EXPECT_NE(std::string(error.message).find("scenario.json"), std::string::npos);
+  EXPECT_EQ(crashrank_scenario_create_from_text("{", 1, "text\x1b[2J", &none, &error),
+            CRASHRANK_BAD_INPUT);
+  EXPECT_EQ(std::string(error.message).find('\x1b'), std::string::npos);
+  EXPECT_EQ(none, nullptr);
+}
+
+TEST(CApi, LongMessagesAreCutBetweenCharacters) {
+  crashrank_error error{};
+  crashrank_scenario* none = nullptr;
+  for (std::size_t letters = 500; letters < 512; ++letters) {
+    std::string name(letters, 'x');
+    for (int i = 0; i < 20; ++i) name += "\xc3\xa4";
+    ASSERT_EQ(crashrank_scenario_create_from_text("{", 1, name.c_str(), &none, &error),
+              CRASHRANK_BAD_INPUT);
+    const std::string message = error.message;
+    EXPECT_GE(message.size(), sizeof error.message - 2);
+    const std::size_t last = message.find_last_not_of("\xc3\xa4");
+    ASSERT_NE(last, std::string::npos);
+    EXPECT_EQ((message.size() - 1 - last) % 2, 0U) << message;
+  }
+}
+
+TEST(CApi, FreeingNothingDoesNothing) {
+  crashrank_models_free(nullptr);
+  crashrank_query_free(nullptr);
+  crashrank_scenario_free(nullptr);
+  crashrank_ranking_free(nullptr);
+  EXPECT_EQ(crashrank_ranking_size(nullptr), 0U);
+  EXPECT_EQ(crashrank_ranking_json(nullptr), nullptr);
+  EXPECT_EQ(crashrank_scenario_model_name(nullptr, 0), nullptr);
+}
+
+TEST(CApi, AScenarioThatDoesNotFitIsRefusedByRank) {
+  crashrank_error error{};
+  crashrank_scenario* made = nullptr;
+  ASSERT_EQ(crashrank_scenario_create("empty", &made, &error), CRASHRANK_OK);
+  const Scenario scenario(made);
+  const Models models = make_models();
+  crashrank_ranking* ranking = nullptr;
+  EXPECT_EQ(crashrank_rank(scenario.get(), models.get(), nullptr, &ranking, &error),
+            CRASHRANK_BAD_INPUT);
+  EXPECT_EQ(crashrank_scenario_add_model(scenario.get(), "car", "spaceship", 0, &error),
+            CRASHRANK_USAGE);
+  ASSERT_EQ(crashrank_scenario_add_model(scenario.get(), "car", "car", 0, &error), CRASHRANK_OK);
+  EXPECT_NE(crashrank_rank(scenario.get(), models.get(), nullptr, &ranking, &error), CRASHRANK_OK);
+  EXPECT_EQ(crashrank_scenario_set_grid(scenario.get(), 102, 5, &error), CRASHRANK_USAGE);
+  crashrank_rank_options options{};
+  options.measure = "beauty";
+  EXPECT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &ranking, &error),
+            CRASHRANK_USAGE);
+  EXPECT_EQ(ranking, nullptr);
+}
+
+TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
+  const std::string file = CRASHRANK_SCENARIOS "/crossing_traffic.json";
+  crashrank_error error{};
+  crashrank_scenario* made = nullptr;
+  ASSERT_EQ(crashrank_scenario_load(file.c_str(), &made, &error), CRASHRANK_OK) << error.message;
+  const Scenario scenario(made);
+  const Models models = make_models();
+  ASSERT_EQ(crashrank_models_import_scenario(models.get(), scenario.get(), &error), CRASHRANK_OK)
+      << error.message;
+  ASSERT_EQ(crashrank_models_size(models.get()), crashrank_scenario_model_count(scenario.get()));
+  crashrank_rank_options options{};
+  options.measure = "area";
+  options.json = 1;
+  crashrank_ranking* answer = nullptr;
+  ASSERT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &answer, &error), CRASHRANK_OK)
+      << error.message;
+  const Ranking ranking(answer);
+
+  using namespace crashrank;
+  const Result<crashrank::Scenario> read = load_scenario_file(file);
+  ASSERT_TRUE(read.ok());
+  std::vector<Model> bodies;
+  for (const ScenarioModel& wanted : read->models) {
+    ImportOptions how;
+    how.transform = wanted.transform;
+    Result<ImportedMesh> mesh = import_mesh(wanted.path, how);
+    ASSERT_TRUE(mesh.ok());
+    Result<Model> model = make_model(std::move(mesh->mesh));
+    ASSERT_TRUE(model.ok());
+    bodies.push_back(std::move(*model));
+  }
+  RankOptions how;
+  how.measure = Measure::area;
+  const Result<RankResult> expected = rank(*read, bodies, how);
+  ASSERT_TRUE(expected.ok());
+  ASSERT_EQ(crashrank_ranking_size(ranking.get()), expected->ranking.size());
+  EXPECT_STREQ(crashrank_ranking_unit(ranking.get()), "m2");
+  for (size_t place = 0; place < expected->ranking.size(); ++place) {
+    const CandidateResult& wanted = expected->ranking[place];
+    crashrank_choice choice{};
+    ASSERT_EQ(crashrank_ranking_get(ranking.get(), place, &choice, &error), CRASHRANK_OK);
+    EXPECT_EQ(choice.candidate, expected->candidates[wanted.candidate].name);
+    EXPECT_EQ(choice.score, *wanted.score);
+    EXPECT_EQ(choice.contacts, wanted.contacts.size());
+    if (wanted.contacts.empty()) {
+      EXPECT_EQ(choice.other, nullptr);
+      EXPECT_TRUE(std::isnan(choice.time_of_impact_s));
+    } else {
+      EXPECT_EQ(choice.other, read->actors[wanted.contacts[0].actor].name);
+      EXPECT_EQ(choice.time_of_impact_s, wanted.contacts[0].time_of_impact_s);
+    }
+  }
+  crashrank_choice choice{};
+  EXPECT_EQ(crashrank_ranking_get(ranking.get(), expected->ranking.size(), &choice, &error),
+            CRASHRANK_USAGE);
+  // Character for character but for the time taken.
+  const auto without_time = [](std::string json) {
+    const std::size_t at = json.find("\"elapsed_s\"");
+    return json.erase(at, json.find('\n', at) - at);
+  };
+  EXPECT_EQ(without_time(crashrank_ranking_json(ranking.get())),
+            without_time(ranking_json(*read, bodies, *expected)));
+}
+
+}  // namespace
