@@ -89,6 +89,7 @@ DispatchRecording record(Dispatcher& one_worker, View<const DispatchQuery> queri
   DispatchRecording again;
   PairLists pairs;
   options.recording = &again;
+  options.caller_works = false;
   for (int i = 0; i < times; ++i) {
     run(one_worker, queries, pairs, options);
     if (i == 0) {

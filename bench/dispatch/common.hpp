@@ -50,6 +50,7 @@ const char* store_name(StoreMode store);
 const char* kernel_name(Kernel kernel);
 
 // The commands.
+void estimates(const Scene& scene);
 void goals(const Scene& scene);
 void overhead(const Scene& scene);
 void plan(const Scene& scene);

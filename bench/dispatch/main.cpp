@@ -5,7 +5,8 @@
 #include <cstring>
 
 // dispatch_bench COMMAND A B POSES: measurements of the dispatch on two meshes and a file of poses
-// (one row-major 4x4 matrix of B in A a line). Commands: goals, overhead, plan, validate.
+// (one row-major 4x4 matrix of B in A a line). Commands: estimates, goals, overhead,
+// plan, validate.
 // dispatch_bench poses A B COUNT SEED: prints such poses, front into side, 5 to 30 cm deep.
 int main(int argc, char** argv) {
   using namespace crashrank::bench;
@@ -13,8 +14,11 @@ int main(int argc, char** argv) {
     const char* name;
     void (*run)(const Scene& scene);
   };
-  constexpr Command commands[] = {
-      {"goals", goals}, {"overhead", overhead}, {"plan", plan}, {"validate", validate}};
+  constexpr Command commands[] = {{"estimates", estimates},
+                                  {"goals", goals},
+                                  {"overhead", overhead},
+                                  {"plan", plan},
+                                  {"validate", validate}};
   if (argc == 6 && std::strcmp(argv[1], "poses") == 0) {
     print_poses(load_model(argv[2]), load_model(argv[3]),
                 static_cast<int>(std::strtol(argv[4], nullptr, 10)),
@@ -29,7 +33,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   std::fprintf(stderr,
-               "usage: dispatch_bench goals|overhead|plan|validate A B POSES\n"
+               "usage: dispatch_bench estimates|goals|overhead|plan|validate A B POSES\n"
                "       dispatch_bench poses A B COUNT SEED\n");
   return 2;
 }

@@ -9,13 +9,7 @@ double clock_seconds() noexcept {
 }
 
 void Core::run(const Batch& batch) {
-  double last = measure ? clock_seconds() : 0.0;
-  const auto lap = [&last] {
-    const double now = clock_seconds();
-    const double took = now - last;
-    last = now;
-    return took;
-  };
+  const double begun = measure ? clock_seconds() : 0.0;
   std::uint64_t bytes = 0;
   for (const Fetch& fetch : batch.fetches) {
     store.copy(fetch);
@@ -23,18 +17,26 @@ void Core::run(const Batch& batch) {
   }
   if (measure) {
     batch_times.push_back({static_cast<std::uint32_t>(batch.jobs.size()),
-                           static_cast<std::uint32_t>(batch.fetches.size()), bytes, lap()});
+                           static_cast<std::uint32_t>(batch.fetches.size()), bytes,
+                           clock_seconds() - begun});
   }
   const View<const TreeView> parts = private_parts ? store.parts() : shared_trees;
   for (const Job& job : batch.jobs) {
     if (ended()) return;
-    const std::size_t before = found->pairs.size();
-    run(job, batch.frames[job.frame], parts);
-    if (measure) {
-      job_times.push_back(
-          {job.number, static_cast<std::uint32_t>(found->pairs.size() - before), lap()});
-    }
+    run_measured(job, batch.frames[job.frame], parts);
   }
+}
+
+void Core::run_measured(const Job& job, const QueryFrame& frame, View<const TreeView> parts) {
+  if (!measure) {
+    run(job, frame, parts);
+    return;
+  }
+  const double begun = clock_seconds();
+  const std::size_t before = found->pairs.size();
+  run(job, frame, parts);
+  const auto pairs = static_cast<std::uint32_t>(found->pairs.size() - before);
+  job_times.push_back({job.number, pairs, clock_seconds() - begun});
 }
 
 void Core::run(const Job& job, const QueryFrame& frame, View<const TreeView> parts) {

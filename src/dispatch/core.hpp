@@ -35,6 +35,7 @@ struct Job {
 
 /// What is sent to a core en masse: parts to copy first, then jobs, with the poses they need.
 struct Batch {
+  struct Core* core = nullptr;  ///< to whom it goes
   std::vector<Fetch> fetches;
   std::vector<QueryFrame> frames;
   std::vector<Job> jobs;
@@ -84,11 +85,12 @@ struct alignas(64) Core {
   std::vector<JobTime> job_times;
   std::vector<BatchTime> batch_times;
   std::uint32_t number = 0;
-  std::uint32_t next_batch = 0;  ///< the worker's; its last bit says which batch comes next
   std::array<Batch, 2> batches;  ///< the main thread fills one while the other is out
 
   /// Copies a batch's parts, then works off its jobs. Throws std::bad_alloc.
   void run(const Batch& batch);
+  /// Searches one pair of nodes below `parts`, and measures it where that is wanted.
+  void run_measured(const Job& job, const QueryFrame& frame, View<const TreeView> parts);
   /// Searches one pair of nodes below `parts`.
   void run(const Job& job, const QueryFrame& frame, View<const TreeView> parts);
 

@@ -2,6 +2,7 @@
 
 #include "dispatch/choose_depth.hpp"
 #include "dispatch/core.hpp"
+#include "dispatch/crew.hpp"
 #include "dispatch/estimate_work.hpp"
 #include "dispatch/find_jobs.hpp"
 #include "dispatch/holdings.hpp"
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <exception>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -51,10 +53,14 @@ Status check(View<const DispatchQuery> queries, const DispatchOptions& options) 
 
 struct Dispatcher::State {
   explicit State(WorkerPool started)
-      : pool(std::move(started)), cores(std::max(1U, pool.size())), filling(cores.size()) {}
+      : pool(std::move(started)),
+        processors(std::max(1U, std::thread::hardware_concurrency())),
+        cores(std::size_t{pool.size()} + 1),
+        filling(pool.size()) {}
 
   WorkerPool pool;
-  std::vector<detail::Core> cores;
+  std::uint32_t processors;
+  std::vector<detail::Core> cores;  ///< of the workers, then the calling thread's
   detail::Holdings holdings;
   std::vector<TreeView> trees;       ///< by body
   std::vector<const Model*> models;  ///< by body, for the vector engine; else empty
@@ -113,23 +119,56 @@ struct Dispatcher::State {
 
   void send(std::uint32_t core) noexcept {
     const double before = measure ? detail::clock_seconds() : 0.0;
-    pool.post(core, {[](void* context, std::uint32_t worker) {
-                       State& state = *static_cast<State*>(context);
-                       detail::Core& self = state.cores[worker];
-                       self.run(self.batches[self.next_batch++ & 1U]);
+    pool.post(core, {[](void* context, std::uint32_t) {
+                       const detail::Batch& batch = *static_cast<const detail::Batch*>(context);
+                       batch.core->run(batch);
                      },
-                     this});
+                     &open_batch(core)});
     filling[core].batch ^= 1U;
     filling[core].stale = true;
     if (measure) aside_seconds += detail::clock_seconds() - before;
   }
 
+  void run_here(const detail::FoundJob& found) {
+    const double before = measure ? detail::clock_seconds() : 0.0;
+    detail::Job job;
+    job.query = found.query;
+    job.number = static_cast<std::uint32_t>(found.number);
+    job.part_a = found.body_a;
+    job.part_b = found.body_b;
+    job.start = {holdings.index(found.body_a).nodes()[found.node_a].tree_node,
+                 holdings.index(found.body_b).nodes()[found.node_b].tree_node};
+    cores.back().run_measured(job, frames[found.query], trees);
+    if (measure) aside_seconds += detail::clock_seconds() - before;
+  }
+
+  bool recall(std::uint32_t core) {
+    WorkerPool::Task task;
+    if (!pool.recall(core, task)) return false;
+    cores.back().run(*static_cast<const detail::Batch*>(task.context));
+    return true;
+  }
+
   void prepare(View<const DispatchQuery> queries, PairLists& pairs, const DispatchOptions& options,
                std::uint32_t depth);
   DispatchEnd distribute(View<const DispatchQuery> queries, const DispatchOptions& options,
-                         double begun, DispatchReport& report);
-  DispatchEnd run_here(View<const DispatchQuery> queries, const DispatchOptions& options);
+                         const detail::Crew& crew, double begun, DispatchReport& report);
+  DispatchEnd run_alone(View<const DispatchQuery> queries, const DispatchOptions& options);
   void record(DispatchRecording& recording) const;
+
+  PlacementPolicy& policy(Policy which) {
+    for (auto& [known, policy] : policies) {
+      if (known == which) return *policy;
+    }
+    policies.emplace_back(which, make_policy(which));
+    return *policies.back().second;
+  }
+
+  /// Workers sleep no more until the dispatch is over, unless it keeps them waiting for long.
+  void wake(std::uint32_t workers) noexcept {
+    pool.set_spin(detail::crew_spin_s);
+    for (std::uint32_t worker = 0; worker < workers; ++worker) pool.rouse(worker);
+  }
 
 private:
   detail::Batch& open_batch(std::uint32_t core) noexcept {
@@ -147,21 +186,13 @@ private:
     part = place.number;
     start = detail::copied_node(sent.tree_node, sent.below, start);
   }
-
-  PlacementPolicy& policy(Policy which) {
-    for (auto& [known, policy] : policies) {
-      if (known == which) return *policy;
-    }
-    policies.emplace_back(which, make_policy(which));
-    return *policies.back().second;
-  }
 };
 
 void Dispatcher::State::prepare(View<const DispatchQuery> queries, PairLists& pairs,
                                 const DispatchOptions& options, std::uint32_t depth) {
   const bool copies = options.store == StoreMode::private_copy;
   if (!(options.keep_parts && holdings_valid && holdings_mode == options.store)) {
-    holdings.begin(static_cast<std::uint32_t>(cores.size()));
+    holdings.begin(std::max(1U, pool.size()));
     for (detail::Core& core : cores) core.store.clear();
   }
   holdings_valid = false;
@@ -185,7 +216,7 @@ void Dispatcher::State::prepare(View<const DispatchQuery> queries, PairLists& pa
   for (std::size_t i = 0; i < cores.size(); ++i) {
     detail::Core& core = cores[i];
     core.number = static_cast<std::uint32_t>(i);
-    core.private_parts = copies;
+    core.private_parts = copies && i < pool.size();
     core.shared_trees = trees;
     core.models = models;
     core.cancel = options.cancel;
@@ -196,20 +227,26 @@ void Dispatcher::State::prepare(View<const DispatchQuery> queries, PairLists& pa
     core.measure = measure;
     core.job_times.clear();
     core.batch_times.clear();
-    core.next_batch = 0;
-    for (detail::Batch& batch : core.batches) batch.reserve(options.buffer);
+    if (i == pool.size()) continue;
+    for (detail::Batch& batch : core.batches) {
+      batch.core = &core;
+      batch.reserve(options.buffer);
+    }
     filling[i] = {};
   }
 }
 
 DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
-                                          const DispatchOptions& options, double begun,
-                                          DispatchReport& report) {
+                                          const DispatchOptions& options, const detail::Crew& crew,
+                                          double begun, DispatchReport& report) {
   PlacementPolicy& chosen = policy(options.policy);
-  chosen.begin(pool.size(), options.seed);
+  chosen.begin(crew.workers, options.seed);
   const bool copies = options.store == StoreMode::private_copy;
-  detail::Placer<State> placer(*this, holdings, chosen, pool.size(),
-                               {options.buffer, options.store_bytes, options.queue_bytes, copies},
+  const float seconds_per_work = detail::seconds_per_work(options.kernel);
+  if (measure) options.recording->seconds_per_work = seconds_per_work;
+  detail::Placer<State> placer(*this, holdings, chosen, crew.workers,
+                               {options.buffer, options.store_bytes, options.queue_bytes, copies,
+                                crew.caller, seconds_per_work},
                                waiting, waiting_found);
   double last = measure ? detail::clock_seconds() : 0.0;
   if (measure) options.recording->begin_seconds = last - begun;
@@ -275,9 +312,9 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
   return end;
 }
 
-DispatchEnd Dispatcher::State::run_here(View<const DispatchQuery> queries,
-                                        const DispatchOptions& options) {
-  detail::Core& core = cores[0];
+DispatchEnd Dispatcher::State::run_alone(View<const DispatchQuery> queries,
+                                         const DispatchOptions& options) {
+  detail::Core& core = cores.back();
   for (std::size_t i = 0; i < queries.size(); ++i) {
     if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) {
       return DispatchEnd::cancelled;
@@ -295,7 +332,7 @@ DispatchEnd Dispatcher::State::run_here(View<const DispatchQuery> queries,
 }
 
 void Dispatcher::State::record(DispatchRecording& recording) const {
-  recording.cores = static_cast<std::uint32_t>(cores.size());
+  recording.cores = pool.size();
   recording.bodies.clear();
   for (std::uint32_t body = 0; body < holdings.bodies(); ++body) {
     recording.bodies.push_back(&holdings.index(body));
@@ -342,23 +379,34 @@ Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLi
     const Clock::time_point start = Clock::now();
     const bool measure = options.recording != nullptr;
     state.measure = measure;
-    const double begun = measure ? detail::clock_seconds() : 0.0;
+    double begun = measure ? detail::clock_seconds() : 0.0;
     report.depth = options.depth != auto_depth
                        ? options.depth
                        : detail::choose_depth(queries, state.pool.size(), options);
     const bool here = state.pool.size() == 0 || report.depth == auto_depth;
     if (here) report.depth = auto_depth;
     if (measure) options.recording->jobs.clear();
+    detail::Crew crew;
+    if (!here) {
+      crew = detail::crew_for(state.policy(options.policy), state.pool.size(), state.processors,
+                              options.caller_works);
+      const double before = measure ? detail::clock_seconds() : 0.0;
+      if (crew.awake) state.wake(crew.workers);
+      if (measure) begun += detail::clock_seconds() - before;  // a replay charges it itself
+    }
     state.prepare(queries, pairs, options, report.depth);
-    report.end =
-        here ? state.run_here(queries, options) : state.distribute(queries, options, begun, report);
+    report.end = here ? state.run_alone(queries, options)
+                      : state.distribute(queries, options, crew, begun, report);
+    state.pool.set_spin(-1.0);
+    const double finishing = measure ? detail::clock_seconds() : 0.0;
     pairs.finish();
+    if (measure) options.recording->finish_seconds = detail::clock_seconds() - finishing;
     report.seconds = seconds_since(start);
     if (Status status = state.pool.take_failure(); !status) return status.error();
     state.holdings_valid = report.end == DispatchEnd::ok;
     report.work = state.work;
-    for (std::uint32_t i = 0; i < state.cores.size(); ++i) {
-      report.work += state.cores[i].work;
+    for (const detail::Core& core : state.cores) report.work += core.work;
+    for (std::uint32_t i = 0; i < state.pool.size(); ++i) {
       report.peak_part_bytes = std::max(report.peak_part_bytes, state.holdings.bytes(i));
     }
     for (std::uint32_t body = 0; body < state.holdings.bodies(); ++body) {
@@ -383,6 +431,7 @@ Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLi
   } catch (const std::exception& error) {
     state.stop.store(true, std::memory_order_relaxed);
     state.pool.wait_all();
+    state.pool.set_spin(-1.0);
     static_cast<void>(state.pool.take_failure());
     return make_error(ErrorCode::internal,
                       std::string("the dispatch could not be carried out: ") + error.what());

@@ -1,11 +1,17 @@
 #pragma once
 
 #include "crashrank/collide/box_test.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/part_index.hpp"
 
 #include <algorithm>
 
 namespace crashrank::detail {
+
+/// What a unit of estimated work takes, about: for thresholds.
+inline float seconds_per_work(Kernel kernel) noexcept {
+  return kernel == Kernel::fast ? 25e-9F : 125e-9F;
+}
 
 /// Part of a box's length along each axis that an interval around `center` covers, multiplied.
 inline float covered(const Box& box, const Eigen::Vector3f& center, const Eigen::Vector3f& half) {

@@ -13,10 +13,15 @@ namespace crashrank {
 
 namespace {
 
-double low_quantile(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+void nothing(void* context, std::uint32_t worker) {
+  static_cast<void>(context);
+  static_cast<void>(worker);
 }
 
 struct Times {
@@ -41,6 +46,7 @@ void note_times(void* context, std::uint32_t worker) {
 
 Status measure_waking(WorkerPool& pool, VirtualMachine& machine) {
   constexpr int tries = 200;
+  std::vector<double> post;
   std::vector<double> send;
   std::vector<double> wake;
   std::vector<double> main_wake;
@@ -50,6 +56,8 @@ Status measure_waking(WorkerPool& pool, VirtualMachine& machine) {
     const double before = detail::clock_seconds();
     pool.post(0, {&note_times, &times});
     const double sent = detail::clock_seconds();
+    pool.post(0, {&nothing, nullptr});  // to a worker that is awake, or about to be
+    post.push_back(detail::clock_seconds() - sent);
     pool.wait_all();
     const double back = detail::clock_seconds();
     send.push_back(sent - before);
@@ -57,9 +65,10 @@ Status measure_waking(WorkerPool& pool, VirtualMachine& machine) {
     main_wake.push_back(std::max(0.0, back - times.ended));
   }
   if (!send.empty()) {
-    machine.send_s = low_quantile(send);
-    machine.wake_s = low_quantile(wake);
-    machine.main_wake_s = low_quantile(main_wake);
+    machine.post_s = median(post);
+    machine.send_s = std::max(0.0, median(send) - machine.post_s);
+    machine.wake_s = median(wake);
+    machine.main_wake_s = median(main_wake);
     machine.spin_s = pool.spin_seconds();
   }
   return pool.take_failure();

@@ -15,20 +15,27 @@ inline void pause() noexcept {
 #endif
 }
 
-/// Waits until `word` differs from `seen`: looks for at most `spin`, then sleeps.
-inline void wait_until_changed(const std::atomic<std::uint32_t>& word, std::uint32_t seen,
-                               std::chrono::microseconds spin) noexcept {
-  if (word.load(std::memory_order_acquire) != seen) return;
-  if (spin.count() > 0) {
-    const auto until = std::chrono::steady_clock::now() + spin;
-    do {
-      for (int i = 0; i < 32; ++i) {
-        if (word.load(std::memory_order_acquire) != seen) return;
-        pause();
-      }
-    } while (std::chrono::steady_clock::now() < until);
+/// Waits until `done()`: looks for at most `spin_ns`, which may change meanwhile, then sleeps until
+/// `bell` changes, which it does after every change of what `done` looks at.
+template <class Done>
+void wait_until(const std::atomic<std::uint32_t>& bell, const std::atomic<std::int64_t>& spin_ns,
+                Done&& done) noexcept {
+  using Clock = std::chrono::steady_clock;
+  for (;;) {
+    const std::uint32_t rung = bell.load(std::memory_order_acquire);
+    if (done()) return;
+    if (spin_ns.load(std::memory_order_relaxed) > 0) {
+      const Clock::time_point start = Clock::now();
+      do {
+        for (int i = 0; i < 32; ++i) {
+          if (done()) return;
+          pause();
+        }
+      } while (Clock::now() - start <
+               std::chrono::nanoseconds(spin_ns.load(std::memory_order_relaxed)));
+    }
+    bell.wait(rung, std::memory_order_acquire);
   }
-  word.wait(seen, std::memory_order_acquire);
 }
 
 }  // namespace crashrank::detail

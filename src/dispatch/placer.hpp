@@ -19,6 +19,8 @@ struct PlacerLimits {
   std::size_t store_bytes = 0;  ///< 0: no limit
   std::size_t queue_bytes = 0;  ///< 0: no limit
   bool copies = false;          ///< parts travel; otherwise their bytes are only counted
+  bool caller_works = false;    ///< the main thread works off jobs, too
+  float seconds_per_work = 0.0F;
 };
 
 /// A job with its parts, as the main thread found it.
@@ -40,6 +42,9 @@ struct FoundJob {
 ///   fetch(core, body, node)      puts a part into the core's batch
 ///   append(core, job)            puts a job into the core's batch
 ///   send(core)                   sends the batch
+///   run_here(job)                the main thread works the job off
+///   recall(core)                 takes back the oldest batch not begun and works it off here;
+///                                false where there is none
 template <class Cores> class Placer {
 public:
   Placer(Cores& cores, Holdings& holdings, PlacementPolicy& policy, std::uint32_t count,
@@ -58,6 +63,8 @@ public:
     at_.batch_work = batch_work_.data();
     at_.sent = known_out_.data();
     at_.sent_work = sent_work_.data();
+    at_.caller_works = limits.caller_works;
+    at_.seconds_per_work = limits.seconds_per_work;
     waiting_.clear();
     found_.clear();
     waiting_.reserve(window_);
@@ -99,6 +106,8 @@ public:
     for (std::uint32_t core = 0; core < at_.cores; ++core) {
       if (jobs_[core] != 0) send(core);
     }
+    // Parts of a copied batch are in the core's store alone, or not yet there.
+    if (limits_.caller_works && !limits_.copies) take_back();
     return true;
   }
 
@@ -143,8 +152,47 @@ private:
     }
   }
 
-  /// Places one job that waits.
+  /// Works off one job that waits.
+  void work_here() {
+    const std::uint32_t index = policy_.choose_for_caller(at_);
+    const FoundJob job = found_[index];
+    no_longer_waiting(index);
+    cores_.run_here(job);
+    ++placed_;
+  }
+
+  void no_longer_waiting(std::uint32_t index) {
+    at_.waiting_work -= found_[index].work;
+    const auto offset = static_cast<std::ptrdiff_t>(index);
+    waiting_.erase(waiting_.begin() + offset);
+    found_.erase(found_.begin() + offset);
+    at_.jobs = waiting_;
+    if (waiting_.empty()) at_.waiting_work = 0.0F;  // whatever rounding left
+  }
+
+  /// Works off what cores have not begun, the longest queues first.
+  void take_back() {
+    for (;;) {
+      hear();
+      std::uint32_t core = at_.cores;
+      for (std::uint32_t other = 0; other < at_.cores; ++other) {
+        if (known_out_[other] == 0 || tried_[other] == known_out_[other]) continue;
+        if (core == at_.cores || sent_work_[other] > sent_work_[core]) core = other;
+      }
+      if (core == at_.cores) return;
+      if (!cores_.recall(core)) tried_[core] = known_out_[core];
+    }
+  }
+
+  /// Places one job that waits, or works it off.
   bool place() {
+    if (limits_.caller_works) {
+      hear();
+      if (at_.unclaimed == 0 || policy_.caller_takes(at_)) {
+        work_here();
+        return true;
+      }
+    }
     wait_for_unclaimed();
     const PlacementPolicy::Choice choice = policy_.choose(at_);
     const FoundJob job = found_[choice.job];
@@ -161,12 +209,7 @@ private:
     cores_.append(core, job);
     ++placed_;
     batch_work_[core] += job.work;
-    at_.waiting_work -= job.work;
-    const auto offset = static_cast<std::ptrdiff_t>(choice.job);
-    waiting_.erase(waiting_.begin() + offset);
-    found_.erase(found_.begin() + offset);
-    at_.jobs = waiting_;
-    if (waiting_.empty()) at_.waiting_work = 0.0F;  // whatever rounding left
+    no_longer_waiting(choice.job);
     if (++jobs_[core] == limits_.buffer || policy_.send_early(at_, core)) send(core);
     return true;
   }
@@ -218,6 +261,7 @@ private:
   std::array<float, 64> batch_work_{};         ///< of those
   std::array<float, 64> sent_work_{};          ///< of batches sent and not known to be done
   std::array<std::uint32_t, 64> known_out_{};  ///< batches sent and not known to be done
+  std::array<std::uint32_t, 64> tried_{};      ///< batches out when none could be taken back
   std::array<Queue, 64> queue_{};
   std::uint64_t placed_ = 0;
   std::uint64_t batches_ = 0;

@@ -79,7 +79,8 @@ public:
 /// Binds jobs to cores as late as it can. The core with the least work before it takes, of all jobs
 /// that wait, the one whose parts it holds and the others do not; a batch is sent once it holds the
 /// core's share of the work that is left, so batches shrink towards the end and no core is left
-/// with a long one.
+/// with a long one. The calling thread, when no core can take more, works off the job that would be
+/// dearest to send, since it need not be sent anything.
 class LateMatch final : public PlacementPolicy {
 public:
   /// A wider window finds nearer jobs, and costs the main thread a look at each of them per job.
@@ -88,10 +89,13 @@ public:
   /// A few microseconds of work: finer parts cost the main thread more to place than they spare.
   std::uint32_t whole_triangles() const noexcept override { return 16; }
 
+  bool caller_works() const noexcept override { return true; }
+
   /// A core without work does not wait for a better choice; one that works on its last batch gets
   /// another, so that it need not be woken, when there is much to choose from.
   bool in_haste(const Placement& at) const noexcept override {
     if (at.jobs.size() < at.cores) return false;
+    if (at.caller_works && at.waiting_work * at.seconds_per_work < worth_waking_s) return false;
     const bool many = at.jobs.size() >= 2 * std::size_t{at.cores};
     for (std::uint32_t core = 0; core < at.cores; ++core) {
       if (at.sent[core] == 0 || (many && at.sent[core] == 1)) return true;
@@ -115,16 +119,46 @@ public:
     return {chosen, core};
   }
 
+  /// The last few microseconds of work, while nobody is at work, are done before anybody could be
+  /// woken.
+  bool caller_takes(const Placement& at) const noexcept override {
+    if (!at.all_found) return false;
+    float left = at.waiting_work;
+    for (std::uint32_t core = 0; core < at.cores; ++core) {
+      if (at.sent[core] != 0) return false;
+      left += at.batch_work[core];
+    }
+    return left * at.seconds_per_work < worth_waking_s;
+  }
+
+  std::uint32_t choose_for_caller(const Placement& at) const noexcept override {
+    std::uint32_t chosen = 0;
+    std::uint64_t most = 0;
+    for (std::uint32_t i = 0; i < at.jobs.size(); ++i) {
+      const std::uint64_t here = least_to_send(at.jobs[i]);
+      if (here > most) {
+        most = here;
+        chosen = i;
+      }
+    }
+    return chosen;
+  }
+
   bool send_early(const Placement& at, std::uint32_t core) const noexcept override {
-    if (!at.all_found && at.batch_work[core] < worth_waking) return false;
+    const float seconds = at.batch_work[core] * at.seconds_per_work;
+    if (!at.all_found && seconds < worth_waking_s) return false;
+    if (at.caller_works && seconds >= enough_s) return true;
     float left = at.waiting_work;
     for (std::uint32_t other = 0; other < at.cores; ++other) left += at.batch_work[other];
-    return at.batch_work[core] * static_cast<float>(at.cores) >= left;
+    const std::uint32_t sharers = at.cores + (at.caller_works ? 1U : 0U);
+    return at.batch_work[core] * static_cast<float>(sharers) >= left;
   }
 
 private:
-  /// Some ten microseconds of the scalar kernel: about what waking a core takes.
-  static constexpr float worth_waking = 80.0F;
+  /// About what waking a core takes.
+  static constexpr float worth_waking_s = 10e-6F;
+  /// A batch that long hides what sending it takes; longer ones make for uneven ends.
+  static constexpr float enough_s = 40e-6F;
 
   /// Bytes that need not be sent if this core takes the job, less those if the best other one does.
   static std::int64_t advantage(const WaitingJob& job, std::uint32_t core) noexcept {
@@ -138,6 +172,15 @@ private:
     const std::uint64_t others_b = b & ~mine;
     if ((others_a & others_b) != 0) return saved - bytes_a - bytes_b;
     return saved - std::max(others_a != 0 ? bytes_a : 0, others_b != 0 ? bytes_b : 0);
+  }
+
+  /// Bytes to send with the job to the core that holds most of it.
+  static std::uint64_t least_to_send(const WaitingJob& job) noexcept {
+    const std::uint64_t a = *job.holders_a;
+    const std::uint64_t b = *job.holders_b;
+    if ((a & b) != 0) return 0;
+    const std::uint64_t all = std::uint64_t{job.bytes_a} + job.bytes_b;
+    return all - std::max(a != 0 ? job.bytes_a : 0U, b != 0 ? job.bytes_b : 0U);
   }
 };
 

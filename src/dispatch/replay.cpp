@@ -1,5 +1,6 @@
 #include "crashrank/dispatch/replay.hpp"
 
+#include "dispatch/crew.hpp"
 #include "dispatch/holdings.hpp"
 #include "dispatch/placer.hpp"
 #include "dispatch/virtual_cores.hpp"
@@ -26,8 +27,11 @@ Status check(const DispatchRecording& recording, const ReplayOptions& options) {
   }
   for (const double time :
        {machine.spin_s, machine.send_s, machine.wake_s, machine.main_wake_s, machine.copy_part_s,
-        machine.link_bytes_per_s, machine.link_latency_s}) {
+        machine.link_bytes_per_s, machine.link_latency_s, machine.post_s, machine.batch_s}) {
     if (!(time >= 0.0)) return make_error(ErrorCode::usage, "times and rates are not negative");
+  }
+  if (!(machine.slice_s > 0.0)) {
+    return make_error(ErrorCode::usage, "a time slice is longer than nothing");
   }
   if (!(machine.copy_bytes_per_s > 0.0)) {
     return make_error(ErrorCode::usage, "copying needs a rate above zero");
@@ -36,7 +40,12 @@ Status check(const DispatchRecording& recording, const ReplayOptions& options) {
 }
 
 ReplayReport replay_checked(const DispatchRecording& recording, const ReplayOptions& options) {
-  const VirtualMachine& machine = options.machine;
+  const std::unique_ptr<PlacementPolicy> policy = make_policy(options.policy);
+  VirtualMachine machine = options.machine;
+  const detail::Crew crew =
+      detail::crew_for(*policy, machine.workers, machine.processors, options.caller_works);
+  machine.workers = crew.workers;
+  if (crew.awake) machine.spin_s = std::max(machine.spin_s, detail::crew_spin_s);
   detail::Holdings holdings;
   holdings.begin(machine.workers);
   ReplayReport report;
@@ -46,15 +55,15 @@ ReplayReport replay_checked(const DispatchRecording& recording, const ReplayOpti
     model_bytes += static_cast<double>(body->model_bytes());
   }
   detail::VirtualCores cores(recording, holdings, machine);
-  const std::unique_ptr<PlacementPolicy> policy = make_policy(options.policy);
   policy->begin(machine.workers, options.seed);
   std::vector<WaitingJob> waiting;
   std::vector<detail::FoundJob> found;
   detail::Placer<detail::VirtualCores> placer(
       cores, holdings, *policy, machine.workers,
       {options.buffer, options.store_bytes, options.queue_bytes,
-       options.store == StoreMode::private_copy},
+       options.store == StoreMode::private_copy, crew.caller, recording.seconds_per_work},
       waiting, found);
+  if (crew.awake) cores.rouse();
   cores.work(recording.begin_seconds);
   for (std::size_t i = 0; i < recording.jobs.size(); ++i) {
     const RecordedJob& job = recording.jobs[i];

@@ -155,6 +155,7 @@ private:
   Status record(std::uint32_t depth, Policy policy, std::size_t i, Measured& into) {
     DispatchOptions how = with(depth, policy);
     how.recording = &again_;
+    how.caller_works = false;
     const Result<DispatchReport> report = one_.run(asked_[i], lists_, how);
     if (!report) return report.error();
     if (!into.recorded) {

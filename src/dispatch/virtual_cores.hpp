@@ -19,7 +19,11 @@ class VirtualCores {
 public:
   VirtualCores(const DispatchRecording& recording, const Holdings& holdings,
                const VirtualMachine& machine)
-      : recording_(recording), holdings_(holdings), machine_(machine), cores_(machine.workers) {}
+      : recording_(recording),
+        holdings_(holdings),
+        machine_(machine),
+        cores_(machine.workers),
+        free_(machine.processors - 1) {}
 
   std::uint32_t outstanding(std::uint32_t core) const noexcept { return cores_[core].outstanding; }
   std::uint32_t seen() const noexcept { return heard_; }
@@ -35,12 +39,16 @@ public:
     ++cores_[core].filling.jobs;
   }
   void send(std::uint32_t core);
+  void run_here(const FoundJob& job) { work(recording_.jobs[job.number].run_seconds); }
+  bool recall(std::uint32_t core);
   /// The main thread sleeps until it hears of a finished batch.
   void wait(std::uint32_t seen);
   /// The main thread works.
   void work(double seconds);
   /// Waits until all is done and heard of.
   void wait_all();
+  /// The main thread wakes the workers, so that they spin when their work comes.
+  void rouse();
 
   double now() const noexcept { return now_; }
   double main_seconds() const noexcept { return main_; }
@@ -48,6 +56,7 @@ public:
 
 private:
   static constexpr double never = std::numeric_limits<double>::infinity();
+  static constexpr std::uint32_t main_thread = ~std::uint32_t{0};
 
   struct Batch {
     double run_seconds = 0.0;
@@ -57,25 +66,41 @@ private:
     std::uint64_t pairs = 0;
     double ready_at = 0.0;   ///< not before
     double remaining = 0.0;  ///< processor time
+    bool begun = false;
+  };
+  enum class Phase {
+    idle,     ///< without a batch that is there
+    queued,   ///< waits for a processor
+    running,  ///< has one
   };
   struct Core {
     Batch filling;
     std::deque<Batch> queue;        ///< sent; the front one is in work
     std::deque<double> heard;       ///< when the main thread will hear of finished ones
     std::uint32_t outstanding = 0;  ///< as the main thread knows
-    bool active = false;
+    Phase phase = Phase::idle;
+    double slice_ends = never;  ///< when another thread that waits may take its processor
     double idle_since = -never;
+    double awake_at = 0.0;  ///< not before: it is being woken
   };
 
   bool linked() const noexcept { return machine_.link_bytes_per_s > 0.0; }
   /// Lets time pass until `until` or the next event, whichever is first.
-  void step(double until, bool main_works);
+  void step(double until);
   void finish(Core& core);
+  /// Gives free processors to threads in the order in which they came to need one.
+  void assign();
+  void main_takes_a_processor();
+  void main_gives_its_processor();
 
   const DispatchRecording& recording_;
   const Holdings& holdings_;
   const VirtualMachine& machine_;
   std::vector<Core> cores_;
+  std::deque<std::uint32_t> ready_;  ///< threads that wait for a processor
+  std::uint32_t free_ = 0;           ///< processors
+  Phase main_phase_ = Phase::running;
+  double main_idle_since_ = 0.0;
   double now_ = 0.0;
   double main_ = 0.0;
   double idle_ = 0.0;

@@ -27,11 +27,20 @@ namespace crashrank {
 namespace {
 
 /// A ring of two tasks with one writer, the owner, and one reader, the worker. The counters grow
-/// without end; a task's place is its number's last bit.
+/// without end; a task's place is its number's last bit. A task belongs to whoever moves `claimed`
+/// past it: the worker, or the owner who wants it back. A sleeping worker waits for the bell.
 struct alignas(64) Mailbox {
   std::array<WorkerPool::Task, 2> ring{};
   alignas(64) std::atomic<std::uint32_t> posted{0};
-  alignas(64) std::atomic<std::uint32_t> finished{0};
+  std::atomic<std::uint32_t> bell{0};
+  std::uint32_t recalled = 0;  ///< the owner's
+  alignas(64) std::atomic<std::uint32_t> claimed{0};
+  std::atomic<std::uint32_t> finished{0};
+
+  void ring_bell() noexcept {
+    bell.fetch_add(1, std::memory_order_release);
+    bell.notify_one();
+  }
 };
 
 void pin_to_processor(std::thread& thread, std::uint32_t worker) {
@@ -63,7 +72,8 @@ struct WorkerPool::State {
 
   std::vector<Mailbox> mailboxes;
   std::vector<std::thread> threads;
-  std::chrono::microseconds spin{0};
+  std::atomic<std::int64_t> spin_ns{0};
+  std::int64_t usual_spin_ns = 0;
   alignas(64) std::atomic<std::uint32_t> finished{0};
   alignas(64) std::atomic<bool> stop{false};
   std::atomic<bool> failed{false};
@@ -95,10 +105,15 @@ struct WorkerPool::State {
   void serve(std::uint32_t worker) noexcept {
     Mailbox& mail = mailboxes[worker];
     for (std::uint32_t taken = 0;; ++taken) {
-      detail::wait_until_changed(mail.posted, taken, spin);
+      detail::wait_until(mail.bell, spin_ns,
+                         [&] { return mail.posted.load(std::memory_order_acquire) != taken; });
       if (stop.load(std::memory_order_acquire)) return;
+      std::uint32_t next = taken;
+      if (!mail.claimed.compare_exchange_strong(next, taken + 1, std::memory_order_acq_rel)) {
+        continue;  // taken back
+      }
       run(mail.ring[taken & 1U], worker);
-      mail.finished.store(taken + 1, std::memory_order_release);
+      mail.finished.fetch_add(1, std::memory_order_release);
       finished.fetch_add(1, std::memory_order_release);
       finished.notify_one();
     }
@@ -108,7 +123,7 @@ struct WorkerPool::State {
     stop.store(true, std::memory_order_release);
     for (Mailbox& mail : mailboxes) {
       mail.posted.fetch_add(1, std::memory_order_release);
-      mail.posted.notify_one();
+      mail.ring_bell();
     }
     for (std::thread& thread : threads) thread.join();
   }
@@ -131,7 +146,10 @@ Result<WorkerPool> WorkerPool::start(const PoolOptions& options) {
   try {
     auto state = std::make_unique<State>(options.workers);
     const bool room = std::thread::hardware_concurrency() > options.workers;
-    state->spin = std::chrono::microseconds(options.spin_us >= 0 ? options.spin_us : room ? 20 : 0);
+    state->usual_spin_ns = std::int64_t{1000} * (options.spin_us >= 0 ? options.spin_us
+                                                 : room               ? 20
+                                                                      : 0);
+    state->spin_ns.store(state->usual_spin_ns, std::memory_order_relaxed);
     state->threads.reserve(options.workers);
     State* const raw = state.get();
     for (std::uint32_t worker = 0; worker < options.workers; ++worker) {
@@ -151,12 +169,21 @@ std::uint32_t WorkerPool::size() const noexcept {
 }
 
 double WorkerPool::spin_seconds() const noexcept {
-  return std::chrono::duration<double>(state_->spin).count();
+  return 1e-9 * static_cast<double>(state_->spin_ns.load(std::memory_order_relaxed));
 }
+
+void WorkerPool::set_spin(double seconds) noexcept {
+  const std::int64_t spin = seconds < 0.0
+                                ? state_->usual_spin_ns
+                                : static_cast<std::int64_t>(std::min(seconds, 1e-3) * 1e9);
+  state_->spin_ns.store(spin, std::memory_order_relaxed);
+}
+
+void WorkerPool::rouse(std::uint32_t worker) noexcept { state_->mailboxes[worker].ring_bell(); }
 
 std::uint32_t WorkerPool::outstanding(std::uint32_t worker) const noexcept {
   const Mailbox& mail = state_->mailboxes[worker];
-  return mail.posted.load(std::memory_order_relaxed) -
+  return mail.posted.load(std::memory_order_relaxed) - mail.recalled -
          mail.finished.load(std::memory_order_acquire);
 }
 
@@ -165,7 +192,21 @@ void WorkerPool::post(std::uint32_t worker, Task task) noexcept {
   Mailbox& mail = state_->mailboxes[worker];
   mail.ring[mail.posted.load(std::memory_order_relaxed) & 1U] = task;
   mail.posted.fetch_add(1, std::memory_order_release);
-  mail.posted.notify_one();
+  mail.ring_bell();
+}
+
+bool WorkerPool::recall(std::uint32_t worker, Task& task) noexcept {
+  Mailbox& mail = state_->mailboxes[worker];
+  const std::uint32_t posted = mail.posted.load(std::memory_order_relaxed);
+  std::uint32_t next = mail.claimed.load(std::memory_order_relaxed);
+  while (next != posted) {
+    if (mail.claimed.compare_exchange_weak(next, next + 1, std::memory_order_acq_rel)) {
+      ++mail.recalled;
+      task = mail.ring[next & 1U];
+      return true;
+    }
+  }
+  return false;
 }
 
 std::uint32_t WorkerPool::finished_tasks() const noexcept {
@@ -173,7 +214,8 @@ std::uint32_t WorkerPool::finished_tasks() const noexcept {
 }
 
 void WorkerPool::wait_beyond(std::uint32_t seen) noexcept {
-  detail::wait_until_changed(state_->finished, seen, state_->spin);
+  detail::wait_until(state_->finished, state_->spin_ns,
+                     [&] { return state_->finished.load(std::memory_order_acquire) != seen; });
 }
 
 void WorkerPool::wait_all() noexcept {

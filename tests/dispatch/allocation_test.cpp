@@ -92,6 +92,7 @@ TEST(Allocation, AFailureInAWorkerIsOneErrorAndTheNextRunWorks) {
     DispatchOptions options;
     options.store = store;
     options.depth = 9;
+    options.caller_works = false;
     failing = true;
     const Result<DispatchReport> report = dispatcher->run(queries, lists, options);
     failing = false;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -65,6 +66,15 @@ const std::vector<std::uint32_t> worker_counts{1, 2, 4, 7};
 const std::vector<std::uint32_t> buffers{1, 3, 8, 64};
 #endif
 
+/// A policy, and whether the calling thread works where the policy lets it.
+struct Scheme {
+  Policy policy;
+  bool caller_works;
+};
+const std::vector<Scheme> schemes{{Policy::best_match, true}, {Policy::random, true},
+                                  {Policy::lowest, true},     {Policy::best_match_load, true},
+                                  {Policy::late_match, true}, {Policy::late_match, false}};
+
 // Policies x depths x buffers x workers x stores and kernels.
 TEST(Determinism, OneHashForEveryCombinationUnderShuffledTiming) {
   const Body ego(test::hull(24, 32, 1));
@@ -94,12 +104,13 @@ TEST(Determinism, OneHashForEveryCombinationUnderShuffledTiming) {
     pool.workers = workers;
     Result<Dispatcher> dispatcher = Dispatcher::start(pool);
     ASSERT_TRUE(dispatcher.ok());
-    for (const Policy policy : all_policies()) {
+    for (const Scheme& scheme : schemes) {
       for (std::uint32_t depth = auto_depth; depth <= max_distribution_depth; ++depth) {
         for (const std::uint32_t buffer : buffers) {
           for (const Engine& engine : engines) {
             DispatchOptions options;
-            options.policy = policy;
+            options.policy = scheme.policy;
+            options.caller_works = scheme.caller_works;
             options.depth = depth;
             options.buffer = buffer;
             options.store = engine.store;
@@ -110,17 +121,21 @@ TEST(Determinism, OneHashForEveryCombinationUnderShuffledTiming) {
             ASSERT_TRUE(report.ok());
             ASSERT_EQ(report.value().end, DispatchEnd::ok);
             ASSERT_EQ(hash_of(lists, pairs), expected)
-                << policy_name(policy) << " depth " << depth << " buffer " << buffer << " workers "
-                << workers << " store " << static_cast<int>(engine.store) << " kernel "
-                << static_cast<int>(engine.kernel);
+                << policy_name(scheme.policy) << " caller " << scheme.caller_works << " depth "
+                << depth << " buffer " << buffer << " workers " << workers << " store "
+                << static_cast<int>(engine.store) << " kernel " << static_cast<int>(engine.kernel);
           }
         }
       }
     }
   }
+  for (const Policy policy : all_policies()) {
+    EXPECT_TRUE(std::any_of(schemes.begin(), schemes.end(),
+                            [&](const Scheme& scheme) { return scheme.policy == policy; }));
+  }
   std::cout << combinations
             << " combinations of policy, depth, buffer, workers and mode: one hash\n";
-  EXPECT_EQ(combinations, worker_counts.size() * 5 * 17 * buffers.size() * 3);
+  EXPECT_EQ(combinations, worker_counts.size() * schemes.size() * 17 * buffers.size() * 3);
 }
 
 }  // namespace

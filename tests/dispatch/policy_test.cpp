@@ -124,6 +124,7 @@ struct TwoCores {
     at.batch_work = batch_work.data();
     at.sent = sent.data();
     at.sent_work = sent_work.data();
+    at.seconds_per_work = 0.125e-6F;
     at.jobs = jobs;
   }
 

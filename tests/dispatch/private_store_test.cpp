@@ -62,6 +62,7 @@ void fill_all_cores(Dispatcher& dispatcher, const Scene& scene, PairLists& lists
   options.store = StoreMode::private_copy;
   options.depth = 1;
   options.buffer = 1;
+  options.caller_works = false;
   for (int quiet = 0; quiet < 20;) {
     const Result<DispatchReport> report = dispatcher.run(scene.queries, lists, options);
     ASSERT_TRUE(report.ok());
@@ -83,6 +84,7 @@ TEST(PrivateStore, WorkersReadTheirCopiesAloneAndSmallerPartsInHeldOnesAreHeld) 
   DispatchOptions options;
   options.store = StoreMode::private_copy;
   options.keep_parts = true;
+  options.caller_works = false;  // it reads the trees
   std::vector<PairLists> answers(4);
   {
     const TakenAway nodes_a(scene.ego.tree.nodes);
@@ -145,6 +147,7 @@ TEST(PrivateStore, CopiesEveryPartOnceAndKeepsItFromQueryToQuery) {
   DispatchOptions options;
   options.store = StoreMode::private_copy;
   options.depth = 5;
+  options.caller_works = false;  // all goes through the store
   const Result<DispatchReport> batch = dispatcher->run(scene.queries, lists, options);
   ASSERT_TRUE(batch.ok());
   // One core: each part that any query needs, once.

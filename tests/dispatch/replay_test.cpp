@@ -21,6 +21,7 @@ struct Script {
 
   Script() {
     recording.depth = 1;
+    recording.seconds_per_work = 1e-3F;
     recording.bodies = {&a.index, &b.index};
   }
   void job(std::uint32_t node_a, std::uint32_t node_b, double seconds, double found = 0.0) {
@@ -40,6 +41,8 @@ VirtualMachine free_machine(std::uint32_t processors, std::uint32_t workers) {
   VirtualMachine machine;
   machine.processors = processors;
   machine.workers = workers;
+  machine.post_s = 0.0;
+  machine.batch_s = 0.0;
   machine.send_s = 0.0;
   machine.wake_s = 0.0;
   machine.main_wake_s = 0.0;
@@ -158,6 +161,7 @@ TEST(Replay, SendsWhatOneRealCoreIsSent) {
     options.depth = depth;
     options.store = StoreMode::private_copy;
     options.recording = &recording;
+    options.caller_works = false;
     const Result<DispatchReport> real = dispatcher->run(queries, lists, options);
     ASSERT_TRUE(real.ok());
     EXPECT_EQ(recording.jobs.size(), real.value().jobs);
@@ -171,6 +175,7 @@ TEST(Replay, SendsWhatOneRealCoreIsSent) {
     ReplayOptions replayed;
     replayed.store = StoreMode::private_copy;
     replayed.machine.workers = 1;
+    replayed.caller_works = false;
     const Result<ReplayReport> report = replay(recording, replayed);
     ASSERT_TRUE(report.ok());
     EXPECT_EQ(report.value().transferred_bytes, real.value().transferred_bytes);

@@ -46,6 +46,10 @@ struct DispatchOptions {
   /// Cores still hold what the dispatch before sent them: for callers whose part indices and trees
   /// are the same objects, unchanged. Has no effect after a dispatch that did not end well.
   bool keep_parts = false;
+  /// The calling thread works off jobs, too, under a policy that lets it (late_match). It holds all
+  /// parts, so nothing is sent for those. It needs a processor: of the workers only so many take
+  /// part that each thread has one. False: it finds and places jobs, and waits.
+  bool caller_works = true;
   bool sorted = false;  ///< every query's pairs in one run, sorted by a, then b
   /// Set from any thread to end the dispatch early.
   const std::atomic<bool>* cancel = nullptr;

@@ -19,7 +19,8 @@ enum class Policy {
   lowest,           ///< the core that holds least of the job's parts
   best_match_load,  ///< the least loaded core, then the one that holds most
   late_match,       ///< jobs wait unassigned; the core with least work before it takes the job it
-               ///< is nearest to, in batches that shrink towards the end; small nodes stay whole
+               ///< is nearest to, in batches that shrink towards the end, and the calling thread,
+               ///< which holds every part, those that would be dearest to send
 };
 
 /// All policies, in the order of the enum.
@@ -56,6 +57,8 @@ struct Placement {
   const float* sent_work = nullptr;      ///< by core: of batches sent and not known to be done
   View<const WaitingJob> jobs;           ///< in the order found; never empty in `choose`
   float waiting_work = 0.0F;             ///< their estimated work
+  float seconds_per_work = 0.0F;         ///< what a unit of estimated work takes, about
+  bool caller_works = false;             ///< the calling thread works off jobs, too
   bool all_found = false;                ///< no more will come
 
   bool is_unclaimed(std::uint32_t core) const noexcept { return ((unclaimed >> core) & 1U) != 0; }
@@ -81,6 +84,8 @@ public:
   /// Triangles that are not worth cutting further: a node of no more is a part wherever it stands
   /// above the distribution depth. 0: all parts lie at that depth, or are leaves above it.
   virtual std::uint32_t whole_triangles() const noexcept { return 0; }
+  /// Whether the calling thread, which holds every part, may work off jobs where it would wait.
+  virtual bool caller_works() const noexcept { return false; }
   /// Whether to place a job now, though more can be found and the window has room.
   virtual bool in_haste(const Placement& at) const noexcept {
     static_cast<void>(at);
@@ -88,6 +93,16 @@ public:
   }
   /// A job, and a core whose bit is set in `at.unclaimed`.
   virtual Choice choose(const Placement& at) noexcept = 0;
+  /// Whether the calling thread had better work off a job that waits than place it.
+  virtual bool caller_takes(const Placement& at) const noexcept {
+    static_cast<void>(at);
+    return false;
+  }
+  /// Which job the calling thread works off: index in `Placement::jobs`.
+  virtual std::uint32_t choose_for_caller(const Placement& at) const noexcept {
+    static_cast<void>(at);
+    return 0;
+  }
   /// Whether to send this core's batch although it is not full.
   virtual bool send_early(const Placement& at, std::uint32_t core) const noexcept {
     static_cast<void>(at);

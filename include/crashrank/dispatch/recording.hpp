@@ -17,7 +17,7 @@ struct RecordedJob {
   std::uint32_t body_b = 0;
   std::uint32_t node_a = 0;  ///< index in that body's PartIndex
   std::uint32_t node_b = 0;
-  std::uint32_t core = 0;
+  std::uint32_t core = 0;  ///< as many as there are workers: the calling thread
   std::uint32_t pairs = 0;
   float work = 0.0F;  ///< as estimated before it was done, in triangles to look at
   double find_seconds =
@@ -41,8 +41,9 @@ struct DispatchRecording {
   std::vector<const PartIndex*> bodies;
   std::vector<RecordedJob> jobs;
   std::vector<RecordedBatch> batches;
-  double begin_seconds = 0.0;   ///< main thread, before it looked for the first job
-  double finish_seconds = 0.0;  ///< main thread, after the last batch was done
+  float seconds_per_work = 0.0F;  ///< of estimated work, as the dispatch took it to be
+  double begin_seconds = 0.0;     ///< main thread, before it looked for the first job
+  double finish_seconds = 0.0;    ///< main thread, after the last batch was done
 };
 
 /// Keeps, for every job and batch, the smaller of the times of two recordings of the same dispatch.

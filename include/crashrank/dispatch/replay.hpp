@@ -13,34 +13,41 @@ namespace crashrank {
 
 /// The machine on which recorded jobs are replayed. Seconds and bytes per second.
 ///
-/// Model. The main thread and the workers are threads on `processors` equal processors. The main
-/// thread, when it has something to do, has a processor to itself; workers that have something to
-/// do share the others equally. The main thread finds and places jobs in the recorded order, each
-/// at the time recorded for it, decides by the same code as the real one, and waits as the real one
-/// when all cores are claimed. A batch costs its core the copying of its parts, at `copy_part_s` a
-/// part and `copy_bytes_per_s`, and its jobs' recorded times. Sending to a core that has had
-/// nothing to do for longer than `spin_s` costs the main thread `send_s`, and the core starts
-/// `wake_s` later; a main thread that waited goes on `main_wake_s` after a batch was done. With a
-/// link, copying costs the core nothing, but every batch (parts and jobs) passes one link, first
-/// come first served, and arrives `link_latency_s` later; results (pairs) go back over a second
-/// such link, and the main thread hears of a finished batch that much later.
-/// Not modelled: caches and memory that cores share, beyond what the recorded times hold.
+/// Model. The main thread and the workers are threads on `processors` equal processors. A thread
+/// that has something to do takes a free processor, or waits in line for one; it keeps it until it
+/// has nothing to do, or for `slice_s` when others are in line. The main thread finds and places
+/// jobs in the recorded order, each at the time recorded for it, decides by the same code as the
+/// real one, waits as the real one when all cores are claimed, and works off jobs where the real
+/// one would. Posting a batch costs it `post_s`; a batch costs its core `batch_s`, the copying of
+/// its parts, at `copy_part_s` a part and `copy_bytes_per_s`, and its jobs' recorded times. Sending
+/// to a core that has had nothing to do for longer than `spin_s` costs the main thread `send_s`
+/// more, and the core starts `wake_s` later; a main thread that waited longer than `spin_s` goes on
+/// `main_wake_s` after a batch was done, and waking it costs that core `send_s`. Where every thread
+/// has a processor, workers are woken before the first job is looked for and spin until the end, as
+/// in a real dispatch. With a link, copying costs the core nothing, but every batch (parts and
+/// jobs) passes one link, first come first served, and arrives `link_latency_s` later; results
+/// (pairs) go back over a second such link, and the main thread hears of a finished batch that much
+/// later. Not modelled: caches and memory that cores share, beyond what the recorded times hold,
+/// and what else the machine does.
 struct VirtualMachine {
   std::uint32_t processors = 4;
   std::uint32_t workers = 4;
   double spin_s = 0.0;
+  double post_s = 0.1e-6;
   double send_s = 2e-6;
   double wake_s = 8e-6;
   double main_wake_s = 10e-6;
+  double batch_s = 0.3e-6;
+  double slice_s = 3e-3;
   double copy_part_s = 50e-9;
   double copy_bytes_per_s = 8e9;
   double link_bytes_per_s = 0.0;  ///< 0: cores copy from shared memory themselves
   double link_latency_s = 0.0;
 };
 
-/// Measures what waking threads costs on this machine, on an idle pool of at least one worker: the
-/// 5 % quantiles of 200 tries, since other programs only ever add; about 0.1 s. Fills the pool's
-/// side of `machine` (spin, send and wake times). Errors as `WorkerPool::take_failure`.
+/// Measures what waking threads costs on this machine, on an idle pool of at least one worker:
+/// medians of 200 tries; about 0.1 s. Fills the pool's side of `machine` (spin, post, send and wake
+/// times). Errors as `WorkerPool::take_failure`.
 CRASHRANK_API Status measure_waking(WorkerPool& pool, VirtualMachine& machine);
 
 /// Sets the copying times of `machine` to those that fit the batches of private recordings best
@@ -54,6 +61,7 @@ struct ReplayOptions {
   std::size_t store_bytes = 0;
   std::size_t queue_bytes = 0;
   std::uint64_t seed = 1;
+  bool caller_works = true;  ///< as DispatchOptions has it
   VirtualMachine machine;
 };
 

@@ -43,10 +43,19 @@ public:
   std::uint32_t size() const noexcept;
   /// How long idle threads spin before they sleep, s.
   double spin_seconds() const noexcept;
-  /// Tasks posted to a worker and not finished: 0, 1 or 2.
+  /// Sets that until the next call, s, at most a millisecond: for a stretch of work in which every
+  /// thread has a processor, so that none need be woken. Negative: back to what it was at the
+  /// start.
+  void set_spin(double seconds) noexcept;
+  /// Wakes a worker that sleeps, so that it spins when its task comes.
+  void rouse(std::uint32_t worker) noexcept;
+  /// Tasks posted to a worker and neither finished nor taken back: 0, 1 or 2.
   std::uint32_t outstanding(std::uint32_t worker) const noexcept;
   /// Hands a task over; `outstanding(worker)` has to be below 2.
   void post(std::uint32_t worker, Task task) noexcept;
+  /// Takes back the oldest task that the worker has not begun, for the owner to run; false where
+  /// there is none.
+  bool recall(std::uint32_t worker, Task& task) noexcept;
   /// Sleeps until a task has finished that had not when `seen` was taken from `finished_tasks()`.
   void wait_beyond(std::uint32_t seen) noexcept;
   /// Tasks finished by all workers since the start, modulo 2^32.
