@@ -32,6 +32,7 @@ ExitCode exit_code(ErrorCode code) {
     case ErrorCode::limit_exceeded:
       return exit_bad_input;
     case ErrorCode::out_of_budget:
+    case ErrorCode::out_of_memory:
       return exit_budget;
     case ErrorCode::internal:
       break;

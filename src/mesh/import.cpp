@@ -175,7 +175,8 @@ Result<ImportedMesh> import_file(const std::string& path, const ImportOptions& o
 
   ImportedMesh imported;
   Error failure;
-  switch (detail::read_reply(child, limits, imported, failure)) {
+  const auto read = [&child](void* data, std::size_t size) { return child.read(data, size); };
+  switch (detail::read_reply(read, limits, imported, failure)) {
     case detail::Reply::complete:
       break;
     case detail::Reply::refused:
@@ -200,10 +201,7 @@ Result<ImportedMesh> import_mesh(const std::string& path, const ImportOptions& o
     if (!imported) imported.error().file = path;
     return imported;
   } catch (const std::bad_alloc&) {
-    Error error =
-        make_error(ErrorCode::limit_exceeded, "not enough memory for the mesh", "simplify it");
-    error.file = path;
-    return error;
+    return out_of_memory();
   }
 }
 

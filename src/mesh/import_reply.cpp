@@ -15,13 +15,13 @@ constexpr std::size_t elements_a_read = 1 << 16;
 
 class ReplyReader {
 public:
-  explicit ReplyReader(ChildProcess& child) : child_(child) {}
+  explicit ReplyReader(const ReadBytes& read) : read_(read) {}
 
   bool sound() const { return sound_; }
 
   template <class T> T value() {
     T value{};
-    sound_ = sound_ && child_.read(&value, sizeof value);
+    sound_ = sound_ && read_(&value, sizeof value);
     return value;
   }
 
@@ -32,21 +32,23 @@ public:
       return {};
     }
     std::string text(length, '\0');
-    sound_ = child_.read(text.data(), text.size());
+    sound_ = read_(text.data(), text.size());
     return text;
   }
 
-  template <class T> void array(std::vector<T>& to, std::size_t count) {
+  template <class T> void array(Column<T>& column, std::size_t count) {
+    std::vector<T> to;
     while (sound_ && to.size() < count) {
       const std::size_t have = to.size();
       const std::size_t more = std::min(elements_a_read, count - have);
       to.resize(have + more);
-      sound_ = child_.read(to.data() + have, more * sizeof(T));
+      sound_ = read_(to.data() + have, more * sizeof(T));
     }
+    column = std::move(to);
   }
 
 private:
-  ChildProcess& child_;
+  const ReadBytes& read_;
   bool sound_ = true;
 };
 
@@ -89,9 +91,9 @@ ErrorCode code_of(ImportStatus status) {
 
 }  // namespace
 
-Reply read_reply(ChildProcess& child, const ImportLimits& limits, ImportedMesh& imported,
+Reply read_reply(const ReadBytes& read, const ImportLimits& limits, ImportedMesh& imported,
                  Error& failure) {
-  ReplyReader reader(child);
+  ReplyReader reader(read);
   const auto header = reader.value<ImportHeader>();
   if (!reader.sound()) return Reply::broken_off;
   if (header.magic != import_magic || header.version != import_version) {

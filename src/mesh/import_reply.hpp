@@ -1,7 +1,9 @@
 #pragma once
 
 #include "crashrank/mesh/import.hpp"
-#include "mesh/child_process.hpp"
+
+#include <cstddef>
+#include <functional>
 
 namespace crashrank::detail {
 
@@ -11,9 +13,12 @@ enum class Reply {
   broken_off,  ///< the importer ended, or ran out of time, before it had answered
 };
 
+/// Fetches exactly so many bytes of an answer, or returns false.
+using ReadBytes = std::function<bool(void* data, std::size_t size)>;
+
 /// Reads the importer's answer and believes none of it unchecked: a parser that a file has taken
 /// over can write anything. Counts are held against the limits before memory is asked for.
-Reply read_reply(ChildProcess& child, const ImportLimits& limits, ImportedMesh& imported,
+Reply read_reply(const ReadBytes& read, const ImportLimits& limits, ImportedMesh& imported,
                  Error& failure);
 
 }  // namespace crashrank::detail

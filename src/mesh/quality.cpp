@@ -18,7 +18,7 @@ namespace {
 using Corners = std::array<std::uint32_t, 3>;
 
 // Number of the position of each vertex: equal positions share one, −0 equals 0.
-std::vector<std::uint32_t> weld(const std::vector<Eigen::Vector3f>& vertices) {
+std::vector<std::uint32_t> weld(View<const Eigen::Vector3f> vertices) {
   std::vector<std::uint32_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0U);
   // A total order over all bit patterns, so that vertices that are not finite sort as well.

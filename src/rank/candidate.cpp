@@ -1,6 +1,6 @@
 #include "crashrank/rank/candidate.hpp"
 
-#include "rank/guard.hpp"
+#include "crashrank/base/guarded.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "crashrank/rank/rank.hpp"
 
+#include "crashrank/base/guarded.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/evaluate_on_workers.hpp"
-#include "rank/guard.hpp"
 #include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
 

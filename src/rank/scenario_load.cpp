@@ -1,6 +1,6 @@
 #include "crashrank/rank/scenario.hpp"
 
-#include "rank/guard.hpp"
+#include "crashrank/base/guarded.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,5 +1,5 @@
+#include "crashrank/base/guarded.hpp"
 #include "crashrank/rank/scenario.hpp"
-#include "rank/guard.hpp"
 #include "rank/json_object.hpp"
 #include "rank/json_text.hpp"
 

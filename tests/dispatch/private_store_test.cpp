@@ -24,7 +24,7 @@ using test::Body;
 /// The whole pages inside an array: unreadable while this lives.
 class TakenAway {
 public:
-  template <class T> explicit TakenAway(const std::vector<T>& array) {
+  template <class T> explicit TakenAway(const Column<T>& array) {
     const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
     const auto begin = reinterpret_cast<std::uintptr_t>(array.data());
     const auto end = reinterpret_cast<std::uintptr_t>(array.data() + array.size());

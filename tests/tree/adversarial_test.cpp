@@ -117,13 +117,13 @@ TEST(Adversarial, TheLiteralRulePeelsAStripOneByOne) {
 TEST(Adversarial, TheLiteralRuleStopsAtItsWorkLimit) {
   const TriangleMesh mesh = test::strip(2000);
   std::vector<detail::BuildRecord> records = detail::world_records(mesh);
-  AabbTree tree;
-  detail::TreeWriter writer(tree.nodes);
+  std::vector<Node> nodes;
+  detail::TreeWriter writer(nodes);
   writer.open_root(detail::to_box(detail::bounds(records)), 0, 2000, 0);
   detail::LiteralBuilder(records).build(writer, records, 100000);
   // The sets looked at have 2000, 1999, ... triangles: 51 of them use the limit up, and the other
   // 1949 triangles are halved to the end.
-  EXPECT_EQ(measure_depth(tree.nodes), 51U + 11U);
+  EXPECT_EQ(measure_depth(nodes), 51U + 11U);
 }
 
 TEST(Adversarial, AMillionTriangleStripUnderEveryRule) {
@@ -135,10 +135,12 @@ TEST(Adversarial, AMillionTriangleStripUnderEveryRule) {
   }
   // The literal rule with a twentieth of its work limit, to keep the test short.
   AabbTree tree;
+  std::vector<Node> nodes;
   std::vector<detail::BuildRecord> records = detail::world_records(mesh);
-  detail::TreeWriter writer(tree.nodes);
+  detail::TreeWriter writer(nodes);
   writer.open_root(detail::to_box(detail::bounds(records)), 0, triangles, 0);
   detail::LiteralBuilder(records).build(writer, records, detail::literal_work_limit / 20);
+  tree.nodes = std::move(nodes);
   for (std::uint32_t i = 0; i < triangles; ++i) {
     tree.order.push_back(records[i].index);
     tree.triangles.push_back(mesh.triangle(records[i].index));

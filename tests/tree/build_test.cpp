@@ -113,7 +113,7 @@ TEST(Build, EveryRuleFrameAndLeafSizeGivesAValidTree) {
       expect_ranges_hold(*tree);
       const std::uint32_t most = options.rule == SplitRule::paper ? 1 : options.leaf_size;
       for (const Node& node : tree->nodes) ASSERT_LE(node.count, most);
-      std::vector<std::uint32_t> order = tree->order;
+      Column<std::uint32_t> order = tree->order;
       std::sort(order.begin(), order.end());
       for (std::uint32_t i = 0; i < n; ++i) ASSERT_EQ(order[i], i);
     }

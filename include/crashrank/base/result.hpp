@@ -15,6 +15,7 @@ enum class ErrorCode {
   limit_exceeded,  ///< input larger than a stated limit (3)
   out_of_budget,   ///< a deadline, memory or work budget ended the work (4)
   internal,        ///< the library's or the machine's own failure (1)
+  out_of_memory,   ///< an allocation failed; nothing was kept, and the call may be repeated (4)
 };
 
 /// A failure told so that a person can mend it: where, what, and what to do about it.
@@ -41,6 +42,11 @@ struct Error {
 /// Makes an Error without a file; callers that know the file add it.
 inline Error make_error(ErrorCode code, std::string reason, std::string remedy = {}) {
   return Error{code, {}, {}, std::move(reason), std::move(remedy)};
+}
+
+/// The Error of a failed allocation. Allocates nothing itself: its text fits into the string.
+inline Error out_of_memory() noexcept {
+  return Error{ErrorCode::out_of_memory, {}, {}, "out of memory", {}};
 }
 
 /// A value or an Error (std::expected comes with C++23 only). Reading the one that is not there is

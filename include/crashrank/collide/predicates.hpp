@@ -73,8 +73,11 @@ inline constexpr double underflow_floor = 0x1p-1020;
 // A product that underflows is off by at most 2^-1075 more; inner ones are then multiplied by
 // |x|. Six of them, with room: (|x0| + |x1| + |x2| + 1) · 2^-1020. Overflow gives infinities or
 // NaN, for which both comparisons below are false.
-inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                    const Eigen::Vector3d& d, std::uint64_t& exact_calls) {
+// Inlined always: how much else a translation unit holds should not decide what a triangle test
+// takes.
+[[gnu::always_inline]] inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                           const Eigen::Vector3d& c, const Eigen::Vector3d& d,
+                                           std::uint64_t& exact_calls) {
   const double bx = b.x() - a.x();
   const double by = b.y() - a.y();
   const double bz = b.z() - a.z();

@@ -29,9 +29,6 @@ struct ImportLimits {
   std::size_t polygon_corners = 10'000;  ///< of one polygon: cutting it up is quadratic
 };
 
-/// Part names are valid UTF-8 and at most this long; longer ones are cut.
-inline constexpr std::size_t max_part_name_bytes = 256;
-
 struct ImportOptions {
   ImportTransform transform;
   ImportLimits limits;
@@ -68,8 +65,8 @@ struct ImportedMesh {
 /// was configured for.
 ///
 /// Blocks until that process has ended. Safe from any thread.
-/// Errors: usage (transform), not_found, bad_input, limit_exceeded; internal when the importer
-/// cannot be started.
+/// Errors: usage (transform), not_found, bad_input, limit_exceeded, out_of_memory; internal when
+/// the importer cannot be started.
 CRASHRANK_API Result<ImportedMesh> import_mesh(const std::string& path,
                                                const ImportOptions& options = {});
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
+#include "crashrank/base/column.hpp"
 
 #include <Eigen/Core>
 
@@ -18,6 +19,9 @@ struct Triangle {
   std::array<Eigen::Vector3f, 3> corner;
 };
 
+/// Names of parts that come from files are UTF-8 and at most this long; importing cuts longer ones.
+inline constexpr std::size_t max_part_name_bytes = 256;
+
 /// A named run of consecutive triangles: a bumper, a door. The parts of a mesh cover its triangles
 /// in order, without gap or overlap; their names are unique within the mesh.
 struct Part {
@@ -30,8 +34,8 @@ struct Part {
 /// by vertex index in the order of the file they came from, parts over them. Degenerate and
 /// duplicate triangles keep their places, so that a triangle's index means the same everywhere.
 struct TriangleMesh {
-  std::vector<Eigen::Vector3f> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  Column<Eigen::Vector3f> vertices;
+  Column<std::array<std::uint32_t, 3>> triangles;
   std::vector<Part> parts;
 
   std::size_t size() const noexcept { return triangles.size(); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
+#include "crashrank/base/column.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>
@@ -42,11 +43,11 @@ struct AabbTree {
   /// Columns are the box axes in body coordinates, orthonormal: u = axesᵀ·x.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   bool axes_are_world = true;  ///< axes is exactly the identity
-  std::vector<Node> nodes;     ///< nodes[0] is the root
+  Column<Node> nodes;          ///< nodes[0] is the root
   /// Slot to triangle index of the mesh. A subtree's triangles are a contiguous run of slots.
-  std::vector<std::uint32_t> order;
-  std::vector<Triangle> triangles;  ///< corners by slot, body coordinates
-  std::uint32_t depth = 0;          ///< see `measure_depth`; bounds every traversal's stack
+  Column<std::uint32_t> order;
+  Column<Triangle> triangles;  ///< corners by slot, body coordinates
+  std::uint32_t depth = 0;     ///< see `measure_depth`; bounds every traversal's stack
 
   bool empty() const noexcept { return nodes.empty(); }
   std::size_t bytes() const noexcept {
@@ -57,7 +58,7 @@ struct AabbTree {
 
 /// Edges on the longest way from the root to a leaf: 0 for a lone leaf. O(nodes), with one pass
 /// because a child's index is above its parent's.
-inline std::uint32_t measure_depth(const std::vector<Node>& nodes) {
+inline std::uint32_t measure_depth(View<const Node> nodes) {
   std::vector<std::uint32_t> depth(nodes.size(), 0);
   std::uint32_t deepest = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/base/guarded.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 #include "crashrank/tree/build_records.hpp"
@@ -78,16 +79,59 @@ inline void build_nodes(std::vector<BuildRecord>& records, const BuildOptions& o
 }
 
 /// Puts the triangles of a leaf into the order of their indices and writes corners by slot.
-inline void fill_slots(const TriangleMesh& mesh, std::uint32_t threads, AabbTree& tree) {
-  for (const Node& node : tree.nodes) {
+inline std::vector<Triangle> fill_slots(const TriangleMesh& mesh, std::uint32_t threads,
+                                        View<const Node> nodes, std::vector<std::uint32_t>& order) {
+  for (const Node& node : nodes) {
     if (node.count < 2) continue;
-    const auto first = tree.order.begin() + node.first;
+    std::uint32_t* const first = order.data() + node.first;
     std::sort(first, first + node.count);
   }
-  tree.triangles.resize(tree.order.size());
-  on_slices(tree.order.size(), threads, [&mesh, &tree](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) tree.triangles[i] = mesh.triangle(tree.order[i]);
+  std::vector<Triangle> triangles(order.size());
+  on_slices(order.size(), threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) triangles[i] = mesh.triangle(order[i]);
   });
+  return triangles;
+}
+
+inline Result<AabbTree> build_tree_or_throw(const TriangleMesh& mesh, const BuildOptions& options) {
+  if (options.leaf_size < 1 || options.leaf_size > max_leaf_size) {
+    return make_error(ErrorCode::usage, "a leaf holds 1 to 255 triangles",
+                      "choose a leaf size in that range");
+  }
+  if (options.threads < 1 || options.threads > max_build_threads) {
+    return make_error(ErrorCode::usage, "a tree is built on 1 to 256 threads");
+  }
+  if (Status status = check_mesh(mesh); !status) return status.error();
+  AabbTree tree;
+  std::vector<BuildRecord> records;
+  if (options.frame == BoxFrame::gaussian) {
+    tree.axes = gaussian_axes(mesh);
+    tree.axes_are_world = tree.axes == Eigen::Matrix3d::Identity();
+  }
+  if (tree.axes_are_world) {
+    records = world_records(mesh);
+  } else {
+    Result<std::vector<BuildRecord>> projected = projected_records(mesh, tree.axes);
+    if (!projected) return projected.error();
+    records = std::move(*projected);
+  }
+
+  const std::uint32_t threads = records.size() < min_parallel_triangles ? 1 : options.threads;
+  std::vector<Node> nodes;
+  build_nodes(records, options, threads, nodes);
+  std::vector<std::uint32_t> order(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) order[i] = records[i].index;
+  if (options.reinsertion_passes > 0) {
+    Reinsertion reinsertion(nodes);
+    for (std::uint32_t i = 0; i < options.reinsertion_passes && reinsertion.pass() > 0; ++i) {
+    }
+    reinsertion.write(nodes, order);
+  }
+  tree.triangles = fill_slots(mesh, threads, nodes, order);
+  tree.depth = measure_depth(nodes);
+  tree.nodes = std::move(nodes);
+  tree.order = std::move(order);
+  return tree;
 }
 
 }  // namespace detail
@@ -98,44 +142,9 @@ inline void fill_slots(const TriangleMesh& mesh, std::uint32_t threads, AabbTree
 /// Errors: usage for a leaf size outside 1 to 255 or a number of threads outside 1 to 256;
 /// bad_input for a mesh without triangles, a vertex index out of range, a coordinate that is not
 /// finite (of any vertex, used or not), or coordinates too large to be turned into the Gaussian
-/// frame; limit_exceeded above `max_triangles`. Safe from any thread; throws only std::bad_alloc.
+/// frame; limit_exceeded above `max_triangles`; out_of_memory. Safe from any thread.
 inline Result<AabbTree> build_tree(const TriangleMesh& mesh, const BuildOptions& options = {}) {
-  if (options.leaf_size < 1 || options.leaf_size > detail::max_leaf_size) {
-    return make_error(ErrorCode::usage, "a leaf holds 1 to 255 triangles",
-                      "choose a leaf size in that range");
-  }
-  if (options.threads < 1 || options.threads > detail::max_build_threads) {
-    return make_error(ErrorCode::usage, "a tree is built on 1 to 256 threads");
-  }
-  if (Status status = detail::check_mesh(mesh); !status) return status.error();
-  AabbTree tree;
-  std::vector<detail::BuildRecord> records;
-  if (options.frame == BoxFrame::gaussian) {
-    tree.axes = gaussian_axes(mesh);
-    tree.axes_are_world = tree.axes == Eigen::Matrix3d::Identity();
-  }
-  if (tree.axes_are_world) {
-    records = detail::world_records(mesh);
-  } else {
-    Result<std::vector<detail::BuildRecord>> projected = detail::projected_records(mesh, tree.axes);
-    if (!projected) return projected.error();
-    records = std::move(*projected);
-  }
-
-  const std::uint32_t threads =
-      records.size() < detail::min_parallel_triangles ? 1 : options.threads;
-  detail::build_nodes(records, options, threads, tree.nodes);
-  tree.order.resize(records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) tree.order[i] = records[i].index;
-  if (options.reinsertion_passes > 0) {
-    detail::Reinsertion reinsertion(tree.nodes);
-    for (std::uint32_t i = 0; i < options.reinsertion_passes && reinsertion.pass() > 0; ++i) {
-    }
-    reinsertion.write(tree.nodes, tree.order);
-  }
-  detail::fill_slots(mesh, threads, tree);
-  tree.depth = measure_depth(tree.nodes);
-  return tree;
+  return detail::guarded([&] { return detail::build_tree_or_throw(mesh, options); });
 }
 
 }  // namespace crashrank

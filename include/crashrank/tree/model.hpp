@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/base/guarded.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/wide_tree.hpp"
@@ -18,10 +19,12 @@ struct Model {
 
 /// Builds the trees of a mesh. Errors as `build_tree`.
 inline Result<Model> make_model(TriangleMesh mesh, const BuildOptions& options = {}) {
-  Result<AabbTree> tree = build_tree(mesh, options);
-  if (!tree) return tree.error();
-  WideTree wide = widen(*tree);
-  return Model{std::move(mesh), std::move(*tree), std::move(wide)};
+  return detail::guarded([&]() -> Result<Model> {
+    Result<AabbTree> tree = detail::build_tree_or_throw(mesh, options);
+    if (!tree) return tree.error();
+    WideTree wide = widen(*tree);
+    return Model{std::move(mesh), std::move(*tree), std::move(wide)};
+  });
 }
 
 }  // namespace crashrank

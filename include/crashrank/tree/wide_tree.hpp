@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/base/result.hpp"
+#include "crashrank/base/column.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 
@@ -32,6 +32,9 @@ struct alignas(64) WideNode {
 };
 static_assert(sizeof(WideNode) == 256);
 
+/// Half extent of a lane without a child, m.
+inline constexpr float unused_half = -1e30F;
+
 inline constexpr std::uint32_t wide_leaf_bit = 0x80000000U;
 inline constexpr std::uint32_t max_clusters = 1U << 28U;
 
@@ -56,11 +59,11 @@ struct WideLanes {
 /// Subtrees of at most eight triangles become clusters. Lanes stand in the order of the binary
 /// tree's slots, so that a binary subtree is a run of lanes of one wide node.
 struct WideTree {
-  std::vector<WideNode> nodes;  ///< nodes[0] is the root; empty: the binary tree was too deep
-  std::vector<TriangleCluster> clusters;
+  Column<WideNode> nodes;  ///< nodes[0] is the root; empty: the binary tree was too deep
+  Column<TriangleCluster> clusters;
   /// By binary node: the lanes that hold its subtree, for nodes that hold more than one cluster or
   /// are one; nodes inside a cluster have no lanes.
-  std::vector<WideLanes> lanes_of;
+  Column<WideLanes> lanes_of;
   std::uint32_t depth = 0;  ///< levels of nodes
 
   bool empty() const noexcept { return nodes.empty(); }
@@ -163,7 +166,7 @@ private:
     for (int axis = 0; axis < 3; ++axis) {
       const auto d = static_cast<std::size_t>(axis);
       center_half(own.min[axis], own.max[axis], node.own_center[d], node.own_half[d]);
-      node.half[d].fill(-1e30F);
+      node.half[d].fill(unused_half);
     }
     for (std::size_t i = 0; i < used; ++i) {
       const Box& box = tree_.nodes[lane[i]].box;

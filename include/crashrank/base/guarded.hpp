@@ -11,12 +11,15 @@ namespace crashrank::detail {
 /// leaves the library.
 template <class Function> auto guarded(const Function& function) -> decltype(function()) {
   try {
-    return function();
+    try {
+      return function();
+    } catch (const std::bad_alloc&) {
+      return out_of_memory();
+    } catch (const std::exception& error) {
+      return make_error(ErrorCode::internal, error.what(), "report this as a defect");
+    }
   } catch (const std::bad_alloc&) {
-    return make_error(ErrorCode::internal, "there is not enough memory",
-                      "give smaller input or more memory");
-  } catch (const std::exception& error) {
-    return make_error(ErrorCode::internal, error.what(), "report this as a defect");
+    return out_of_memory();  // there was no room for the other failure's words
   }
 }
 
