@@ -80,20 +80,10 @@ Status check(const Options& options) {
   return Success{};
 }
 
-Result<Body> load_body(const std::string& path, const Options& options) {
-  Result<ImportedMesh> imported = load_mesh(path, options.mesh, true);
-  if (!imported) return imported.error();
-  const Result<BuildOptions> build = options.tree.build_options();
-  if (!build) return build.error();
-  const Clock::time_point start = Clock::now();
-  Result<Model> model = make_model(std::move(imported->mesh), *build);
-  const double build_s = seconds_since(start);
-  if (!model) {
-    Error error = model.error();
-    if (error.file.empty()) error.file = path;
-    return error;
-  }
-  return Body{std::move(*model), build_s};
+Result<Body> load_one(const std::string& path, const Options& options) {
+  Result<LoadedBody> loaded = load_body(path, options.mesh, options.tree, true);
+  if (!loaded) return loaded.error();
+  return Body{std::move(loaded->stored.model), loaded->build_s};
 }
 
 Result<std::vector<Pose>> load_poses(const Options& options) {
@@ -215,9 +205,9 @@ int run(const Options& options) {
   if (const Status sound = check(options); !sound) return fail(sound.error());
   const Result<std::vector<Pose>> poses = load_poses(options);
   if (!poses) return fail(poses.error());
-  const Result<Body> a = load_body(options.a, options);
+  const Result<Body> a = load_one(options.a, options);
   if (!a) return fail(a.error());
-  const Result<Body> b = load_body(options.b, options);
+  const Result<Body> b = load_one(options.b, options);
   if (!b) return fail(b.error());
   std::optional<OutputFile> pairs_out;
   if (!options.pairs_file.empty()) {

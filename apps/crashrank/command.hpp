@@ -11,6 +11,7 @@ using Action = std::function<int()>;
 
 // Each adds its subcommand, and sets `action` when the command line names it.
 void add_inspect(CLI::App& app, Action& action);
+void add_compile(CLI::App& app, Action& action);
 void add_collide(CLI::App& app, Action& action);
 void add_rank(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);

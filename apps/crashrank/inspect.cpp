@@ -6,10 +6,12 @@
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/report/escape.hpp"
 #include "crashrank/report/table.hpp"
+#include "crashrank/tree/model_file.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +24,48 @@ struct Options {
   bool json = false;
   MeshArguments mesh;
 };
+
+/// What a model file is beside its mesh.
+struct Compiled {
+  ModelFileFacts facts;
+  StoredModel stored;
+};
+
+Json to_json(const Compiled& compiled) {
+  const Model& model = compiled.stored.model;
+  const MassProperties& mass = compiled.stored.mass;
+  const ImportTransform& transform = compiled.stored.transform;
+  return {{"version", compiled.facts.version},
+          {"bytes", compiled.facts.bytes},
+          {"checksum", fmt::format("{:08x}", compiled.facts.checksum)},
+          {"tree_nodes", model.tree.nodes.size()},
+          {"tree_depth", model.tree.depth},
+          {"tree_frame", model.tree.axes_are_world ? "world" : "gaussian"},
+          {"wide_nodes", model.wide.nodes.size()},
+          {"clusters", model.wide.clusters.size()},
+          {"mass_kg", mass.mass_kg > 0.0 ? Json(mass.mass_kg) : Json(nullptr)},
+          {"volume_m3", mass.volume_m3},
+          {"center_m", {mass.center_m.x(), mass.center_m.y(), mass.center_m.z()}},
+          {"inertia_per_kg_m2", mass.inertia_per_kg_m2},
+          {"scale", transform.scale},
+          {"up", axis_name(transform.up)},
+          {"forward", axis_name(transform.forward)},
+          {"origin_m", {transform.origin_m.x(), transform.origin_m.y(), transform.origin_m.z()}}};
+}
+
+std::string to_text(const Compiled& compiled) {
+  const Model& model = compiled.stored.model;
+  std::string text = fmt::format(
+      "  model file version {}, {} bytes, checksum {:08x}\n"
+      "  {} nodes, {} deep, along the {} axes; {} wide nodes, {} clusters\n",
+      compiled.facts.version, compiled.facts.bytes, compiled.facts.checksum,
+      model.tree.nodes.size(), model.tree.depth, model.tree.axes_are_world ? "body's" : "Gaussian",
+      model.wide.nodes.size(), model.wide.clusters.size());
+  if (compiled.stored.mass.mass_kg > 0.0) {
+    text += fmt::format("  {:.6g} kg\n", compiled.stored.mass.mass_kg);
+  }
+  return text;
+}
 
 Json to_json(const std::string& file, const ImportedMesh& imported) {
   const TriangleMesh& mesh = imported.mesh;
@@ -66,12 +110,34 @@ std::string to_text(const std::string& file, const ImportedMesh& imported, bool 
   return text + parts.text(colours);
 }
 
+/// A mesh file, or the mesh of a model file.
+Result<ImportedMesh> look_at(const std::string& file, const MeshArguments& arguments,
+                             std::optional<Compiled>& compiled) {
+  if (!is_model_file(file)) return load_mesh(file, arguments, false);
+  if (arguments.given()) {
+    return Error{ErrorCode::usage,
+                 file,
+                 {},
+                 "a model file is in body coordinates already",
+                 "give --scale, --up, --forward and --origin to crashrank compile"};
+  }
+  Result<LoadedModel> loaded = load_model(file);
+  if (!loaded) return loaded.error();
+  ImportedMesh mesh;
+  mesh.mesh = loaded->stored.model.mesh;
+  mesh.quality = assess(mesh.mesh);
+  mesh.warnings = mesh.quality.warnings;
+  compiled = Compiled{loaded->facts, std::move(loaded->stored)};
+  return mesh;
+}
+
 int run(const Options& options) {
   if (const Status single = one_standard_input(options.files); !single) return fail(single.error());
   int code = exit_done;
   Json files = Json::array();
   for (const std::string& file : options.files) {
-    Result<ImportedMesh> imported = load_mesh(file, options.mesh, false);
+    std::optional<Compiled> compiled;
+    Result<ImportedMesh> imported = look_at(file, options.mesh, compiled);
     if (!imported) {
       // The others are still worth their answer; the first failure decides the exit code.
       const int failed = fail(imported.error());
@@ -81,8 +147,10 @@ int run(const Options& options) {
     }
     if (options.json) {
       files.push_back(to_json(file, *imported));
+      if (compiled) files.back()["model"] = to_json(*compiled);
     } else {
       print(to_text(file, *imported, colours_wanted()));
+      if (compiled) print(to_text(*compiled));
     }
   }
   if (options.json) print_json({{"files", std::move(files)}});
@@ -93,8 +161,10 @@ int run(const Options& options) {
 
 void add_inspect(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("inspect", "Look a mesh file over before trusting it");
-  command->add_option("MESH", options->files, "Mesh files; - is standard input")->required();
+  CLI::App* command =
+      app.add_subcommand("inspect", "Look a mesh or model file over before trusting it");
+  command->add_option("MESH", options->files, "Mesh or model files; - is standard input")
+      ->required();
   command->add_flag("--json", options->json, "Answer in JSON");
   options->mesh.add_to(*command);
   command->footer("Example:\n  crashrank inspect car.obj --scale 0.001 --up +y --forward -z");

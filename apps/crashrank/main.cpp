@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   Action action;
   add_inspect(app, action);
+  add_compile(app, action);
   add_collide(app, action);
   add_rank(app, action);
   add_sweep(app, action);
@@ -96,7 +97,7 @@ int main(int argc, char** argv) {
   try {
     return cli::run(argc, argv);
   } catch (const std::bad_alloc&) {
-    return cli::fail(make_error(ErrorCode::out_of_budget, "out of memory"));
+    return cli::fail(out_of_memory());
   } catch (const std::exception& problem) {
     return cli::fail(make_error(ErrorCode::internal, problem.what()));
   }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -84,24 +85,52 @@ Result<ImportTransform> MeshArguments::transform() const {
   return made;
 }
 
-Result<ImportedMesh> load_mesh(const std::string& path, const MeshArguments& arguments, bool tell) {
-  Result<ImportTransform> transform = arguments.transform();
-  if (!transform) return transform.error();
-  ImportOptions options;
-  options.transform = *transform;
-  std::optional<StandardInputFile> received;
-  if (is_standard(path)) {
+const char* axis_name(Axis axis) {
+  const auto found = std::find_if(axis_names.begin(), axis_names.end(),
+                                  [axis](const auto& known) { return known.second == axis; });
+  return found->first;
+}
+
+bool MeshArguments::given() const {
+  const MeshArguments none;
+  return scale != none.scale || up != none.up || forward != none.forward || origin != none.origin;
+}
+
+namespace {
+
+/// Where a mesh's bytes are: its file, or one that standard input was written to.
+class Source {
+public:
+  static Result<Source> of(const std::string& path, const MeshArguments& arguments) {
+    Source source;
+    source.path_ = path;
+    if (!is_standard(path)) return source;
     if (arguments.format.empty()) {
       return make_error(ErrorCode::usage, "standard input has no name to tell its format from",
                         "give --format, such as --format obj");
     }
     Result<StandardInputFile> file =
-        StandardInputFile::receive(options.limits.file_bytes, escape_file_name(arguments.format));
+        StandardInputFile::receive(ImportLimits{}.file_bytes, escape_file_name(arguments.format));
     if (!file) return file.error();
-    received = std::move(*file);
+    source.received_ = std::move(*file);
+    return source;
   }
-  Result<ImportedMesh> imported = import_mesh(received ? received->path() : path, options);
-  const std::string shown = received ? "standard input" : path;
+
+  const std::string& path() const { return received_ ? received_->path() : path_; }
+  std::string shown() const { return received_ ? "standard input" : path_; }
+
+private:
+  std::string path_;
+  std::optional<StandardInputFile> received_;
+};
+
+Result<ImportedMesh> import_from(const Source& source, const MeshArguments& arguments, bool tell) {
+  Result<ImportTransform> transform = arguments.transform();
+  if (!transform) return transform.error();
+  ImportOptions options;
+  options.transform = *transform;
+  Result<ImportedMesh> imported = import_mesh(source.path(), options);
+  const std::string shown = source.shown();
   if (!imported) {
     Error error = imported.error();
     error.file = shown;
@@ -119,6 +148,49 @@ Result<ImportedMesh> load_mesh(const std::string& path, const MeshArguments& arg
     for (const std::string& warning : imported->warnings) warn(shown, warning);
   }
   return imported;
+}
+
+Error of_file(Error error, const std::string& file) {
+  error.file = file;
+  return error;
+}
+
+}  // namespace
+
+Result<ImportedMesh> load_mesh(const std::string& path, const MeshArguments& arguments, bool tell) {
+  const Result<Source> source = Source::of(path, arguments);
+  if (!source) return source.error();
+  return import_from(*source, arguments, tell);
+}
+
+Result<LoadedBody> load_body(const std::string& path, const MeshArguments& arguments,
+                             const TreeArguments& trees, bool tell) {
+  const Result<Source> source = Source::of(path, arguments);
+  if (!source) return source.error();
+  LoadedBody body;
+  if (is_model_file(source->path())) {
+    if (arguments.given() || trees.given()) {
+      return of_file(make_error(ErrorCode::usage, "a model file has its frame and trees already",
+                                "give --scale, --up, --forward, --origin, --split and --frame to "
+                                "crashrank compile"),
+                     source->shown());
+    }
+    Result<LoadedModel> loaded = load_model(source->path());
+    if (!loaded) return of_file(loaded.error(), source->shown());
+    body.stored = std::move(loaded->stored);
+    return body;
+  }
+  Result<ImportedMesh> imported = import_from(*source, arguments, tell);
+  if (!imported) return imported.error();
+  const Result<BuildOptions> build = trees.build_options();
+  if (!build) return build.error();
+  body.stored.transform = *arguments.transform();
+  const auto start = std::chrono::steady_clock::now();
+  Result<Model> model = make_model(std::move(imported->mesh), *build);
+  body.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!model) return of_file(model.error(), source->shown());
+  body.stored.model = std::move(*model);
+  return body;
 }
 
 Status one_standard_input(const std::vector<std::string>& inputs) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "tree_arguments.hpp"
+
 #include "crashrank/base/result.hpp"
 #include "crashrank/mesh/import.hpp"
+#include "crashrank/tree/model_file.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -23,11 +26,28 @@ struct MeshArguments {
 
   /// Errors: usage.
   Result<ImportTransform> transform() const;
+  /// Whether an option asks for other coordinates than the file's.
+  bool given() const;
 };
 
 /// Reads one mesh, standard input for "-". Says every warning on stderr when `tell` is set.
 /// Errors: usage for options that make no sense together; else as `import_mesh`.
 Result<ImportedMesh> load_mesh(const std::string& path, const MeshArguments& arguments, bool tell);
+
+/// "+x", "-x" and so on.
+const char* axis_name(Axis axis);
+
+/// A body as a command wants it: from a mesh or from a model file.
+struct LoadedBody {
+  StoredModel stored;
+  double build_s = 0.0;  ///< what building its trees took, 0 for a model file
+};
+
+/// Reads a mesh and builds its trees, or loads a model file, told by how it begins. A model file
+/// has its frame and trees already: options that would change them are refused (usage). Errors
+/// else as `import_mesh`, `make_model` and `load_model`, the file named.
+Result<LoadedBody> load_body(const std::string& path, const MeshArguments& arguments,
+                             const TreeArguments& trees, bool tell);
 
 /// "-" may stand for one of the inputs only.
 Status one_standard_input(const std::vector<std::string>& inputs);

@@ -11,6 +11,7 @@
 #include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/tree/model.hpp"
+#include "crashrank/tree/model_file.hpp"
 
 #include <memory>
 #include <string>
@@ -45,10 +46,40 @@ Result<Scenario> read_scenario(const Options& options) {
   return load_scenario(*text, "standard input", paths);
 }
 
-Result<std::vector<Model>> load_models(const Scenario& scenario, const BuildOptions& build) {
+/// A compiled model has its body's frame and, where it was told, its mass. False for a mesh.
+Result<bool> load_compiled(ScenarioModel& wanted, const TreeArguments& trees,
+                           std::vector<Model>& models) {
+  if (!is_model_file(wanted.path)) return false;
+  const ImportTransform& t = wanted.transform;
+  if (t.scale != 1.0 || t.up != Axis::plus_z || t.forward != Axis::plus_x ||
+      t.origin_m != Eigen::Vector3d::Zero() || trees.given()) {
+    return Error{ErrorCode::bad_input, wanted.path, "models." + wanted.name,
+                 "a model file has its frame and trees already",
+                 "leave out scale, up, forward and origin, --split and --frame: they are for "
+                 "crashrank compile"};
+  }
+  Result<LoadedModel> loaded = load_model(wanted.path);
+  if (!loaded) {
+    Error error = loaded.error();
+    error.reason += " (it is models." + wanted.name + ".mesh of the scenario)";
+    return error;
+  }
+  if (!wanted.mass_kg && loaded->stored.mass.mass_kg > 0.0) {
+    wanted.mass_kg = loaded->stored.mass.mass_kg;
+  }
+  models.push_back(std::move(loaded->stored.model));
+  return true;
+}
+
+Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& trees) {
+  const Result<BuildOptions> build = trees.build_options();
+  if (!build) return build.error();
   std::vector<Model> models;
   Progress progress("reading meshes", scenario.models.size());
-  for (const ScenarioModel& wanted : scenario.models) {
+  for (ScenarioModel& wanted : scenario.models) {
+    const Result<bool> compiled = load_compiled(wanted, trees, models);
+    if (!compiled) return compiled.error();
+    if (*compiled) continue;
     ImportOptions how;
     how.transform = wanted.transform;
     Result<ImportedMesh> imported = import_mesh(wanted.path, how);
@@ -58,7 +89,7 @@ Result<std::vector<Model>> load_models(const Scenario& scenario, const BuildOpti
       return error;
     }
     for (const std::string& warning : imported->warnings) warn(wanted.path, warning);
-    Result<Model> model = make_model(std::move(imported->mesh), build);
+    Result<Model> model = make_model(std::move(imported->mesh), *build);
     if (!model) {
       Error error = model.error();
       if (error.file.empty()) error.file = wanted.path;
@@ -96,15 +127,16 @@ int run(const Options& options) {
     if (!model) return fail(model.error());
     how.harm.model = *model;
   }
-  const Result<BuildOptions> build = options.tree.build_options();
-  if (!build) return fail(build.error());
-  const Result<Scenario> scenario = read_scenario(options);
+  if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
+    return fail(build.error());
+  }
+  Result<Scenario> scenario = read_scenario(options);
   if (!scenario) return fail(scenario.error());
   // Where the answer goes is seen to before the work.
   if (!options.damage_folder.empty()) {
     if (const Status made = make_folder(options.damage_folder); !made) return fail(made.error());
   }
-  const Result<std::vector<Model>> models = load_models(*scenario, *build);
+  const Result<std::vector<Model>> models = load_models(*scenario, options.tree);
   if (!models) return fail(models.error());
   const Result<RankResult> ranked = rank(*scenario, *models, how);
   if (!ranked) {
@@ -133,7 +165,7 @@ int run(const Options& options) {
 }
 
 constexpr const char* epilogue =
-    R"(Least harmful first. The scenario's format is data/scenario.schema.json. Meshes have to lie in the
+    R"(Least harmful first. The scenario's format is data/scenario.schema.json. Meshes and model files have to lie in the
 scenario's folder or below, or below a folder above it that holds a file named crashrank.root.
 
 Examples:

@@ -129,18 +129,10 @@ Result<SweepOptions> sweep_options(const Options& options) {
   return how;
 }
 
-Result<Model> load_model(const std::string& path, const Options& options) {
-  Result<ImportedMesh> imported = load_mesh(path, options.mesh, true);
-  if (!imported) return imported.error();
-  const Result<BuildOptions> build = options.tree.build_options();
-  if (!build) return build.error();
-  Result<Model> model = make_model(std::move(imported->mesh), *build);
-  if (!model) {
-    Error error = model.error();
-    if (error.file.empty()) error.file = path;
-    return error;
-  }
-  return std::move(*model);
+Result<Model> load_one(const std::string& path, const Options& options) {
+  Result<LoadedBody> loaded = load_body(path, options.mesh, options.tree, true);
+  if (!loaded) return loaded.error();
+  return std::move(loaded->stored.model);
 }
 
 const char* status_of(const SweepRow& row) {
@@ -248,9 +240,9 @@ int run(const Options& options) {
   }
   const Result<std::vector<Pose>> poses = read_poses(options.poses_file);
   if (!poses) return fail(poses.error());
-  const Result<Model> a = load_model(options.a, options);
+  const Result<Model> a = load_one(options.a, options);
   if (!a) return fail(a.error());
-  const Result<Model> b = load_model(options.b, options);
+  const Result<Model> b = load_one(options.b, options);
   if (!b) return fail(b.error());
   const auto progress = std::make_shared<Progress>("sweeping", how->depths.size());
   how->progress = [progress](std::size_t done, std::size_t) { progress->update(done); };

@@ -39,6 +39,11 @@ void TreeArguments::add_to(CLI::App& command) {
       ->group(group);
 }
 
+bool TreeArguments::given() const {
+  const TreeArguments none;
+  return split != none.split || frame != none.frame;
+}
+
 Result<BuildOptions> TreeArguments::build_options() const {
   const auto rule = find(rules, split);
   if (!rule) {

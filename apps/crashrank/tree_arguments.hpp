@@ -17,6 +17,9 @@ struct TreeArguments {
   /// Adds --split and --frame.
   void add_to(CLI::App& command);
 
+  /// Whether an option asks for anything but the default.
+  bool given() const;
+
   /// Errors: usage for a name that is not known.
   Result<BuildOptions> build_options() const;
 };

@@ -1,4 +1,4 @@
-#include "report/utf8.hpp"
+#include "base/utf8.hpp"
 
 namespace crashrank::detail {
 

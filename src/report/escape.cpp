@@ -1,6 +1,6 @@
 #include "crashrank/report/escape.hpp"
 
-#include "report/utf8.hpp"
+#include "base/utf8.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,92 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/base/view.hpp"
+#include "crashrank/mesh/mass_properties.hpp"
+#include "crashrank/mesh/transform.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+
+/// The version of model files that this library writes, and the only one that it reads.
+inline constexpr std::uint32_t model_file_version = 1;
+
+/// A body as a model file keeps it: ready for queries, with what else is known of it.
+/// docs/model-file.md has the file byte by byte.
+struct StoredModel {
+  Model model;
+  /// How the file that the mesh came from was turned into body coordinates; done already.
+  ImportTransform transform;
+  MassProperties mass;
+};
+
+/// What a model file was, beside what is in it.
+struct ModelFileFacts {
+  std::uint32_t version = 0;
+  std::uint32_t checksum = 0;  ///< CRC-32C
+  std::size_t bytes = 0;
+};
+
+struct LoadedModel {
+  StoredModel stored;
+  ModelFileFacts facts;
+};
+
+/// Where the bytes of a loaded model lie.
+enum class ModelStorage {
+  /// In memory of their own, read from the file: whatever happens to the file later does not
+  /// matter.
+  copied,
+  /// In the file, mapped: no copy, and processes that load the same file share its memory. The file
+  /// must not be written to or cut while the model lives: contents that change after they were
+  /// checked lead anywhere, and reading beyond the end of a file that was cut ends the process
+  /// (SIGBUS). `save_model` and `crashrank compile` never write into a file that exists, and a file
+  /// may be replaced by renaming another onto it. For files on a partition that is mounted
+  /// read-only.
+  mapped,
+};
+
+struct LoadModelOptions {
+  ModelStorage storage = ModelStorage::copied;
+  std::size_t max_bytes = std::size_t{4} << 30;  ///< of a file, limit_exceeded above
+};
+
+/// Loads a model file and checks all of it: version, size, checksum, then every number, index,
+/// range, name and box, so that a file that loads is as good as a model just built, whoever wrote
+/// it. Nothing in it decides how much memory is taken beyond a small multiple of its own size.
+///
+/// The columns of the model borrow the bytes that were loaded (see Column) and keep them; copies of
+/// the model share them. O(file); blocks on the file system. Safe from any thread.
+/// Errors: not_found; bad_input for what is no model file, is of another version, cut, extended,
+/// damaged or forged; limit_exceeded; out_of_memory.
+CRASHRANK_API Result<LoadedModel> load_model(const std::string& path,
+                                             const LoadModelOptions& options = {});
+
+/// The same from memory that holds the bytes of a model file and stays as it is for as long as
+/// `keeper` lives; without a keeper, for ever. Errors also: usage unless `bytes` begins at a
+/// multiple of 64.
+CRASHRANK_API Result<LoadedModel> load_model(View<const unsigned char> bytes,
+                                             std::shared_ptr<const void> keeper);
+
+/// The bytes of a model file: the same for the same model on every machine. Checks first what
+/// `load_model` would refuse. Errors: bad_input, limit_exceeded, out_of_memory.
+CRASHRANK_API Result<std::vector<unsigned char>> encode_model(const StoredModel& stored);
+
+/// Writes a model file, as a whole or not at all: it is written beside its place under another
+/// name, brought to the disk and renamed. Blocks on the file system.
+/// Errors: as `encode_model`; usage when there is something at `path` and `overwrite` is not set;
+/// not_found when the folder cannot be written to; internal when the disk is full.
+CRASHRANK_API Status save_model(const StoredModel& stored, const std::string& path,
+                                bool overwrite = false);
+
+/// Whether a file begins as a model file does. False for what cannot be read.
+CRASHRANK_API bool is_model_file(const std::string& path);
+
+}  // namespace crashrank

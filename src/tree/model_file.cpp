@@ -1,0 +1,56 @@
+#include "crashrank/tree/model_file.hpp"
+
+#include "crashrank/base/guarded.hpp"
+#include "tree/file_bytes.hpp"
+#include "tree/model_layout.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace crashrank {
+
+Result<LoadedModel> load_model(const std::string& path, const LoadModelOptions& options) {
+  return detail::guarded([&]() -> Result<LoadedModel> {
+    Result<detail::FileBytes> file = detail::file_bytes(path, options);
+    if (!file) return file.error();
+    Result<LoadedModel> loaded = detail::decode_model(file->bytes, file->keeper, true);
+    if (!loaded) loaded.error().file = path;
+    return loaded;
+  });
+}
+
+Result<LoadedModel> load_model(View<const unsigned char> bytes,
+                               std::shared_ptr<const void> keeper) {
+  return detail::guarded([&]() -> Result<LoadedModel> {
+    if (reinterpret_cast<std::uintptr_t>(bytes.data()) % detail::section_alignment != 0) {
+      return make_error(ErrorCode::usage, "the bytes of a model begin at a multiple of 64");
+    }
+    // Memory that lives for ever needs no keeper, a column does.
+    if (keeper == nullptr) keeper.reset(bytes.data(), [](const void*) {});
+    return detail::decode_model(bytes, std::move(keeper), true);
+  });
+}
+
+Status save_model(const StoredModel& stored, const std::string& path, bool overwrite) {
+  return detail::guarded([&]() -> Status {
+    const Result<std::vector<unsigned char>> bytes = encode_model(stored);
+    if (!bytes) {
+      Error error = bytes.error();
+      error.file = path;
+      return error;
+    }
+    return detail::write_whole(path, *bytes, overwrite);
+  });
+}
+
+bool is_model_file(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"),
+                                                             &std::fclose);
+  if (!file) return false;
+  std::array<unsigned char, detail::model_magic.size()> head{};
+  return std::fread(head.data(), 1, head.size(), file.get()) == head.size() &&
+         head == detail::model_magic;
+}
+
+}  // namespace crashrank

@@ -1,0 +1,171 @@
+#include "cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using cli_test::Json;
+using cli_test::Outcome;
+using cli_test::Workplace;
+
+/// The importer cannot be found, as in a vehicle that has none.
+Outcome without_importer(const Workplace& place, const std::string& arguments) {
+  return place.shell("CRASHRANK_IMPORTER=/nowhere/crashrank-import " CRASHRANK_PROGRAM " " +
+                     arguments);
+}
+
+void write_boxes(const Workplace& place) {
+  place.write("a.obj", cli_test::box_obj("body", -1, -0.9, 0.2, 3, 0.9, 1.5));
+  place.write("b.obj", cli_test::box_obj("block", -1, -1, 0, 1, 1, 2));
+}
+
+Json pairs_of(const Outcome& run) {
+  Json queries = run.json().at("queries");
+  for (Json& query : queries) query.erase("seconds"), query.erase("sort_seconds");
+  return queries;
+}
+
+TEST(Compile, AModelFileStandsWhereAMeshDoes) {
+  const Workplace place;
+  write_boxes(place);
+  for (const std::string name : {"a", "b"}) {
+    const Outcome run = place.crashrank({"compile", name + ".obj", "-o", name + ".crm", "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(run.json().at("model"), name + ".crm");
+    EXPECT_EQ(run.json().at("triangles"), 12);
+    EXPECT_EQ(run.json().at("bytes"), place.read(name + ".crm").size());
+  }
+  const std::vector<std::string> how{"--json", "--pose", "3.5,0.2,0,10,0,0"};
+  std::vector<std::string> meshes{"collide", "a.obj", "b.obj"};
+  std::vector<std::string> models{"collide", "a.crm", "b.crm"};
+  meshes.insert(meshes.end(), how.begin(), how.end());
+  models.insert(models.end(), how.begin(), how.end());
+  const Outcome expected = place.crashrank(meshes);
+  ASSERT_EQ(expected.code, 0) << expected.err;
+  EXPECT_EQ(expected.json()["queries"][0]["intersecting"], true);
+  const Outcome found = place.crashrank(models);
+  ASSERT_EQ(found.code, 0) << found.err;
+  EXPECT_EQ(pairs_of(found), pairs_of(expected));
+
+  const Outcome bare =
+      without_importer(place, "collide a.crm b.crm --json --pose 3.5,0.2,0,10,0,0");
+  ASSERT_EQ(bare.code, 0) << bare.err;
+  EXPECT_EQ(pairs_of(bare), pairs_of(expected));
+  EXPECT_NE(without_importer(place, "collide a.obj b.obj --json").code, 0)
+      << "the importer was found after all, so the test shows nothing";
+
+  place.write("poses", "1 0 0 3.5 0 1 0 0.2 0 0 1 0 0 0 0 1\n");
+  const Outcome sweep = without_importer(
+      place, "sweep a.crm b.crm --poses poses --depths 1:2 --policies lowest --workers 1 --json");
+  EXPECT_EQ(sweep.code, 0) << sweep.err;
+
+  const Outcome piped = place.shell(
+      CRASHRANK_PROGRAM " collide - b.crm --format crm --json --pose 3.5,0.2,0,10,0,0 < a.crm");
+  ASSERT_EQ(piped.code, 0) << piped.err;
+  EXPECT_EQ(pairs_of(piped), pairs_of(expected));
+}
+
+TEST(Compile, RanksFromModelFilesWithoutTheImporter) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Outcome expected = place.crashrank({"rank", "scenario.json", "--json"});
+  ASSERT_EQ(expected.code, 0) << expected.err;
+  for (const std::string name : {"ego", "block"}) {
+    const Outcome run = place.crashrank({"compile", name + ".obj", "-o", name + ".crm"});
+    ASSERT_EQ(run.code, 0) << run.err;
+  }
+  std::string scenario = place.read("scenario.json");
+  for (const std::string name : {"ego", "block"}) {
+    const std::size_t at = scenario.find(name + ".obj");
+    ASSERT_NE(at, std::string::npos);
+    scenario.replace(at, name.size() + 4, name + ".crm");
+  }
+  place.write("compiled.json", scenario);
+  const Outcome found = without_importer(place, "rank compiled.json --json");
+  ASSERT_EQ(found.code, 0) << found.err;
+  EXPECT_EQ(found.json().at("ranking"), expected.json().at("ranking"));
+
+  // Nothing outside the scenario's folder, compiled or not.
+  place.shell("mkdir inner && cp compiled.json inner/");
+  std::string outside = scenario;
+  outside.replace(outside.find("ego.crm"), 7, "../ego.crm");
+  place.write("inner/outside.json", outside);
+  const Outcome refused = place.crashrank({"rank", "inner/outside.json"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("lies outside"), std::string::npos) << refused.err;
+}
+
+TEST(Compile, InspectTellsWhatAModelFileHolds) {
+  const Workplace place;
+  write_boxes(place);
+  // y up, -z forward, millimetres.
+  place.write("mm.obj", cli_test::box_obj("body", 0, 0, -4000, 1800, 1300, 0));
+  const Outcome compiled =
+      place.crashrank({"compile", "mm.obj", "-o", "mm.crm", "--scale", "0.001", "--up", "+y",
+                       "--forward", "-z", "--mass-kg", "1450", "--json"});
+  ASSERT_EQ(compiled.code, 0) << compiled.err;
+  const Outcome run = place.crashrank({"inspect", "mm.crm", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Json file = run.json()["files"][0];
+  EXPECT_EQ(file.at("triangles"), 12);
+  EXPECT_NEAR(file.at("extent_m")[0].get<double>(), 4.0, 1e-6);
+  EXPECT_EQ(file.at("parts")[0].at("name"), "body");
+  const Json& model = file.at("model");
+  EXPECT_EQ(model.at("version"), 1);
+  EXPECT_EQ(model.at("checksum"), compiled.json().at("checksum"));
+  EXPECT_EQ(model.at("bytes"), compiled.json().at("bytes"));
+  EXPECT_EQ(model.at("mass_kg"), 1450.0);
+  EXPECT_NEAR(model.at("volume_m3").get<double>(), 4.0 * 1.8 * 1.3, 1e-5);
+  EXPECT_EQ(model.at("scale"), 0.001);
+  EXPECT_EQ(model.at("up"), "+y");
+  EXPECT_EQ(model.at("forward"), "-z");
+  const Outcome text = place.crashrank({"inspect", "mm.crm"});
+  EXPECT_NE(text.out.find("model file version 1"), std::string::npos) << text.out;
+  EXPECT_FALSE(
+      place.crashrank({"inspect", "a.obj", "--json"}).json()["files"][0].contains("model"));
+
+  // Written again with what it had: the same bytes.
+  ASSERT_EQ(place.crashrank({"compile", "mm.crm", "-o", "again.crm"}).code, 0);
+  EXPECT_EQ(place.read("again.crm"), place.read("mm.crm"));
+}
+
+TEST(Compile, RefusesWhatMakesNoSense) {
+  const Workplace place;
+  write_boxes(place);
+  ASSERT_EQ(place.crashrank({"compile", "a.obj", "-o", "a.crm"}).code, 0);
+  const std::string before = place.read("a.crm");
+
+  const Outcome taken = place.crashrank({"compile", "b.obj", "-o", "a.crm"});
+  EXPECT_EQ(taken.code, 2);
+  EXPECT_TRUE(cli_test::is_one_message(taken.err)) << taken.err;
+  EXPECT_NE(taken.err.find("--force"), std::string::npos) << taken.err;
+  EXPECT_EQ(place.read("a.crm"), before);
+  EXPECT_EQ(place.crashrank({"compile", "b.obj", "-o", "a.crm", "--force"}).code, 0);
+  EXPECT_NE(place.read("a.crm"), before);
+
+  EXPECT_EQ(place.crashrank({"compile", "a.obj"}).code, 2);
+  EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "-"}).code, 2);
+  EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "x.crm", "--mass-kg", "-3"}).code, 2);
+  EXPECT_EQ(place.crashrank({"compile", "nowhere.obj", "-o", "x.crm"}).code, 3);
+  EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "no/folder/x.crm"}).code, 3);
+  EXPECT_EQ(place.crashrank({"collide", "a.crm", "b.obj", "--scale", "2"}).code, 2);
+  EXPECT_EQ(place.crashrank({"collide", "a.crm", "b.obj", "--frame", "gaussian"}).code, 2);
+  EXPECT_EQ(place.crashrank({"inspect", "a.crm", "--up", "+y"}).code, 2);
+
+  std::string damaged = before;
+  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
+  place.write("damaged.crm", damaged);
+  for (const std::string command : {"inspect damaged.crm", "collide damaged.crm b.obj"}) {
+    const Outcome run = place.shell(CRASHRANK_PROGRAM " " + command);
+    EXPECT_EQ(run.code, 3);
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+    EXPECT_NE(run.err.find("damaged.crm: checksum: the file is damaged; compile it again"),
+              std::string::npos)
+        << run.err;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,194 @@
+// Every allocation of loading, building, saving, reading a scenario and ranking is made to fail
+// once: the answer is a typed error, nothing stays allocated, and the same call then works.
+
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/tree/model_file.hpp"
+#include "rank/scenes.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+std::atomic<long> alive{0};
+std::atomic<long> until_failure{-1};  // allocations before the one that fails; below 0: none does
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  if (until_failure.load(std::memory_order_relaxed) >= 0 &&
+      until_failure.fetch_sub(1, std::memory_order_relaxed) == 0) {
+    throw std::bad_alloc();
+  }
+  const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+  void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
+  if (memory == nullptr) throw std::bad_alloc();
+  alive.fetch_add(1, std::memory_order_relaxed);
+  return memory;
+}
+
+void release(void* memory) noexcept {
+  if (memory != nullptr) alive.fetch_sub(1, std::memory_order_relaxed);
+  std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new[](std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { release(memory); }
+void operator delete[](void* memory) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t) noexcept { release(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { release(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { release(memory); }
+
+namespace crashrank {
+namespace {
+
+/// What one attempt came to, without keeping any of it.
+enum class Outcome { done, out_of_memory, other };
+
+template <class T> Outcome outcome(const Result<T>& result) {
+  if (result) return Outcome::done;
+  return result.error().code == ErrorCode::out_of_memory ? Outcome::out_of_memory : Outcome::other;
+}
+
+/// Calls `attempt` with the first, second, third ... allocation failing, until none is left to
+/// fail.
+void fail_each(const char* what, const std::function<Outcome()>& attempt) {
+  ASSERT_EQ(attempt(), Outcome::done) << what;  // what is kept from a first call is there now
+  long n = 0;
+  for (;; ++n) {
+    const long before = alive.load();
+    until_failure = n;
+    const Outcome outcome = attempt();
+    const bool failed = until_failure.exchange(-1) < 0;
+    ASSERT_EQ(alive.load(), before)
+        << what << ": allocation " << n << " failing leaves some behind";
+    if (!failed) {
+      ASSERT_EQ(outcome, Outcome::done) << what;
+      break;
+    }
+    ASSERT_EQ(outcome, Outcome::out_of_memory) << what << ": allocation " << n;
+    ASSERT_EQ(attempt(), Outcome::done) << what << ": once more after allocation " << n;
+  }
+  std::printf("%s: %ld allocations, each failed once\n", what, n);
+  ASSERT_GT(n, 0) << what;
+}
+
+TriangleMesh sample_mesh(int cells) { return scenes::box_mesh({2, 1, 0.75}, cells); }
+
+TEST(AllocationFailure, BuildingATree) {
+  const TriangleMesh mesh = sample_mesh(8);
+  for (const BoxFrame frame : {BoxFrame::world, BoxFrame::gaussian}) {
+    for (const SplitRule rule :
+         {SplitRule::min_relative_segment, SplitRule::paper, SplitRule::sah, SplitRule::median}) {
+      BuildOptions options;
+      options.rule = rule;
+      options.frame = frame;
+      options.reinsertion_passes = 1;
+      fail_each("build_tree", [&] { return outcome(build_tree(mesh, options)); });
+    }
+  }
+}
+
+TEST(AllocationFailure, BuildingATreeOnThreads) {
+  const TriangleMesh mesh = sample_mesh(20);  // 4800 triangles: enough for several threads
+  BuildOptions options;
+  options.threads = 3;
+  // Threads decide how many allocations there are; each is failed that the run before had.
+  for (long n = 0; n < 200; n += 3) {
+    until_failure = n;
+    const Outcome result = outcome(build_tree(mesh, options));
+    const bool failed = until_failure.exchange(-1) < 0;
+    if (!failed) break;
+    ASSERT_NE(result, Outcome::other) << "allocation " << n;
+  }
+  EXPECT_EQ(outcome(build_tree(mesh, options)), Outcome::done);
+}
+
+TEST(AllocationFailure, MakingAModel) {
+  const TriangleMesh mesh = sample_mesh(8);
+  fail_each("make_model", [&] {
+    // The copy is the caller's, and so is what happens when it cannot be made.
+    std::optional<TriangleMesh> copy;
+    const long wanted = until_failure.exchange(-1);
+    copy.emplace(mesh);
+    until_failure = wanted;
+    return outcome(make_model(std::move(*copy)));
+  });
+}
+
+class AllocationFailureOfFiles : public testing::Test {
+protected:
+  AllocationFailureOfFiles()
+      : path_(testing::TempDir() + "allocation_failure." + std::to_string(::getpid())) {
+    stored.model = *make_model(sample_mesh(4));
+    stored.mass = mass_properties(stored.model.mesh);
+  }
+  ~AllocationFailureOfFiles() override { std::filesystem::remove(path_); }
+
+  StoredModel stored;
+  std::string path_;
+};
+
+TEST_F(AllocationFailureOfFiles, SavingAModel) {
+  fail_each("encode_model", [&] { return outcome(encode_model(stored)); });
+  fail_each("save_model", [&] { return outcome(save_model(stored, path_, true)); });
+}
+
+TEST_F(AllocationFailureOfFiles, LoadingAModel) {
+  ASSERT_TRUE(save_model(stored, path_, true).ok());
+  for (const ModelStorage storage : {ModelStorage::copied, ModelStorage::mapped}) {
+    LoadModelOptions options;
+    options.storage = storage;
+    fail_each("load_model", [&] { return outcome(load_model(path_, options)); });
+  }
+}
+
+TEST(AllocationFailure, ReadingAScenario) {
+  const std::string text =
+      R"({"scenario_version": 1, "models": {"car": {"mesh": "car.obj", "kind": "car"}},
+          "ego": {"model": "car", "pose": {"x_m": 0, "y_m": 0, "yaw_deg": 0}, "speed_mps": 10},
+          "actors": [{"name": "other", "model": "car", "pose": {"x_m": 20, "y_m": 0, "yaw_deg": 90},
+                      "speed_mps": 5}],
+          "candidates": {"listed": [{"name": "brake", "acceleration_mps2": -7}]}})";
+  const Result<Scenario> parsed = parse_scenario(text, "scenario.json");
+  ASSERT_TRUE(parsed.ok()) << parsed.error().message();
+  fail_each("parse_scenario", [&] { return outcome(parse_scenario(text, "scenario.json")); });
+}
+
+TEST(AllocationFailure, RankingAScenario) {
+  scenes::Scene scene;
+  scene.models.push_back(*make_model(sample_mesh(1)));
+  scene.scenario.models.emplace_back();
+  scene.scenario.models[0].name = "car";
+  scene.scenario.models[0].mass_kg = 1500.0;
+  scene.scenario.ego.speed_mps = 15.0;
+  scene.scenario.grid.reset();
+  scene.scenario.add_straight_braking = false;
+  scene.add_candidate("keep going", 0.0);
+  scene.add_candidate("brake", -9.0);
+  scene.add_actor("wall", 0, 15.0, 0.3);
+  for (const Measure measure : {Measure::polygons, Measure::harm}) {
+    RankOptions options;
+    options.measure = measure;
+    ASSERT_TRUE(scene.ranked(options).ranking[1].collides);
+    fail_each("rank", [&] { return outcome(rank(scene.scenario, scene.models, options)); });
+  }
+}
+
+}  // namespace
+}  // namespace crashrank

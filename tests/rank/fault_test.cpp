@@ -1,0 +1,117 @@
+// What docs/guide/faults.md promises for input that makes little sense.
+
+#include "rank/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace crashrank {
+namespace {
+
+using scenes::box_mesh;
+using scenes::of;
+using scenes::Scene;
+
+Scene car_and_wall(double gap_m) {
+  Scene scene;
+  for (const char* name : {"car", "wall"}) {
+    scene.scenario.models.emplace_back();
+    scene.scenario.models.back().name = name;
+    scene.scenario.models.back().mass_kg = 1500.0;
+    scene.models.push_back(*make_model(box_mesh({2, 1, 0.75})));
+  }
+  scene.scenario.grid.reset();
+  scene.scenario.add_straight_braking = false;
+  scene.add_actor("wall", 1, 4.0 + gap_m, 0.0);
+  return scene;
+}
+
+TEST(Fault, AHundredThousandCandidatesAreRanked) {
+  Scene scene = car_and_wall(50.0);
+  scene.scenario.ego.speed_mps = 10.0;
+  scene.scenario.horizon_s = 1.0;
+  for (int i = 0; i < 100'000; ++i) scene.add_candidate(std::to_string(i), -1e-5 * i);
+  const RankResult result = scene.ranked();
+  ASSERT_EQ(result.ranking.size(), 100'000U);
+  EXPECT_TRUE(result.complete);
+  EXPECT_EQ(*result.ranking.back().score, 0.0);
+}
+
+TEST(Fault, ACandidateThatDoesNotMoveIsHitOrNot) {
+  Scene scene = car_and_wall(10.0);
+  scene.scenario.horizon_s = 2.0;
+  scene.add_candidate("stand", 0.0);
+  EXPECT_FALSE(of(scene.ranked(), "stand").collides) << "both stand";
+  scene.scenario.actors[0].speed_mps = -10.0;
+  const RankResult result = scene.ranked();
+  const CandidateResult& hit = of(result, "stand");
+  ASSERT_TRUE(hit.collides);
+  EXPECT_NEAR(hit.contacts[0].time_of_impact_s, 1.0, 1e-4);
+  EXPECT_NEAR(hit.contacts[0].closing_speed_mps, 10.0, 1e-9);
+  EXPECT_GT(*hit.score, 0.0);
+  // Nothing moves and the surfaces touch: a contact at time 0 without speed, under every measure.
+  Scene resting = car_and_wall(-0.5);
+  resting.add_candidate("stand", 0.0);
+  for (const Measure measure :
+       {Measure::polygons, Measure::area, Measure::closing_energy, Measure::delta_v,
+        Measure::energy, Measure::intrusion, Measure::harm}) {
+    const RankResult still = resting.ranked(measure);
+    const CandidateResult& stand = of(still, "stand");
+    ASSERT_EQ(stand.contacts.size(), 1U);
+    EXPECT_EQ(stand.contacts[0].state, ImpactState::overlapping);
+    EXPECT_EQ(stand.contacts[0].time_of_impact_s, 0.0);
+    EXPECT_EQ(stand.contacts[0].closing_speed_mps, 0.0);
+    ASSERT_TRUE(stand.score.has_value());
+    EXPECT_TRUE(std::isfinite(*stand.score));
+  }
+}
+
+TEST(Fault, ABodyOfOneTriangleOrOfNoAreaIsABodyAllTheSame) {
+  TriangleMesh point;
+  point.vertices = {{0, 0, 0}};
+  point.triangles = {{0, 0, 0}};
+  TriangleMesh plate;
+  plate.vertices = {{0, -1, -1}, {0, 1, -1}, {0, 0, 1}};
+  plate.triangles = {{0, 1, 2}};
+  for (const TriangleMesh& mesh : {point, plate}) {
+    for (const Measure measure :
+         {Measure::polygons, Measure::area, Measure::closing_energy, Measure::delta_v,
+          Measure::energy, Measure::intrusion, Measure::harm}) {
+      Scene scene = car_and_wall(10.0);
+      scene.models[1] = *make_model(mesh);
+      scene.scenario.ego.speed_mps = 10.0;
+      scene.add_candidate("keep going", 0.0);
+      const RankResult result = scene.ranked(measure);
+      const CandidateResult& hit = of(result, "keep going");
+      ASSERT_TRUE(hit.collides);
+      EXPECT_NEAR(hit.contacts[0].time_of_impact_s, 1.2, 1e-4);
+      ASSERT_TRUE(hit.score.has_value());
+      EXPECT_TRUE(std::isfinite(*hit.score));
+    }
+  }
+}
+
+TEST(Fault, APoseWithoutANumberIsNoRigidPose) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Pose pose;
+  pose.rotation(1, 2) = nan;
+  EXPECT_FALSE(rigidity_error(pose) <= max_rigidity_error);
+  Scene scene = car_and_wall(10.0);
+  scene.scenario.ego.speed_mps = 10.0;
+  scene.add_candidate("poses", 0.0).poses = {{0.0, {}}, {1.0, pose}};
+  const Result<RankResult> refused = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::bad_input);
+  EXPECT_EQ(refused.error().place, "candidates.listed[0].poses");
+  pose = {};
+  pose.translation.x() = nan;
+  scene.scenario.listed[0].poses[1].pose = pose;
+  EXPECT_FALSE(rank(scene.scenario, scene.models).ok());
+  scene.scenario.listed[0].poses[1] = {nan, {}};
+  EXPECT_FALSE(rank(scene.scenario, scene.models).ok());
+}
+
+}  // namespace
+}  // namespace crashrank
