@@ -67,9 +67,6 @@ Status check(const Options& options) {
     return make_error(ErrorCode::usage, "--json and --pairs - would both write standard output",
                       "give --pairs a file");
   }
-  if (options.any && options.engine.workers > 0) {
-    return make_error(ErrorCode::usage, "--any is for one thread", "leave --workers out");
-  }
   if (const Status engine = options.engine.check(); !engine) return engine.error();
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return build.error();
@@ -268,7 +265,8 @@ void add_collide(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--poses", options->poses_file,
                       "File with one row-major 4x4 matrix of B in A a line; - is standard input");
-  command->add_flag("--any", options->any, "Stop at the first pair found");
+  command->add_flag("--any", options->any,
+                    "Stop at the first pair found; one thread does, whatever --workers");
   command->add_option("--repeat", options->repeat, "Runs of each query; the median time is told")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--pairs", options->pairs_file,

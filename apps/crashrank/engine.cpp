@@ -114,26 +114,27 @@ Result<Engine> make_engine(const EngineArguments& arguments, const Model& a, con
   how.policy = *policy_from_name(arguments.policy);
   how.depth = *depth_from_text(arguments.depth);
   how.kernel = fast ? Kernel::fast : Kernel::scalar;
-  return Engine(
-      [workers, how](const Pose& pose, bool any, std::vector<Pair>& pairs) -> Result<Answer> {
-        if (any)
-          return make_error(ErrorCode::usage, "--any is for one thread: leave --workers out");
-        const DispatchQuery query{&workers->a, &workers->b, pose};
-        Result<DispatchReport> report = workers->dispatcher.run({&query, 1}, workers->lists, how);
-        if (!report) return report.error();
-        if (report->end != DispatchEnd::ok) {
-          return make_error(ErrorCode::out_of_budget, "the workers ran out of memory");
-        }
-        workers->lists.gather(0, pairs);
-        Answer answer;
-        answer.result.pairs = pairs.size();
-        answer.result.intersecting = !pairs.empty();
-        answer.result.work = report->work;
-        answer.seconds = report->seconds;
-        answer.jobs = report->jobs;
-        answer.depth = report->depth;
-        return answer;
-      });
+  // Whether anything touches is known before a worker could be woken.
+  const Engine alone = serial_engine(fast, a, b);
+  return Engine([workers, how, alone](const Pose& pose, bool any,
+                                      std::vector<Pair>& pairs) -> Result<Answer> {
+    if (any) return alone(pose, any, pairs);
+    const DispatchQuery query{&workers->a, &workers->b, pose};
+    Result<DispatchReport> report = workers->dispatcher.run({&query, 1}, workers->lists, how);
+    if (!report) return report.error();
+    if (report->end != DispatchEnd::ok) {
+      return make_error(ErrorCode::out_of_budget, "the workers ran out of memory");
+    }
+    workers->lists.gather(0, pairs);
+    Answer answer;
+    answer.result.pairs = pairs.size();
+    answer.result.intersecting = !pairs.empty();
+    answer.result.work = report->work;
+    answer.seconds = report->seconds;
+    answer.jobs = report->jobs;
+    answer.depth = report->depth;
+    return answer;
+  });
 }
 
 }  // namespace crashrank::cli

@@ -178,12 +178,17 @@ TEST(Collide, WithoutAPoseFilesStandAsTheyAre) {
 
 TEST(Collide, AnyStopsAtOnePairAndHashesNothing) {
   const Boxes boxes;
-  const Outcome run =
-      boxes.place.crashrank({"collide", "a.obj", "b.obj", "--json", "--any", "--pose", half_in});
-  ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_EQ(run.json()["queries"][0]["intersecting"], true);
-  EXPECT_EQ(run.json()["queries"][0]["pairs"], 1);
-  EXPECT_TRUE(run.json()["queries"][0]["hash"].is_null());
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{}, {"--workers", "2", "--depth", "3"}}) {
+    std::vector<std::string> arguments{"collide", "a.obj",  "b.obj", "--json",
+                                       "--any",   "--pose", half_in};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = boxes.place.crashrank(arguments);
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(run.json()["queries"][0]["intersecting"], true);
+    EXPECT_EQ(run.json()["queries"][0]["pairs"], 1);
+    EXPECT_TRUE(run.json()["queries"][0]["hash"].is_null());
+  }
 }
 
 TEST(Collide, PosesComeFromAFileAStreamAndTheCommandLine) {

@@ -99,7 +99,6 @@ TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
            {"collide", "a.obj", "a.obj", "--workers", "0"},
            {"collide", "a.obj", "a.obj", "--workers", "2", "--policy", "best"},
            {"collide", "a.obj", "a.obj", "--workers", "2", "--depth", "17"},
-           {"collide", "a.obj", "a.obj", "--workers", "2", "--any"},
            {"collide", "a.obj", "a.obj", "--json", "--pairs", "-"},
            {"collide", "-", "a.obj", "--poses", "-", "--format", "obj"},
            {"rank"},

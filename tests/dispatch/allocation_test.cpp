@@ -1,49 +1,17 @@
+#include "counted_allocations.hpp"
 #include "dispatch/sample_bodies.hpp"
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-#include <thread>
+#include <string>
 #include <vector>
-
-namespace {
-
-std::atomic<long> allocations{0};
-/// Allocations by threads other than this one fail while `failing` is set.
-std::atomic<bool> failing{false};
-const std::thread::id main_thread = std::this_thread::get_id();
-
-void* allocate(std::size_t bytes, std::size_t alignment) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  if (failing.load(std::memory_order_relaxed) && std::this_thread::get_id() != main_thread) {
-    throw std::bad_alloc();
-  }
-  const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-  void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
-void* operator new[](std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return allocate(bytes, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 namespace crashrank {
 namespace {
 
+using test::allocations;
 using test::Body;
+using test::other_threads_fail;
 
 PoolOptions with_workers(std::uint32_t workers) {
   PoolOptions options;
@@ -93,9 +61,9 @@ TEST(Allocation, AFailureInAWorkerIsOneErrorAndTheNextRunWorks) {
     options.store = store;
     options.depth = 9;
     options.caller_works = false;
-    failing = true;
+    other_threads_fail = true;
     const Result<DispatchReport> report = dispatcher->run(queries, lists, options);
-    failing = false;
+    other_threads_fail = false;
     ASSERT_FALSE(report.ok());
     EXPECT_EQ(report.error().code, ErrorCode::internal);
     EXPECT_NE(report.error().reason.find("out of memory"), std::string::npos);
