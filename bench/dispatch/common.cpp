@@ -68,9 +68,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-Dispatcher start(std::uint32_t workers) {
+Dispatcher start(std::uint32_t workers, double spin_s) {
   PoolOptions pool;
   pool.workers = workers;
+  if (spin_s > 0.0) pool.spin_us = static_cast<std::int32_t>(spin_s * 1e6);
   Result<Dispatcher> dispatcher = Dispatcher::start(pool);
   if (!dispatcher) give_up(dispatcher.error().message());
   return std::move(*dispatcher);

@@ -33,7 +33,8 @@ Model load_model(const std::string& path);
 
 double median(std::vector<double> values);
 
-Dispatcher start(std::uint32_t workers);
+/// Starts workers that spin so long before they sleep; 0: as the library has it.
+Dispatcher start(std::uint32_t workers, double spin_s = 0.0);
 
 /// Runs a dispatch that has to succeed.
 DispatchReport run(Dispatcher& dispatcher, View<const DispatchQuery> queries, PairLists& pairs,

@@ -25,11 +25,13 @@ void overhead(const Scene& scene) {
       const double before = detail::clock_seconds();
       for (const DispatchQuery& query : queries) {
         const BoxTransform to = box_transform(query.a->frame(), query.b->frame(), query.b_in_a);
-        detail::find_jobs(*query.a, *query.b, to, depth, 0, stack, work,
-                          [&](std::uint32_t, std::uint32_t) {
-                            ++jobs;
-                            return true;
-                          });
+        detail::find_jobs(
+            *query.a, *query.b, to, depth, 0, stack, work,
+            [](const IndexedNode&, const IndexedNode&) { return false; },
+            [&](std::uint32_t, std::uint32_t) {
+              ++jobs;
+              return true;
+            });
       }
       alone = std::min(alone, detail::clock_seconds() - before);
     }

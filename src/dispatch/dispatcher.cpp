@@ -152,7 +152,8 @@ struct Dispatcher::State {
   void prepare(View<const DispatchQuery> queries, PairLists& pairs, const DispatchOptions& options,
                std::uint32_t depth);
   DispatchEnd distribute(View<const DispatchQuery> queries, const DispatchOptions& options,
-                         const detail::Crew& crew, double begun, DispatchReport& report);
+                         const detail::Crew& crew, const detail::TreeCut& cut, double begun,
+                         DispatchReport& report);
   DispatchEnd run_alone(View<const DispatchQuery> queries, const DispatchOptions& options);
   void record(DispatchRecording& recording) const;
 
@@ -238,7 +239,8 @@ void Dispatcher::State::prepare(View<const DispatchQuery> queries, PairLists& pa
 
 DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
                                           const DispatchOptions& options, const detail::Crew& crew,
-                                          double begun, DispatchReport& report) {
+                                          const detail::TreeCut& cut, double begun,
+                                          DispatchReport& report) {
   PlacementPolicy& chosen = policy(options.policy);
   chosen.begin(crew.workers, options.seed);
   const bool copies = options.store == StoreMode::private_copy;
@@ -253,6 +255,7 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
   aside_seconds = 0.0;
   const bool estimates = chosen.window() > 1;
   const std::uint32_t whole = chosen.whole_triangles();
+  const float enough_work = cut.job_seconds / seconds_per_work;
   DispatchEnd end = DispatchEnd::ok;
   detail::FoundJob job;
   frames.clear();
@@ -292,8 +295,11 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
       }
       return true;
     };
+    const auto enough = [&](const IndexedNode& a, const IndexedNode& b) {
+      return enough_work > 0.0F && estimate(a, b) <= enough_work;
+    };
     const bool done =
-        detail::find_jobs(*query.a, *query.b, to, report.depth, whole, stack, work, take);
+        detail::find_jobs(*query.a, *query.b, to, report.depth, whole, stack, work, enough, take);
     if (!done) break;
   }
   if (end == DispatchEnd::ok && !pool.failed() && !placer.finish()) {
@@ -380,9 +386,15 @@ Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLi
     const bool measure = options.recording != nullptr;
     state.measure = measure;
     double begun = measure ? detail::clock_seconds() : 0.0;
-    report.depth = options.depth != auto_depth
-                       ? options.depth
-                       : detail::choose_depth(queries, state.pool.size(), options);
+    detail::TreeCut cut;
+    cut.depth = options.depth;
+    if (options.depth == auto_depth) {
+      // Parts of many sizes would be copied again and again.
+      const bool by_work =
+          options.store == StoreMode::shared && state.policy(options.policy).caller_works();
+      cut = detail::choose_cut(queries, state.pool.size(), options, by_work);
+    }
+    report.depth = cut.depth;
     const bool here = state.pool.size() == 0 || report.depth == auto_depth;
     if (here) report.depth = auto_depth;
     if (measure) options.recording->jobs.clear();
@@ -396,7 +408,7 @@ Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLi
     }
     state.prepare(queries, pairs, options, report.depth);
     report.end = here ? state.run_alone(queries, options)
-                      : state.distribute(queries, options, crew, begun, report);
+                      : state.distribute(queries, options, crew, cut, begun, report);
     state.pool.set_spin(-1.0);
     const double finishing = measure ? detail::clock_seconds() : 0.0;
     pairs.finish();

@@ -14,11 +14,12 @@ namespace crashrank::detail {
 /// indices, for every pair of parts whose boxes, and all boxes above them, may touch; `found`
 /// returns false to stop. The larger box is split first, as in `traverse`. Left before right, so
 /// jobs that follow each other tend to share parts. A node of no more than `whole` triangles is a
-/// part wherever it stands. `stack` keeps its memory between calls.
-template <class Found>
+/// part wherever it stands, and a pair of nodes for which `enough(node, node)` is not cut further.
+/// `stack` keeps its memory between calls.
+template <class Enough, class Found>
 bool find_jobs(const PartIndex& a, const PartIndex& b, const BoxTransform& to, std::uint32_t depth,
                std::uint32_t whole, std::vector<NodePair>& stack, CollideWork& work,
-               Found&& found) {
+               Enough&& enough, Found&& found) {
   const View<const IndexedNode> nodes_a = a.nodes();
   const View<const IndexedNode> nodes_b = b.nodes();
   stack.clear();
@@ -32,7 +33,7 @@ bool find_jobs(const PartIndex& a, const PartIndex& b, const BoxTransform& to, s
     if (!boxes_may_touch(na.box, nb.box, to)) continue;
     const bool part_a = a.is_part(na, depth) || na.slots.count <= whole;
     const bool part_b = b.is_part(nb, depth) || nb.slots.count <= whole;
-    if (part_a && part_b) {
+    if ((part_a && part_b) || enough(na, nb)) {
       if (!found(pair.a, pair.b)) return false;
     } else if (part_b || (!part_a && na.half_area_m2 >= nb.half_area_m2)) {
       stack.push_back({na.left + 1, pair.b});

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -30,13 +29,15 @@ struct Measured {
   double jobs = 0.0;
   DispatchEnd end = DispatchEnd::ok;
   bool recorded = false;
-  DispatchRecording recording;
+  std::vector<double> replayed_seconds;
+  std::vector<double> replayed_speedups;  ///< each against the serial time of its turn
+  std::vector<double> replayed_transfer;
+  DispatchEnd replayed_end = DispatchEnd::ok;
 };
 
 /// The calling thread alone.
 struct Serial {
   std::vector<double> seconds;
-  std::vector<double> smallest;  ///< by query
   std::size_t pairs = 0;
 };
 
@@ -62,17 +63,17 @@ public:
       return status.error();
     }
     result.machine.spin_s = 0.0;  // as many cores as workers: the main thread needs one of them
+    machine_ = result.machine;
+    if (Status status = fit(); !status) return status.error();
+    result.machine = machine_;
     for (std::size_t i = 0; i < options_.depths.size(); ++i) {
       if (Status status = measure(options_.depths[i]); !status) return status.error();
       if (options_.progress) options_.progress(i + 1, options_.depths.size());
     }
-    fit(result.machine);
     for (std::size_t i = 0; i < measured_.size(); ++i) {
       const std::size_t level = i / options_.policies.size();
       const Policy policy = options_.policies[i % options_.policies.size()];
-      Result<SweepRow> row = summary(level, policy, measured_[i], result.machine);
-      if (!row) return row.error();
-      result.rows.push_back(*row);
+      result.rows.push_back(summary(level, policy, measured_[i]));
     }
     return result;
   }
@@ -97,7 +98,9 @@ private:
           } else if (into.recorded) {
             continue;
           }
-          if (Status status = record(depth, options_.policies[p], i, into); !status) return status;
+          if (Status status = record(depth, options_.policies[p], seed, i, into); !status) {
+            return status;
+          }
         }
       }
     }
@@ -114,20 +117,16 @@ private:
     return how;
   }
 
-  /// Query by query, so that the smallest times leave out what other programs took, as those of
-  /// recorded jobs do.
   Status serial(std::size_t i) {
     DispatchOptions how;
     how.kernel = options_.kernel;
     Serial& into = serial_.back()[i];
-    into.smallest.resize(asked_[i].size(), std::numeric_limits<double>::infinity());
     into.pairs = 0;
     double seconds = 0.0;
-    for (std::size_t q = 0; q < asked_[i].size(); ++q) {
-      const Result<DispatchReport> report = here_.run({&asked_[i][q], 1}, lists_, how);
+    for (const DispatchQuery& query : asked_[i]) {
+      const Result<DispatchReport> report = here_.run({&query, 1}, lists_, how);
       if (!report) return report.error();
       seconds += report->seconds;
-      into.smallest[q] = std::min(into.smallest[q], report->seconds);
       into.pairs += lists_.total();
     }
     into.seconds.push_back(seconds);
@@ -151,21 +150,31 @@ private:
     return same_answer(i);
   }
 
-  /// On one worker, where batches are the same every time.
-  Status record(std::uint32_t depth, Policy policy, std::size_t i, Measured& into) {
+  /// On one worker, and at once replayed on many.
+  Status record(std::uint32_t depth, Policy policy, std::uint64_t seed, std::size_t i,
+                Measured& into) {
     DispatchOptions how = with(depth, policy);
-    how.recording = &again_;
+    how.recording = &recording_;
     how.caller_works = false;
     const Result<DispatchReport> report = one_.run(asked_[i], lists_, how);
     if (!report) return report.error();
-    if (!into.recorded) {
-      into.recording = again_;
-    } else {
-      keep_smaller(into.recording, again_);
-    }
     into.recorded = true;
     into.jobs = static_cast<double>(report->jobs);
-    return same_answer(i);
+    if (Status status = same_answer(i); !status || recording_.jobs.empty()) return status;
+    ReplayOptions again;
+    again.policy = policy;
+    again.store = options_.store;
+    again.buffer = options_.buffer;
+    again.store_bytes = options_.store_bytes;
+    again.seed = seed;
+    again.machine = machine_;
+    const Result<ReplayReport> replayed = replay(recording_, again);
+    if (!replayed) return replayed.error();
+    if (replayed->end != DispatchEnd::ok) into.replayed_end = replayed->end;
+    into.replayed_seconds.push_back(replayed->seconds);
+    into.replayed_speedups.push_back(serial_.back()[i].seconds.back() / replayed->seconds);
+    into.replayed_transfer.push_back(replayed->relative_transfer);
+    return Success{};
   }
 
   Status same_answer(std::size_t i) const {
@@ -176,20 +185,24 @@ private:
                                                std::to_string(expected));
   }
 
-  void fit(VirtualMachine& machine) const {
+  /// What copying costs on one worker, at all depths.
+  Status fit() {
+    if (options_.store != StoreMode::private_copy) return Success{};
     std::vector<DispatchRecording> all;
-    for (const PerQuery& queries : measured_) {
-      for (const Measured& measured : queries) {
-        DispatchRecording batches;
-        batches.batches = measured.recording.batches;
-        all.push_back(std::move(batches));
+    for (const std::uint32_t depth : options_.depths) {
+      DispatchOptions how = with(depth, Policy::best_match);
+      how.recording = &recording_;
+      for (const View<const DispatchQuery> query : asked_) {
+        const Result<DispatchReport> report = one_.run(query, lists_, how);
+        if (!report) return report.error();
+        all.emplace_back().batches = recording_.batches;
       }
     }
-    fit_copying(all, machine);
+    fit_copying(all, machine_);
+    return Success{};
   }
 
-  Result<SweepRow> summary(std::size_t level, Policy policy, const PerQuery& queries,
-                           const VirtualMachine& machine) const {
+  SweepRow summary(std::size_t level, Policy policy, const PerQuery& queries) const {
     SweepRow row;
     row.depth = options_.depths[level];
     row.policy = policy;
@@ -206,37 +219,12 @@ private:
       row.transferred_bytes += share * median(measured.transferred_bytes);
       row.peak_part_bytes += share * measured.peak_part_bytes;
       if (measured.end != DispatchEnd::ok) row.end = measured.end;
-      if (!measured.recorded || measured.recording.jobs.empty()) continue;
-      ReplayOptions how;
-      how.policy = policy;
-      how.store = options_.store;
-      how.buffer = options_.buffer;
-      how.store_bytes = options_.store_bytes;
-      how.seed = options_.seed;
-      how.machine = machine;
-      const Result<ReplayReport> replayed = replay(measured.recording, how);
-      if (!replayed) return replayed.error();
-      if (replayed->end != DispatchEnd::ok) row.end = replayed->end;
-      row.replayed_seconds += share * replayed->seconds;
-      // Recorded times are the smallest of all turns, so the serial time beside them is too, of
-      // the turns at all depths, since it does not depend on them.
-      row.replayed_speedup += share * smallest_serial(i) / replayed->seconds;
-      row.replayed_relative_transfer += share * replayed->relative_transfer;
+      if (measured.replayed_end != DispatchEnd::ok) row.end = measured.replayed_end;
+      row.replayed_seconds += share * median(measured.replayed_seconds);
+      row.replayed_speedup += share * median(measured.replayed_speedups);
+      row.replayed_relative_transfer += share * median(measured.replayed_transfer);
     }
     return row;
-  }
-
-  /// Sum of the smallest times of the queries that are dispatched together.
-  double smallest_serial(std::size_t i) const {
-    double sum = 0.0;
-    for (std::size_t q = 0; q < asked_[i].size(); ++q) {
-      double smallest = std::numeric_limits<double>::infinity();
-      for (const std::vector<Serial>& level : serial_) {
-        smallest = std::min(smallest, level[i].smallest[q]);
-      }
-      sum += smallest;
-    }
-    return sum;
   }
 
   const SweepOptions& options_;
@@ -248,7 +236,8 @@ private:
   std::vector<std::vector<Serial>> serial_;       ///< by depth, then what is dispatched together
   std::vector<PerQuery> measured_;                ///< by depth, then policy
   PairLists lists_;
-  DispatchRecording again_;
+  DispatchRecording recording_;
+  VirtualMachine machine_;
 };
 
 Result<SweepOptions> completed(const SweepOptions& options, View<const Pose> poses) {

@@ -8,6 +8,7 @@ namespace crashrank::detail {
 
 void VirtualCores::rouse() {
   for (Core& core : cores_) {
+    if (now_ - core.idle_since <= machine_.spin_s) continue;
     work(machine_.send_s);
     core.awake_at = now_ + machine_.wake_s;
     core.idle_since = core.awake_at;

@@ -23,7 +23,11 @@ public:
         holdings_(holdings),
         machine_(machine),
         cores_(machine.workers),
-        free_(machine.processors - 1) {}
+        free_(machine.processors - 1) {
+    if (machine.awake_at_start) {
+      for (Core& core : cores_) core.idle_since = 0.0;
+    }
+  }
 
   std::uint32_t outstanding(std::uint32_t core) const noexcept { return cores_[core].outstanding; }
   std::uint32_t seen() const noexcept { return heard_; }

@@ -88,6 +88,45 @@ TEST(Replay, TheMainThreadTakesAProcessorWhileItWorks) {
   EXPECT_NEAR(played(script, options).main_seconds, 1 * ms, 1e-9);
 }
 
+// Nobody is taken off a processor before he is done: with two processors a main thread that has
+// slept waits in line behind the workers.
+TEST(Replay, ThreadsTakeProcessorsInTurn) {
+  Script script;
+  for (int i = 0; i < 3; ++i) script.job(1, 1, (i + 1) * ms);
+  script.job(2, 1, 1 * ms);
+  ReplayOptions options;
+  options.policy = Policy::best_match_load;
+  options.buffer = 1;
+  options.machine = free_machine(1, 2);
+  // Both workers have two batches; the first one keeps the processor until it has done its own.
+  EXPECT_NEAR(played(script, options).seconds, 7 * ms, 1e-9);
+  options.machine = free_machine(2, 2);
+  EXPECT_NEAR(played(script, options).seconds, 4 * ms, 1e-9);
+  options.machine.slice_s = 0.5 * ms;
+  EXPECT_NEAR(played(script, options).seconds, 4 * ms, 1e-9);
+}
+
+TEST(Replay, TheCallingThreadWorksWhereThePolicyLetsItAndTakesBackWhatWaits) {
+  Script script;
+  for (int i = 0; i < 6; ++i) script.job(1 + (i & 1), 1, ms);
+  ReplayOptions options;
+  options.policy = Policy::late_match;
+  options.buffer = 1;
+  options.machine = free_machine(2, 1);
+  EXPECT_NEAR(played(script, options).seconds, 3 * ms, 1e-9);
+  EXPECT_NEAR(played(script, options).main_seconds, 3 * ms, 1e-9);
+  options.caller_works = false;
+  EXPECT_NEAR(played(script, options).seconds, 6 * ms, 1e-9);
+  options.policy = Policy::best_match;
+  options.caller_works = true;
+  EXPECT_NEAR(played(script, options).seconds, 6 * ms, 1e-9);
+  EXPECT_EQ(played(script, options).main_seconds, 0.0);
+  // A worker that wakes late finds its batches taken back.
+  options.policy = Policy::late_match;
+  options.machine.wake_s = 50 * ms;
+  EXPECT_NEAR(played(script, options).seconds, 6 * ms, 1e-9);
+}
+
 TEST(Replay, WakingSendingAndCopyingAreCharged) {
   Script script;
   script.job(1, 1, ms);

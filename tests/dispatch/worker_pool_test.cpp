@@ -71,6 +71,39 @@ TEST(WorkerPool, TasksOfAWorkerRunInOrderAndAreNeverLost) {
   }
 }
 
+// Every task runs once, in a worker or by the owner who took it back, however the two race.
+TEST(WorkerPool, TasksTakenBackRunOnce) {
+  Result<WorkerPool> pool = WorkerPool::start(with_workers(3));
+  ASSERT_TRUE(pool.ok());
+  constexpr std::size_t count = 6000;
+  std::vector<std::atomic<int>> ran(count);
+  std::size_t here = 0;
+  std::size_t posted = 0;
+  for (std::size_t round = 0; posted < count; ++round) {
+    if (round % 64 == 0) pool->set_spin(round % 128 == 0 ? 50e-6 : 0.0);
+    for (std::uint32_t worker = 0; worker < 3 && posted < count; ++worker) {
+      if (round % 7 == 0) pool->rouse(worker);
+      if (pool->outstanding(worker) < 2) {
+        pool->post(worker, {[](void* context, std::uint32_t) {
+                              static_cast<std::atomic<int>*>(context)->fetch_add(1);
+                            },
+                            &ran[posted++]});
+      }
+    }
+    WorkerPool::Task task;
+    if (pool->recall(static_cast<std::uint32_t>(round % 3), task)) {
+      task.run(task.context, 0);
+      ++here;
+    }
+  }
+  pool->set_spin(-1.0);
+  pool->wait_all();
+  WorkerPool::Task none;
+  EXPECT_FALSE(pool->recall(0, none));
+  for (const std::atomic<int>& times : ran) EXPECT_EQ(times.load(), 1);
+  EXPECT_GT(here, 0U);
+}
+
 TEST(WorkerPool, EndsAtAnyMoment) {
   for (int round = 0; round < 200; ++round) {
     std::atomic<int> ran{0};

@@ -39,6 +39,7 @@ struct VirtualMachine {
   double main_wake_s = 10e-6;
   double batch_s = 0.3e-6;
   double slice_s = 3e-3;
+  bool awake_at_start = false;  ///< workers still spin when the dispatch begins
   double copy_part_s = 50e-9;
   double copy_bytes_per_s = 8e9;
   double link_bytes_per_s = 0.0;  ///< 0: cores copy from shared memory themselves
