@@ -78,7 +78,7 @@ BodySeverity describe(const PulseBody& body, const BodyImpulse& impulse, const B
 double cage_intrusion_m(const PulseBody& body, const CrushResult& crush, bool body_is_a) {
   const BodyCrush& own = body_is_a ? crush.a : crush.b;
   const CrushCore& core = body.strength.core;
-  if (!std::isfinite(core.cage_half_width_m)) return own.deepest_m;
+  if (!std::isfinite(core.cage_half_width_m)) return 0.0;
   // The crush front of each cell, as deep as it lies behind the cage's wall.
   double worst = 0.0;
   const Eigen::Matrix3d turn = body.pose.rotation.transpose() * crush.frame.axes.transpose();

@@ -3,8 +3,9 @@
 #include "crashrank/crash/severity.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace crashrank::detail {
 namespace {
@@ -26,6 +27,9 @@ CrushStrength strength_of(BodyKind kind, double mass_kg, const Box& box) {
   constexpr double without_mirrors = 0.9;
   constexpr double rear_overhang = 0.2;
   constexpr double wheelbase = 0.6;
+  // Of lorries and buses: bumper and front wall, then a cab with seats (a bus to its rear wall).
+  constexpr double before_cab_m = 0.3;
+  constexpr double cab_m = 2.0;
   const Vector3d size = box.extent().cast<double>();
   CarShape shape;
   shape.mass_kg = mass_kg;
@@ -37,9 +41,14 @@ CrushStrength strength_of(BodyKind kind, double mass_kg, const Box& box) {
       return car_strength(shape);
     case BodyKind::truck:
     case BodyKind::bus: {
-      // Campbell's line for the mass, borne by the chassis.
+      // Campbell's line for the mass, borne by the chassis over its whole width.
       CrushStrength strength = car_strength(shape);
       strength.core = CrushCore{};
+      strength.core.cage_half_width_m = 0.5 * shape.width_m;
+      strength.core.cage_front_m = static_cast<double>(box.max.x()) - before_cab_m;
+      strength.core.cage_rear_m = kind == BodyKind::truck
+                                      ? strength.core.cage_front_m - cab_m
+                                      : static_cast<double>(box.min.x()) + before_cab_m;
       strength.low_m = 0.4;
       strength.high_m = 1.2;
       return strength;
@@ -58,10 +67,9 @@ CrushStrength strength_of(BodyKind kind, double mass_kg, const Box& box) {
   return CrushStrength::unyielding();
 }
 
-PulseBody pulse_body(const Body& body, const Motion& motion, double time_s) {
+PulseBody pulse_body(const Body& body, const Pose& pose, const Velocity& velocity) {
   PulseBody placed;
-  Velocity velocity;
-  motion.state_at(time_s, placed.pose, velocity);
+  placed.pose = pose;
   placed.mesh = &body.model->mesh;
   placed.tree = &body.model->tree;
   placed.rigid = place(body.mass, placed.pose, velocity);
@@ -121,61 +129,88 @@ SeverityOptions coarse(double friction) {
   return options;
 }
 
-HarmExposure exposure_of(const Body& body, const Body& striker, bool ego, const Contact& contact,
-                         const BodyOutcome& outcome) {
+/// The speed at which people outside cars are struck, from the delta-v of a pulse.
+double struck(const Scene& scene, const Body& body, const Body& striker, const Contact& contact,
+              double delta_v_mps) {
+  if (std::isinf(body.mass_kg)) return contact.closing_speed_mps;
+  const double reduced_kg = std::isinf(striker.mass_kg)
+                                ? body.mass_kg
+                                : body.mass_kg * striker.mass_kg / (body.mass_kg + striker.mass_kg);
+  return struck_speed_mps(contact.closing_speed_mps, delta_v_mps, body.mass_kg, reduced_kg,
+                          scene.harm);
+}
+
+HarmExposure exposure_of(const Scene& scene, const Body& body, const Body& striker, bool ego,
+                         const Contact& contact, const BodyOutcome& outcome) {
   HarmExposure e;
   e.kind = body.kind;
   e.ego = ego;
   e.delta_v_mps = outcome.delta_v_mps;
   e.pdof_deg = outcome.pdof_deg;
-  e.closing_speed_mps = contact.closing_speed_mps;
+  e.closing_speed_mps = struck(scene, body, striker, contact, outcome.delta_v_mps);
   e.leading_edge_m = striker.leading_edge_m;
   e.crush_energy_j = outcome.crush_energy_j;
   return e;
 }
 
-double harm_of_both(const Scene& scene, const Contact& contact, double faster, BodyOutcome& ego,
-                    BodyOutcome& other) {
-  const Body& actor = scene.actors[contact.actor];
-  HarmExposure one = exposure_of(scene.ego, actor, true, contact, ego);
-  HarmExposure two = exposure_of(actor, scene.ego, false, contact, other);
-  one.delta_v_mps *= faster;
-  two.delta_v_mps *= faster;
-  ego.harm = harm_of(one, scene.harm);
-  other.harm = harm_of(two, scene.harm);
-  return ego.harm + other.harm;
+/// The score that one contact adds in a sample.
+double sample_score(const Scene& scene, const HarmExposure& ego, const HarmExposure& other,
+                    double dissipated_j, const HarmSample& sample) {
+  const double e = sample.restitution;
+  switch (scene.measure) {
+    case Measure::delta_v:
+      return (1.0 + e) * ego.delta_v_mps;
+    case Measure::energy:
+      return (1.0 - e * e) * dissipated_j;
+    default:
+      return harm_of(ego, scene.harm, sample) + harm_of(other, scene.harm, sample);
+  }
 }
 
-/// The harm over the ranges: each end of each in turn, the others as they are.
-ScoreInterval harm_interval(const Scene& scene, const PulseBody& a, const PulseBody& b,
-                            const Vector3d& along, const Contact& contact) {
-  const HarmRanges& ranges = scene.harm.ranges;
-  ScoreInterval interval{contact.severity.harm, contact.severity.harm};
-  const double friction = scene.harm.friction;
-  const std::array<PulseVariant, 4> variants{{{ranges.least_friction, 1.0},
-                                              {ranges.most_friction, 1.0},
-                                              {friction, ranges.least_strength},
-                                              {friction, ranges.most_strength}}};
-  for (const PulseResult& pulse :
-       simulate_pulses(a, b, contact.point_m, along, {variants.data(), variants.size()},
-                       coarse(friction).pulse)) {
-    BodyOutcome ego = contact.severity.ego;
-    BodyOutcome other = contact.severity.other;
-    ego.delta_v_mps = pulse.a.delta_v_mps.norm();
-    other.delta_v_mps = pulse.b.delta_v_mps.norm();
-    if (pulse.acts) {
-      ego.pdof_deg = pdof_deg(pulse.a.impulse_ns, a.rigid.forward);
-      other.pdof_deg = pdof_deg(pulse.b.impulse_ns, b.rigid.forward);
+/// Evaluates the contact in every sample of the scene.
+void tell_samples(const Scene& scene, const PulseBody& a, const PulseBody& b, const Vector3d& along,
+                  Contact& contact) {
+  ContactSeverity& told = contact.severity;
+  const std::vector<HarmSample>& samples = scene.samples;
+  const HarmExposure ego =
+      exposure_of(scene, scene.ego, scene.actors[contact.actor], true, contact, told.ego);
+  const HarmExposure other =
+      exposure_of(scene, scene.actors[contact.actor], scene.ego, false, contact, told.other);
+  told.sample_scores.reserve(samples.size());
+  told.sample_scores.push_back(sample_score(scene, ego, other, told.dissipated_j, samples.front()));
+
+  // Samples that differ in risk alone share their pulse; they follow each other.
+  std::vector<PulseVariant> variants;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const PulseVariant wanted{samples[i].friction, samples[i].strength};
+    if (variants.empty() || variants.back().friction != wanted.friction ||
+        variants.back().strength != wanted.strength) {
+      variants.push_back(wanted);
     }
-    const double harm = harm_of_both(scene, contact, 1.0, ego, other);
-    interval.lowest = std::min(interval.lowest, harm);
-    interval.highest = std::max(interval.highest, harm);
   }
-  BodyOutcome ego = contact.severity.ego;
-  BodyOutcome other = contact.severity.other;
-  interval.highest = std::max(
-      interval.highest, harm_of_both(scene, contact, 1.0 + ranges.most_restitution, ego, other));
-  return interval;
+  const std::vector<PulseResult> pulses =
+      simulate_pulses(a, b, contact.point_m, along, {variants.data(), variants.size()},
+                      coarse(scene.harm.friction).pulse);
+  std::size_t at = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (variants[at].friction != samples[i].friction ||
+        variants[at].strength != samples[i].strength) {
+      ++at;
+    }
+    const PulseResult& pulse = pulses[at];
+    HarmExposure one = ego;
+    HarmExposure two = other;
+    const Body& actor = scene.actors[contact.actor];
+    one.delta_v_mps = pulse.a.delta_v_mps.norm();
+    two.delta_v_mps = pulse.b.delta_v_mps.norm();
+    one.closing_speed_mps = struck(scene, scene.ego, actor, contact, one.delta_v_mps);
+    two.closing_speed_mps = struck(scene, actor, scene.ego, contact, two.delta_v_mps);
+    if (pulse.acts) {
+      one.pdof_deg = pdof_deg(pulse.a.impulse_ns, a.rigid.forward);
+      two.pdof_deg = pdof_deg(pulse.b.impulse_ns, b.rigid.forward);
+    }
+    told.sample_scores.push_back(sample_score(scene, one, two, pulse.dissipated_j, samples[i]));
+  }
 }
 
 }  // namespace
@@ -193,16 +228,24 @@ void prepare_body(const ScenarioModel& model, Body& body) {
   body.leading_edge_m = leading_edge_m(body.model->mesh);
 }
 
-void tell_severity(const Scene& scene, const Motion& ego_motion, Contact& contact) {
+EgoAfterContact tell_severity(const Scene& scene, const EgoAtContact& ego, Contact& contact) {
   const Body& other = scene.actors[contact.actor];
-  const PulseBody a = pulse_body(scene.ego, ego_motion, contact.time_of_impact_s);
-  const PulseBody b = pulse_body(other, other.motion, contact.time_of_impact_s);
+  Pose other_pose;
+  Velocity other_velocity;
+  other.motion.state_at(contact.time_of_impact_s, other_pose, other_velocity);
+  const PulseBody a = pulse_body(scene.ego, ego.pose, ego.left);
+  const PulseBody b = pulse_body(other, other_pose, other_velocity);
   ContactSeverity& told = contact.severity;
+  EgoAfterContact after;
+  after.velocity = a.rigid.velocity;
   if (!scene.pulses) {
     tell_impulse(scene, a, b, contact);
-    return;
+    return after;
   }
-  Vector3d along(contact.closing.x(), contact.closing.y(), 0.0);
+  const Vector3d closing =
+      velocity_of_point(ego.left, ego.pose.translation, contact.point_m) -
+      velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
+  Vector3d along(closing.x(), closing.y(), 0.0);
   if (!(along.norm() > 1e-6)) along = Vector3d(contact.normal.x(), contact.normal.y(), 0.0);
   const Severity severity =
       crash_severity(a, b, contact.point_m, along, coarse(scene.harm.friction));
@@ -212,11 +255,19 @@ void tell_severity(const Scene& scene, const Motion& ego_motion, Contact& contac
   told.dissipated_j = severity.pulse.dissipated_j;
   tell(severity.a, told.ego);
   tell(severity.b, told.other);
-  told.harm = harm_of_both(scene, contact, 1.0, told.ego, told.other);
-  told.harm_interval = {told.harm, told.harm};
-  if (scene.measure == Measure::harm && scene.harm.intervals) {
-    told.harm_interval = harm_interval(scene, a, b, along, contact);
+  told.ego.harm =
+      harm_of(exposure_of(scene, scene.ego, other, true, contact, told.ego), scene.harm);
+  told.other.harm =
+      harm_of(exposure_of(scene, other, scene.ego, false, contact, told.other), scene.harm);
+  told.harm = told.ego.harm + told.other.harm;
+  if (!scene.samples.empty()) tell_samples(scene, a, b, along, contact);
+  if (severity.pulse.acts) {
+    after.duration_s = severity.pulse.duration_s;
+    after.moved_m = severity.pulse.moved_a_m;
+    after.turned_rad = severity.pulse.turned_a_rad;
+    after.velocity = severity.pulse.a.after;
   }
+  return after;
 }
 
 }  // namespace crashrank::detail

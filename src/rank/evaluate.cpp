@@ -1,6 +1,9 @@
 #include "rank/evaluate.hpp"
 
 #include "rank/contact_severity.hpp"
+#include "rank/follow.hpp"
+#include "rank/meet.hpp"
+#include "rank/near.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,30 +13,6 @@
 
 namespace crashrank::detail {
 namespace {
-
-constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
-
-// Actors near the ego by slices of time, the soonest first.
-void find_near(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work) {
-  scratch.near.clear();
-  scratch.place.assign(scene.actors.size(), nowhere);
-  for (std::size_t s = 0; s < scene.slices.size(); ++s) {
-    const Box box =
-        swept_box(scene.ego, ego, scene.slice_s[s], scene.slice_s[s + 1], scene.impact.tolerance_m);
-    work.box_tests += scene.slices[s].query(box, [&](std::size_t actor) {
-      std::size_t& place = scratch.place[actor];
-      if (place == nowhere) {
-        place = scratch.near.size();
-        scratch.near.push_back({actor, s, s});
-      }
-      scratch.near[place].last_slice = s;
-    });
-  }
-  std::sort(
-      scratch.near.begin(), scratch.near.end(), [](const Scratch::Near& p, const Scratch::Near& q) {
-        return p.first_slice != q.first_slice ? p.first_slice < q.first_slice : p.actor < q.actor;
-      });
-}
 
 // A contact that begins this long after the first one still belongs to the same crash.
 double longest_window_s(const Scene& scene) {
@@ -56,14 +35,14 @@ bool starts_as_the_ego(const Scene& scene, const Motion& motion) {
 // undecided.
 bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work) {
   scratch.hits.clear();
-  find_near(scene, ego, scratch, work);
+  find_near(scene, ego, 0.0, scene.slice_s.back(), scratch, work);
   const bool same_start = starts_as_the_ego(scene, ego);
   bool decided = true;
   double first_s = std::numeric_limits<double>::infinity();
   // All that come near in the same slice are asked up to the same time, so that no answer depends
   // on the order of the actors.
   double until_s = first_s;
-  std::size_t slice = nowhere;
+  std::size_t slice = scene.slices.size();
   for (const Scratch::Near& near : scratch.near) {
     if (near.first_slice != slice) {
       slice = near.first_slice;
@@ -91,47 +70,6 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
                                                         : p.actor < q.actor;
             });
   return decided;
-}
-
-double closing_energy_j(double ego_kg, double other_kg, double speed_mps) {
-  const double reduced = std::isinf(other_kg) ? ego_kg : ego_kg * other_kg / (ego_kg + other_kg);
-  return 0.5 * reduced * speed_mps * speed_mps;
-}
-
-Contact make_contact(const Scene& scene, const Motion& ego, const Scratch::Hit& hit) {
-  const Body& other = scene.actors[hit.actor];
-  const Impact& impact = hit.impact;
-  Contact contact;
-  contact.actor = hit.actor;
-  contact.state = impact.state;
-  contact.time_of_impact_s = impact.time_s;
-  contact.gap_m = impact.gap_m;
-  contact.normal = impact.normal;
-  Pose ego_pose;
-  Pose other_pose;
-  Velocity ego_velocity;
-  Velocity other_velocity;
-  ego.state_at(impact.time_s, ego_pose, ego_velocity);
-  other.motion.state_at(impact.time_s, other_pose, other_velocity);
-  if (impact.triangle_a >= 0 && impact.triangle_b >= 0) {
-    contact.point_m = 0.5 * (impact.point_a_m + impact.point_b_m);
-  } else {
-    // One lies inside the other: the middle of the smaller one stands for the place.
-    const bool ego_is_inside = scene.ego.radius_m < other.radius_m;
-    const Body& inner = ego_is_inside ? scene.ego : other;
-    const Pose& pose = ego_is_inside ? ego_pose : other_pose;
-    contact.point_m = pose.rotation * inner.center_m + pose.translation;
-  }
-  const Eigen::Vector3d closing =
-      velocity_of_point(ego_velocity, ego_pose.translation, contact.point_m) -
-      velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
-  contact.closing = closing;
-  contact.closing_speed_mps = closing.norm();
-  contact.normal_speed_mps = std::max(0.0, closing.dot(contact.normal));
-  contact.closing_energy_j =
-      closing_energy_j(scene.ego.mass_kg, other.mass_kg, contact.closing_speed_mps);
-  tell_severity(scene, ego, contact);
-  return contact;
 }
 
 void add_grazes(const Scratch& scratch, CandidateResult& result) {
@@ -268,6 +206,30 @@ double highest_score(const Scene& scene, const Motion& ego) {
   return score;
 }
 
+// What the candidate scores in every sample, and the interval of those under its own risk model.
+void add_samples(const Scene& scene, CandidateResult& result) {
+  if (scene.samples.empty()) return;
+  result.sample_scores.assign(scene.samples.size(), 0.0);
+  for (const Contact& contact : result.contacts) {
+    for (std::size_t i = 0; i < scene.samples.size(); ++i) {
+      result.sample_scores[i] += contact.severity.sample_scores[i];
+    }
+  }
+  for (std::size_t i = 0; i < scene.samples.size(); ++i) {
+    if (scene.measure == Measure::harm && scene.samples[i].model != scene.harm.model) continue;
+    ScoreInterval& interval = result.score_interval;
+    interval.lowest = std::min(interval.lowest, result.sample_scores[i]);
+    interval.highest = std::max(interval.highest, result.sample_scores[i]);
+  }
+}
+
+EgoAtContact planned(const Motion& motion, double time_s) {
+  EgoAtContact ego;
+  motion.state_at(time_s, ego.pose, ego.met);
+  ego.left = ego.met;
+  return ego;
+}
+
 }  // namespace
 
 Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
@@ -276,17 +238,27 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
   found.decided = find_hits(scene, candidate.motion, scratch, work);
   double last_s = std::numeric_limits<double>::infinity();
   std::vector<Contact>& contacts = found.result.contacts;
+  EgoAtContact first;
+  EgoAfterContact left;
   for (const Scratch::Hit& hit : scratch.hits) {
     if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
-    contacts.push_back(make_contact(scene, candidate.motion, hit));
+    const EgoAtContact ego = planned(candidate.motion, hit.impact.time_s);
+    contacts.push_back(make_contact(scene, ego, hit.actor, hit.impact));
+    const EgoAfterContact after = tell_severity(scene, ego, contacts.back());
     if (contacts.size() == 1) {
       last_s = hit.impact.time_s + window_s(scene, contacts.front().closing_speed_mps);
+      first = ego;
+      left = after;
     }
     found.plans.push_back(plan_damage(scene, candidate.motion, contacts.back(),
                                       hit.impact.triangle_a, hit.impact.triangle_b));
+    if (scene.pulses) break;
   }
   found.result.collides = !contacts.empty();
   add_grazes(scratch, found.result);
+  if (scene.pulses && !contacts.empty()) {
+    follow(scene, candidate, first, left, found, scratch, work);
+  }
   return found;
 }
 
@@ -294,7 +266,7 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
                        FoundDamage found, Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(approach.result);
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
-    read_damage(scene, candidate.motion, approach.plans[i], found, result.contacts[i],
+    read_damage(scene, approach.motion(candidate, i), approach.plans[i], found, result.contacts[i],
                 scratch.damage, work);
     found.first += approach.plans[i].poses.size();
   }
@@ -302,13 +274,7 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
   if (approach.decided) {
     result.score = score_of(result, scene.measure);
     result.score_interval = {*result.score, *result.score};
-    if (scene.measure == Measure::harm) {
-      result.score_interval = {};
-      for (const Contact& contact : result.contacts) {
-        result.score_interval.lowest += contact.severity.harm_interval.lowest;
-        result.score_interval.highest += contact.severity.harm_interval.highest;
-      }
-    }
+    add_samples(scene, result);
   } else {
     result.score_interval = {0.0, highest_score(scene, candidate.motion)};
   }

@@ -31,7 +31,13 @@ struct Scratch {
 struct Approach {
   CandidateResult result;         ///< contacts without damage, grazes
   std::vector<DamagePlan> plans;  ///< by contact
+  /// By contact from the second on, where the ego was followed after the first: how it moved.
+  std::vector<Motion> after;
   bool decided = true;
+
+  const Motion& motion(const Candidate& candidate, std::size_t contact) const {
+    return contact == 0 || after.empty() ? candidate.motion : after[contact - 1];
+  }
 };
 
 /// Follows one candidate to its first contact. Depends on the scene and the candidate alone, as do
@@ -52,5 +58,8 @@ bool ranks_before(const CandidateResult& a, const CandidateResult& b);
 
 /// Orders the ranking and says how sure its first place is.
 void put_in_order(RankResult& result);
+
+/// Says how stable the order is over the samples, once it is there.
+void tell_stability(RankResult& result);
 
 }  // namespace crashrank::detail

@@ -42,6 +42,7 @@ void put_in_order(RankResult& result) {
     if (!beaten && c.score_interval.lowest <= lowest_high) result.in_race.push_back(c.candidate);
   }
   result.proved = result.in_race.size() <= 1;
+  tell_stability(result);
 }
 
 }  // namespace crashrank::detail

@@ -22,6 +22,7 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   if (!scene) return scene.error();
   result.measure = scene->measure;
   result.harm = options.harm;
+  result.samples = scene->samples;
   const double ego_length_m = models[result.ego.model].mesh.bounds().extent().x();
   Result<std::vector<Candidate>> candidates = make_candidates(scenario, ego_length_m);
   if (!candidates) return candidates.error();

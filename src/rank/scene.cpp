@@ -99,6 +99,9 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   scene.measure = options.measure.value_or(scenario.measure);
   scene.harm = options.harm;
   scene.pulses = needs_crash(scene.measure);
+  if (scene.pulses && scene.measure != Measure::intrusion && scene.harm.intervals) {
+    scene.samples = harm_samples(scene.harm);
+  }
   scene.impact = options.impact;
   scene.impact.start_is_apart = false;
   scene.ego_start = scenario.ego.pose;

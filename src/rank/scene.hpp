@@ -51,7 +51,8 @@ struct Scene {
   Crush crush;
   Measure measure = Measure::polygons;
   HarmOptions harm;
-  bool pulses = false;  ///< the measure needs the crash itself
+  bool pulses = false;              ///< the measure needs the crash itself
+  std::vector<HarmSample> samples;  ///< in which the score is evaluated, too; may be empty
   ImpactOptions impact;
   RankWork work;  ///< spent on preparing
 };

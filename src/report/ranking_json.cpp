@@ -76,7 +76,6 @@ Json severity_json(const ContactSeverity& s) {
   if (s.simulated) {
     entry["duration_s"] = s.duration_s;
     entry["harm"] = s.harm;
-    entry["harm_interval"] = Json::array({s.harm_interval.lowest, s.harm_interval.highest});
   }
   return entry;
 }
@@ -101,7 +100,13 @@ Json harm_json(const HarmOptions& harm) {
           {"ranges",
            {{"friction", Json::array({r.least_friction, r.most_friction})},
             {"strength", Json::array({r.least_strength, r.most_strength})},
-            {"restitution", Json::array({0.0, r.most_restitution})}}}};
+            {"restitution", Json::array({r.least_restitution, r.most_restitution})},
+            {"risk_speed", Json::array({r.least_risk_speed, r.most_risk_speed})},
+            {"all_models", r.all_models}}},
+          {"after_impact",
+           {{"deceleration_mps2", harm.after.deceleration_mps2},
+            {"longest_s", harm.after.longest_s},
+            {"most_contacts", harm.after.most_contacts}}}};
 }
 
 void add_damage(Json& entry, const DamageSummary& ego, const DamageSummary& other) {
@@ -153,6 +158,9 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
              {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
              {"score_interval",
               Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},
+             {"places", Json::array({ranked.best_place + 1, ranked.worst_place + 1})},
+             {"separable_from_next", ranked.separable},
+             {"overtaken_share", ranked.overtaken},
              {"collides", ranked.collides},
              {"contacts", std::move(contacts)},
              {"other", nullptr},
@@ -203,23 +211,26 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
     actors.push_back(body_json(scenario, scenario.actors[i].name, result.actors[i]));
   }
   const RankWork& work = result.work;
-  const Json document{{"scenario", scenario.name},
-                      {"measure", measure_name(result.measure)},
-                      {"measure_unit", measure_unit(result.measure)},
-                      {"harm", result.measure == Measure::harm ? harm_json(result.harm) : nullptr},
-                      {"complete", result.complete},
-                      {"proved", result.proved},
-                      {"in_race", std::move(in_race)},
-                      {"elapsed_s", result.elapsed_s},
-                      {"ego", body_json(scenario, "ego", result.ego)},
-                      {"actors", std::move(actors)},
-                      {"work",
-                       {{"box_tests", work.box_tests},
-                        {"body_pairs", work.body_pairs},
-                        {"impact_bv_tests", work.impact.bv_tests},
-                        {"impact_primitive_tests", work.impact.primitive_tests},
-                        {"damage_queries", work.damage_queries}}},
-                      {"ranking", std::move(ranking)}};
+  const Json document{
+      {"scenario", scenario.name},
+      {"measure", measure_name(result.measure)},
+      {"measure_unit", measure_unit(result.measure)},
+      {"harm", needs_crash(result.measure) ? harm_json(result.harm) : nullptr},
+      {"stability",
+       {{"samples", result.samples.size()}, {"not_separable_above_share", separable_share}}},
+      {"complete", result.complete},
+      {"proved", result.proved},
+      {"in_race", std::move(in_race)},
+      {"elapsed_s", result.elapsed_s},
+      {"ego", body_json(scenario, "ego", result.ego)},
+      {"actors", std::move(actors)},
+      {"work",
+       {{"box_tests", work.box_tests},
+        {"body_pairs", work.body_pairs},
+        {"impact_bv_tests", work.impact.bv_tests},
+        {"impact_primitive_tests", work.impact.primitive_tests},
+        {"damage_queries", work.damage_queries}}},
+      {"ranking", std::move(ranking)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -25,8 +25,8 @@ struct BodySeverity {
   std::string cdc;           ///< collision deformation classification; empty without damage
 };
 
-/// What is worst inside: how far the crush reaches into the cage of `strength` (for bodies without
-/// one, the deepest crush).
+/// What is worst inside: how far the crush reaches into the cage of `strength`; 0 for bodies
+/// without one, which carry nobody inside (motorcycles, bicycles, people on foot).
 CRASHRANK_API double cage_intrusion_m(const PulseBody& body, const CrushResult& crush,
                                       bool body_is_a);
 

@@ -48,8 +48,8 @@ struct BodyDamage {
   Pose pose;   ///< body to world at first contact
 };
 
-/// Bounds on a score; equal where it is known, but for harm: what the ranges of
-/// HarmOptions leave open.
+/// Bounds on a score. Where the score is known: what the ranges of HarmOptions leave open of it
+/// under the chosen risk model (harm, delta-v, energy), equal for the other measures.
 struct ScoreInterval {
   double lowest = 0.0;
   double highest = 0.0;
@@ -71,7 +71,7 @@ struct BodyOutcome {
   std::string cdc;
 };
 
-/// The crash that begins with a contact, taken by itself: bodies as they move when it begins.
+/// The crash with one body: it as it moves when met, the ego as the contacts before left it.
 struct ContactSeverity {
   /// The crush phase was followed (measures that need it); otherwise one rigid impulse at the point
   /// of first contact.
@@ -82,7 +82,8 @@ struct ContactSeverity {
   BodyOutcome ego;
   BodyOutcome other;
   double harm = 0.0;
-  ScoreInterval harm_interval;
+  /// What the contact adds to the score in each of RankResult::samples; empty where there are none.
+  std::vector<double> sample_scores;
 };
 
 /// One body hit by a candidate. Points and directions in world coordinates.
@@ -121,13 +122,27 @@ struct CandidateResult {
   std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
   ScoreInterval score_interval;
   bool collides = false;
-  /// The first contact and all that begin within the crush of it, in time order (then by actor).
-  /// What would be hit later is not listed: after a crash nobody follows the planned motion.
+  /// In time order (then by actor). Measures that simulate the crash: the first contact, then what
+  /// the ego meets as the crash leaves it (AfterImpact). The others: the first contact and all that
+  /// begin within the crush of it along the planned motion.
   std::vector<Contact> contacts;
   std::vector<Graze> grazes;  ///< before the first contact, in time order
   /// The ego's damage from all contacts together; a triangle hit twice counts once.
   BodyDamage ego;
+  std::vector<double> sample_scores;  ///< by RankResult::samples; empty where there are none
+  /// Best and worst place over the samples, from 0; the place it has where there are none.
+  std::size_t best_place = 0;
+  std::size_t worst_place = 0;
+  /// Share of the samples in which the next in the ranking scores lower than this one.
+  double overtaken = 0.0;
+  /// `overtaken` is at most `separable_share`: this place and the next can be told apart.
+  bool separable = true;
 };
+
+/// Two places are separable while their order turns round in no more than this share of the
+/// samples. Since a sample holds for all candidates alike, what is wrong in the same way for both
+/// does not count against them, as it would if their intervals were compared.
+inline constexpr double separable_share = 0.05;
 
 /// A body as it was ranked with.
 struct RankedBody {
@@ -160,7 +175,10 @@ struct RankWork {
 /// The answer, least harmful first.
 struct RankResult {
   Measure measure = Measure::polygons;
-  HarmOptions harm;                      ///< as it was counted with
+  HarmOptions harm;  ///< as it was counted with
+  /// In which harm, delta-v and energy were evaluated, the first where nothing varies; empty for
+  /// other measures and without HarmOptions::intervals.
+  std::vector<HarmSample> samples;
   std::vector<Candidate> candidates;     ///< in the order of `make_candidates`
   std::vector<CandidateResult> ranking;  ///< every candidate once, best first
   bool complete = true;                  ///< every score is known
@@ -186,8 +204,12 @@ struct RankResult {
 /// Scores add up over the contacts: `polygons` counts damaged triangles of the ego and of all hit,
 /// `area` adds their areas, `closing-energy` and `energy` the contacts' energies, `delta-v` the
 /// ego's changes of velocity, `intrusion` both bodies', `harm` everybody's risk as weighted.
-/// Contacts of one manoeuvre are taken each by itself, with the velocities that the motions have,
-/// so what the first takes off the second is counted twice. Order: lower score; then what touches
+/// Measures that simulate the crash (harm, delta-v, energy, intrusion) go on after a contact: the
+/// ego leaves it with the velocity and yaw rate of the pulse, slowed evenly (AfterImpact), and what
+/// it meets then is a further contact that begins with what is left, up to a limit of contacts and
+/// time. Bodies met at the same time are taken in turn. No body is met twice, and bodies that were
+/// hit are not followed. The other measures take the planned motion and each contact by itself.
+/// Order: lower score; then what touches
 /// nothing before what does, a clean miss before a graze; then the later first contact; then the
 /// lower closing speed; then the order of the candidates. No two places are equal.
 ///

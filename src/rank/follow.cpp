@@ -1,0 +1,132 @@
+#include "rank/follow.hpp"
+
+#include "rank/aftermath.hpp"
+#include "rank/damage.hpp"
+#include "rank/meet.hpp"
+#include "rank/near.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace crashrank::detail {
+namespace {
+
+constexpr double step_s = 0.02;
+constexpr int halvings = 10;  // to 20 microseconds, under a millimetre at 40 m/s
+
+/// The search for the next body that the ego meets.
+class Next {
+public:
+  Next(const Scene& scene, const Aftermath& aftermath, const std::vector<Contact>& met,
+       Scratch& scratch, RankWork& work)
+      : scene_(scene), aftermath_(aftermath), met_(met), scratch_(scratch), work_(work) {}
+
+  /// The first by time, then by actor.
+  std::optional<Scratch::Hit> find(double from_s) {
+    find_near(scene_, aftermath_.motion(), from_s, aftermath_.until_s(), scratch_, work_);
+    const auto steps = static_cast<int>(std::ceil((aftermath_.until_s() - from_s) / step_s));
+    for (int i = 0; i <= steps; ++i) {
+      const double time_s = std::min(from_s + i * step_s, aftermath_.until_s());
+      std::optional<Scratch::Hit> first;
+      for (const Scratch::Near& near : scratch_.near) {
+        if (time_s < scene_.slice_s[near.first_slice] ||
+            time_s > scene_.slice_s[near.last_slice + 1] || is_met(near.actor) ||
+            !intersect(near.actor, time_s, true)) {
+          continue;
+        }
+        const Scratch::Hit hit = meeting(near.actor, std::max(time_s - step_s, from_s), time_s);
+        if (!first || hit.impact.time_s < first->impact.time_s ||
+            (hit.impact.time_s == first->impact.time_s && hit.actor < first->actor)) {
+          first = hit;
+        }
+      }
+      if (first) return first;
+    }
+    return std::nullopt;
+  }
+
+private:
+  bool is_met(std::size_t actor) const {
+    return std::any_of(met_.begin(), met_.end(),
+                       [actor](const Contact& contact) { return contact.actor == actor; });
+  }
+
+  bool intersect(std::size_t actor, double time_s, bool any) {
+    const Body& other = scene_.actors[actor];
+    CollideOptions options;
+    options.any = any;
+    const Pose b_in_a = relative(aftermath_.motion().pose_at(time_s), other.motion.pose_at(time_s));
+    const CollideResult result = collide(*scene_.ego.model, *other.model, b_in_a,
+                                         scratch_.damage.pairs, scratch_.damage.collide, options);
+    work_.impact.bv_tests += result.work.bv_tests;
+    work_.impact.primitive_tests += result.work.primitive_tests;
+    ++work_.impact.poses;
+    return result.intersecting;
+  }
+
+  /// When the surfaces, apart at `apart_s` unless that is the start, began to intersect.
+  Scratch::Hit meeting(std::size_t actor, double apart_s, double touching_s) {
+    for (int i = 0; i < halvings && apart_s < touching_s; ++i) {
+      const double middle_s = 0.5 * (apart_s + touching_s);
+      (intersect(actor, middle_s, true) ? touching_s : apart_s) = middle_s;
+    }
+    intersect(actor, touching_s, false);
+    Impact impact;
+    impact.state = ImpactState::contact;
+    impact.time_s = touching_s;
+    const TriangleMesh& mesh = scene_.ego.model->mesh;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const Pair& pair : scratch_.damage.pairs) {
+      const Triangle t = mesh.triangle(static_cast<std::size_t>(pair.a));
+      middle += ((t.corner[0] + t.corner[1] + t.corner[2]) / 3.0F).cast<double>();
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(scratch_.damage.pairs.size(), 1));
+    const Pose pose = aftermath_.motion().pose_at(touching_s);
+    impact.point_a_m = pose.rotation * (middle / count) + pose.translation;
+    impact.point_b_m = impact.point_a_m;
+    if (!scratch_.damage.pairs.empty()) {
+      const Pair& pair = *std::min_element(
+          scratch_.damage.pairs.begin(), scratch_.damage.pairs.end(),
+          [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+      impact.triangle_a = pair.a;
+      impact.triangle_b = pair.b;
+    }
+    return {actor, impact};
+  }
+
+  const Scene& scene_;
+  const Aftermath& aftermath_;
+  const std::vector<Contact>& met_;
+  Scratch& scratch_;
+  RankWork& work_;
+};
+
+}  // namespace
+
+void follow(const Scene& scene, const Candidate& candidate, const EgoAtContact& first,
+            const EgoAfterContact& left, Approach& found, Scratch& scratch, RankWork& work) {
+  std::vector<Contact>& contacts = found.result.contacts;
+  EgoAtContact ego = first;
+  EgoAfterContact after = left;
+  while (contacts.size() < scene.harm.after.most_contacts) {
+    const double start_s = contacts.back().time_of_impact_s;
+    const Aftermath aftermath(scene, candidate, start_s, ego, after);
+    if (!(aftermath.until_s() > start_s)) break;
+    const std::optional<Scratch::Hit> hit =
+        Next(scene, aftermath, contacts, scratch, work).find(start_s);
+    if (!hit) break;
+    ego = aftermath.at(hit->impact.time_s);
+    Contact contact = make_contact(scene, ego, hit->actor, hit->impact);
+    // Where surfaces already intersect, no facet tells a direction that means something.
+    if (contact.closing.norm() > 0.0) contact.normal = contact.closing.normalized();
+    contact.normal_speed_mps = contact.closing_speed_mps;
+    after = tell_severity(scene, ego, contact);
+    contacts.push_back(std::move(contact));
+    found.after.push_back(aftermath.motion());
+    found.plans.push_back(plan_damage(scene, aftermath.motion(), contacts.back(),
+                                      hit->impact.triangle_a, hit->impact.triangle_b));
+  }
+}
+
+}  // namespace crashrank::detail
