@@ -6,6 +6,7 @@
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
+#include "crashrank/rank/profile.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/html_report.hpp"
@@ -25,6 +26,7 @@ struct Options {
   std::string scenario;
   std::string measure;
   std::string risk_model;
+  std::string profile;
   std::string damage_folder;
   std::size_t damage_top = 5;
   std::string report;
@@ -44,6 +46,22 @@ Result<Scenario> read_scenario(const Options& options) {
   const Result<std::string> text = read_text("-", scenario_limits::file_bytes);
   if (!text) return text.error();
   return load_scenario(*text, "standard input", paths);
+}
+
+/// The scenario's own, the profile over it, the command line over both.
+Result<HarmOptions> read_harm(const Options& options, const Scenario& scenario) {
+  HarmOptions harm = scenario.harm;
+  if (!options.profile.empty()) {
+    const Result<HarmOptions> profile = load_profile_file(options.profile, harm);
+    if (!profile) return profile.error();
+    harm = *profile;
+  }
+  if (!options.risk_model.empty()) {
+    const Result<RiskModel> model = risk_model_from_name(options.risk_model);
+    if (!model) return model.error();
+    harm.model = *model;
+  }
+  return harm;
 }
 
 /// A compiled model has its body's frame and, where it was told, its mass. False for a mesh.
@@ -122,16 +140,14 @@ int run(const Options& options) {
     if (!measure) return fail(measure.error());
     how.measure = *measure;
   }
-  if (!options.risk_model.empty()) {
-    const Result<RiskModel> model = risk_model_from_name(options.risk_model);
-    if (!model) return fail(model.error());
-    how.harm.model = *model;
-  }
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return fail(build.error());
   }
   Result<Scenario> scenario = read_scenario(options);
   if (!scenario) return fail(scenario.error());
+  const Result<HarmOptions> harm = read_harm(options, *scenario);
+  if (!harm) return fail(harm.error());
+  how.harm = *harm;
   // Where the answer goes is seen to before the work.
   if (!options.damage_folder.empty()) {
     if (const Status made = make_folder(options.damage_folder); !made) return fail(made.error());
@@ -171,6 +187,7 @@ scenario's folder or below, or below a folder above it that holds a file named c
 Examples:
   crashrank rank scenario.json
   crashrank rank scenario.json --measure closing-energy --json --damage out
+  crashrank rank scenario.json --profile weights.json
   crashrank rank scenario.json --report report.html)";
 
 }  // namespace
@@ -184,11 +201,14 @@ void add_rank(CLI::App& app, Action& action) {
                    "Scenario file; - is standard input, its meshes then relative to this folder")
       ->required();
   command->add_option("--measure", options->measure,
-                      "What is compared: polygons, area, closing-energy, delta-v, energy, "
-                      "intrusion or harm (default: as the scenario says)");
+                      "What is compared: harm, delta-v, energy, intrusion, polygons, area or "
+                      "closing-energy (default: as the scenario says, else harm)");
   command->add_option("--risk-model", options->risk_model,
                       "Curves that harm is counted with: tum (default), malliaris-monfort, "
                       "malliaris-rosen or joksch-monfort");
+  command->add_option("--profile", options->profile,
+                      "Whose harm counts for how much, and ranges of what is not known: a file "
+                      "after data/profile.schema.json, over what the scenario says");
   command->add_flag("--json", options->json, "Answer in JSON, every candidate");
   command->add_option("--top", options->top, "Candidates in the table, 0 for all (default 20)")
       ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}));

@@ -1,4 +1,5 @@
-// One car at four resolutions, driven into a pole: what the crash tells and how it converges.
+// One car at four resolutions, driven into a pole: what the crash tells and how it converges, with
+// the mesh and with the cells of the crush map.
 #include "catalogue.hpp"
 
 #include "crashrank/crash/severity.hpp"
@@ -43,8 +44,8 @@ int main() {
   const generate::Entry& car = entry("sedan");
   Result<Model> pole = make_model(mesh_of(generate::build_sized(entry("pole"), 1600)));
   if (!pole) return 1;
-  std::printf("%9s %10s %10s %8s %9s %9s %9s %9s %10s\n", "triangles", "delta-v", "yaw deg/s",
-              "crush m", "volume m3", "area m2", "damaged", "EES m/s", "engine m");
+  std::printf("%8s %9s %10s %10s %8s %9s %9s %9s %9s %10s\n", "cell mm", "triangles", "delta-v",
+              "yaw deg/s", "crush m", "volume m3", "area m2", "damaged", "EES m/s", "engine m");
   for (const std::size_t triangles : {8000U, 16000U, 32000U, 64000U}) {
     Result<Model> model = make_model(mesh_of(generate::build_sized(car, triangles)));
     if (!model) return 1;
@@ -67,15 +68,19 @@ int main() {
     PulseBody b;
     b.mesh = &pole->mesh;
     b.strength = CrushStrength::unyielding();
-    const Severity s = crash_severity(a, b, impact.point_a_m, Eigen::Vector3d::UnitX());
-    double engine = 0.0;
-    for (const PartIntrusion& part : s.crush.a.parts) {
-      if (model->mesh.parts[part.part].name == "engine") engine = part.intrusion_m;
+    for (const double cell : {0.1, 0.05, 0.025, 0.0125}) {
+      SeverityOptions options;
+      options.crush.cell_m = cell;
+      const Severity s = crash_severity(a, b, impact.point_a_m, Eigen::Vector3d::UnitX(), options);
+      double engine = 0.0;
+      for (const PartIntrusion& part : s.crush.a.parts) {
+        if (model->mesh.parts[part.part].name == "engine") engine = part.intrusion_m;
+      }
+      std::printf("%8.1f %9zu %10.3f %10.2f %8.4f %9.4f %9.3f %9zu %9.3f %10.4f\n", 1e3 * cell,
+                  model->mesh.size(), s.a.delta_v_total_mps,
+                  s.a.yaw_rate_change_radps * 57.29577951308232, s.a.crush_m, s.crush.a.volume_m3,
+                  s.crush.a.area_m2, s.crush.a.triangles.size(), s.a.ees_mps, engine);
     }
-    std::printf("%9zu %10.3f %10.2f %8.4f %9.4f %9.3f %9zu %9.3f %10.4f\n", model->mesh.size(),
-                s.a.delta_v_total_mps, s.a.yaw_rate_change_radps * 57.29577951308232, s.a.crush_m,
-                s.crush.a.volume_m3, s.crush.a.area_m2, s.crush.a.triangles.size(), s.a.ees_mps,
-                engine);
   }
   return 0;
 }

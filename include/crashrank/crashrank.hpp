@@ -33,6 +33,7 @@
 #include "crashrank/crash/time_of_impact.hpp"
 
 #include "crashrank/rank/harm.hpp"
+#include "crashrank/rank/profile.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/scenario.hpp"
 

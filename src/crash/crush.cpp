@@ -175,20 +175,22 @@ private:
     constexpr double rounding_m = 1e-9;
     if ((side_ > 0.0 ? high.x() : -low.x()) < crushed_to_ - rounding_m) return 0.0;
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const double cuts = std::clamp(std::ceil(longest / grid.cell_w_m), 1.0, most_cuts);
-    const double piece = 0.5 * (b - a).cross(c - a).norm() / (cuts * cuts);
+    const auto cuts =
+        static_cast<int>(std::clamp(std::ceil(longest / grid.cell_w_m), 1.0, most_cuts));
+    const double share = 1.0 / cuts;
+    const double piece = 0.5 * (b - a).cross(c - a).norm() * share * share;
     double moved = 0.0;
     const auto look = [&](double s, double r) {
-      const double push = pushed(a + (s / cuts) * (b - a) + (r / cuts) * (c - a));
+      const double push = pushed(a + (s * share) * (b - a) + (r * share) * (c - a));
       if (!(push > 0.0)) return;
       moved += piece;
       furthest = std::max(furthest, push);
     };
     constexpr double third = 1.0 / 3.0;
-    for (double s = 0.0; s < cuts; ++s) {
-      for (double r = 0.0; s + r < cuts; ++r) {
+    for (int s = 0; s < cuts; ++s) {
+      for (int r = 0; s + r < cuts; ++r) {
         look(s + third, r + third);
-        if (s + r + 1.0 < cuts) look(s + 2.0 * third, r + 2.0 * third);
+        if (s + r + 1 < cuts) look(s + 2.0 * third, r + 2.0 * third);
       }
     }
     return moved;

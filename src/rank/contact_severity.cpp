@@ -1,5 +1,6 @@
 #include "rank/contact_severity.hpp"
 
+#include "crashrank/crash/pulse.hpp"
 #include "crashrank/crash/severity.hpp"
 
 #include <algorithm>
@@ -95,16 +96,12 @@ void tell(const BodySeverity& from, BodyOutcome& to) {
   to.cdc = from.cdc;
 }
 
-/// One rigid impulse: what can be told without following the crush.
-void tell_impulse(const Scene& scene, const PulseBody& a, const PulseBody& b, Contact& contact) {
-  ImpulseOptions options;
-  options.friction = scene.harm.friction;
-  const Vector3d normal = contact.normal.norm() > 0.0 ? contact.normal : contact.closing;
-  if (!(normal.norm() > 0.0)) return;
-  const ImpulseResult result =
-      impulse(a.rigid, b.rigid, contact.point_m, normal.normalized(), options);
-  contact.severity.slides = result.slides;
-  contact.severity.dissipated_j = result.dissipated_j;
+/// What the pulse alone tells, without the crush that follows from it.
+void tell_pulse(const PulseBody& a, const PulseBody& b, const PulseResult& pulse,
+                ContactSeverity& told) {
+  told.slides = pulse.slides;
+  told.duration_s = pulse.duration_s;
+  told.dissipated_j = pulse.dissipated_j;
   const auto fill = [](const PulseBody& body, const BodyImpulse& from, BodyOutcome& to) {
     const Vector3d local = body.pose.rotation.transpose() * from.delta_v_mps;
     to.delta_v_mps = from.delta_v_mps.norm();
@@ -114,8 +111,8 @@ void tell_impulse(const Scene& scene, const PulseBody& a, const PulseBody& b, Co
     to.pdof_deg = pdof_deg(from.impulse_ns, body.rigid.forward);
     to.clock = clock_of(to.pdof_deg);
   };
-  fill(a, result.a, contact.severity.ego);
-  fill(b, result.b, contact.severity.other);
+  fill(a, pulse.a, told.ego);
+  fill(b, pulse.b, told.other);
 }
 
 SeverityOptions coarse(double friction) {
@@ -238,17 +235,17 @@ EgoAfterContact tell_severity(const Scene& scene, const EgoAtContact& ego, Conta
   ContactSeverity& told = contact.severity;
   EgoAfterContact after;
   after.velocity = a.rigid.velocity;
-  if (!scene.pulses) {
-    tell_impulse(scene, a, b, contact);
-    return after;
-  }
   const Vector3d closing =
       velocity_of_point(ego.left, ego.pose.translation, contact.point_m) -
       velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
   Vector3d along(closing.x(), closing.y(), 0.0);
   if (!(along.norm() > 1e-6)) along = Vector3d(contact.normal.x(), contact.normal.y(), 0.0);
-  const Severity severity =
-      crash_severity(a, b, contact.point_m, along, coarse(scene.harm.friction));
+  const SeverityOptions how = coarse(scene.harm.friction);
+  if (!scene.pulses) {
+    tell_pulse(a, b, simulate_pulse(a, b, contact.point_m, along, how.pulse), told);
+    return after;
+  }
+  const Severity severity = crash_severity(a, b, contact.point_m, along, how);
   told.simulated = true;
   told.slides = severity.pulse.slides;
   told.duration_s = severity.pulse.duration_s;

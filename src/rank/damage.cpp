@@ -153,11 +153,13 @@ DamagePlan plan_damage(const Scene& scene, const Motion& ego_motion, const Conta
   DamagePlan plan;
   plan.triangle_ego = triangle_ego;
   plan.triangle_other = triangle_other;
-  const double samples = std::clamp(std::ceil(path.length_m() / sample_length_m), 1.0, max_samples);
+  const auto samples =
+      static_cast<int>(std::clamp(std::ceil(path.length_m() / sample_length_m), 1.0, max_samples));
   // Bodies that were apart until now have met with the first pair alone.
-  const double first_sample = contact.state == ImpactState::contact ? 1.0 : 0.0;
-  for (double k = first_sample; k <= samples; ++k) {
-    plan.poses.push_back(relative(path.ego_at(k / samples), path.other_at(k / samples)));
+  const int first_sample = contact.state == ImpactState::contact ? 1 : 0;
+  for (int k = first_sample; k <= samples; ++k) {
+    const double share = static_cast<double>(k) / samples;
+    plan.poses.push_back(relative(path.ego_at(share), path.other_at(share)));
   }
   return plan;
 }

@@ -67,6 +67,13 @@ bool has_cage(BodyKind kind) noexcept {
   return kind == BodyKind::car || kind == BodyKind::truck || kind == BodyKind::bus;
 }
 
+double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
+                        double reduced_kg, const HarmOptions& options) {
+  const double full_hit_mps = reduced_kg > 0.0 ? delta_v_mps * mass_kg / reduced_kg : 0.0;
+  return std::clamp(full_hit_mps, options.least_struck_share * closing_speed_mps,
+                    closing_speed_mps);
+}
+
 double harm_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {
   const double property = options.weights.property_per_mj * exposure.crush_energy_j * 1e-6;
   Person person = Person::occupant;

@@ -17,11 +17,15 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
                                  const RankOptions& options) {
   const Status sound = detail::check_scenario(scenario);
   if (!sound) return sound.error();
+  if (options.harm) {
+    const Status weighed = detail::check_harm(*options.harm, "harm");
+    if (!weighed) return weighed.error();
+  }
   RankResult result;
   const Result<detail::Scene> scene = detail::make_scene(scenario, models, options, result);
   if (!scene) return scene.error();
   result.measure = scene->measure;
-  result.harm = options.harm;
+  result.harm = scene->harm;
   result.samples = scene->samples;
   const double ego_length_m = models[result.ego.model].mesh.bounds().extent().x();
   Result<std::vector<Candidate>> candidates = make_candidates(scenario, ego_length_m);

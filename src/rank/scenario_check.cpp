@@ -33,6 +33,10 @@ public:
     if (number < 0.0) refuse(path, "is negative");
   }
 
+  void range(const std::string& path, double least, double most, double lowest, double highest) {
+    if (!(least >= lowest && least <= most && most <= highest)) refuse(path, "is out of range");
+  }
+
   void pose(const std::string& path, const Pose& pose) {
     if (!(rigidity_error(pose) <= max_rigidity_error)) refuse(path, "is not a rigid pose");
     for (int axis = 0; axis < 3; ++axis) {
@@ -49,7 +53,7 @@ public:
 
   void refuse(const std::string& path, const char* reason) {
     if (status.ok()) {
-      status = Error{ErrorCode::bad_input, {}, path, reason, "see the ranges of scenario_limits"};
+      status = Error{ErrorCode::bad_input, {}, path, reason, "see scenario_limits and harm_limits"};
     }
   }
 };
@@ -109,7 +113,43 @@ void check_actors(const Scenario& scenario, Check& check) {
   }
 }
 
+void check_harm(const HarmOptions& harm, const std::string& path, Check& check) {
+  namespace bounds = harm_limits;
+  const HarmWeights& w = harm.weights;
+  check.not_negative(path + ".weights.ego_occupant", w.ego_occupant, bounds::weight);
+  check.not_negative(path + ".weights.other_occupant", w.other_occupant, bounds::weight);
+  check.not_negative(path + ".weights.pedestrian", w.pedestrian, bounds::weight);
+  check.not_negative(path + ".weights.cyclist", w.cyclist, bounds::weight);
+  check.not_negative(path + ".weights.motorcyclist", w.motorcyclist, bounds::weight);
+  check.not_negative(path + ".weights.property_per_mj", w.property_per_mj, bounds::weight);
+  check.not_negative(path + ".people.ego", w.people_in_ego, bounds::people);
+  check.not_negative(path + ".people.car", w.people_in_car, bounds::people);
+  check.not_negative(path + ".people.truck", w.people_in_truck, bounds::people);
+  check.not_negative(path + ".people.bus", w.people_in_bus, bounds::people);
+  check.not_negative(path + ".friction", harm.friction, bounds::friction);
+  const HarmRanges& r = harm.ranges;
+  check.range(path + ".ranges.friction", r.least_friction, r.most_friction, 0.0, bounds::friction);
+  check.range(path + ".ranges.strength", r.least_strength, r.most_strength, bounds::min_strength,
+              bounds::max_strength);
+  check.range(path + ".ranges.restitution", r.least_restitution, r.most_restitution, 0.0, 1.0);
+  check.range(path + ".ranges.risk_speed", r.least_risk_speed, r.most_risk_speed,
+              bounds::min_risk_speed, bounds::max_risk_speed);
+  check.not_negative(path + ".after_impact.deceleration_mps2", harm.after.deceleration_mps2,
+                     bounds::deceleration_mps2);
+  check.not_negative(path + ".after_impact.longest_s", harm.after.longest_s, bounds::after_s);
+  if (harm.after.most_contacts < 1 || harm.after.most_contacts > bounds::contacts) {
+    check.refuse(path + ".after_impact.most_contacts", "is out of range");
+  }
+  check.not_negative(path + ".least_struck_share", harm.least_struck_share, 1.0);
+}
+
 }  // namespace
+
+Status check_harm(const HarmOptions& harm, const std::string& path) {
+  Check check;
+  check_harm(harm, path, check);
+  return check.status;
+}
 
 Status check_scenario(const Scenario& scenario) {
   Check check;
@@ -121,6 +161,7 @@ Status check_scenario(const Scenario& scenario) {
   check_candidates(scenario, check);
   check_actors(scenario, check);
   check.positive("horizon_s", scenario.horizon_s, limits::horizon_s);
+  check_harm(scenario.harm, "harm", check);
   check.positive("grip", scenario.grip, limits::max_grip);
   check.not_negative("crush.time_s", scenario.crush.time_s, limits::crush_time_s);
   check.not_negative("crush.depth_m", scenario.crush.depth_m.value_or(0.0), limits::crush_depth_m);

@@ -3,10 +3,15 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/rank/scenario.hpp"
 
+#include <string>
+
 namespace crashrank::detail {
 
 /// Whether a scenario, read or made by a program, holds numbers that can be computed with: the
 /// ranges of `scenario_limits`, rigid poses, models that are there. The error names the key path.
 Status check_scenario(const Scenario& scenario);
+
+/// The same for harm that a program made: the ranges of `harm_limits`. `path` goes before its keys.
+Status check_harm(const HarmOptions& harm, const std::string& path);
 
 }  // namespace crashrank::detail

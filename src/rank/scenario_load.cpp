@@ -1,10 +1,10 @@
 #include "crashrank/rank/scenario.hpp"
 
 #include "crashrank/base/guarded.hpp"
+#include "rank/text_file.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 namespace crashrank {
@@ -83,26 +83,10 @@ Result<Scenario> load(const std::string& text, const std::string& file,
 }
 
 Result<Scenario> read_and_load(const std::string& file, const ScenarioPaths& paths) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (error || !fs::exists(status)) {
-    return Error{ErrorCode::not_found, file, {}, "there is no such file", "check the path"};
-  }
-  if (!fs::is_regular_file(status)) {
-    return Error{ErrorCode::not_found, file, {}, "is not a file", "name a scenario in JSON"};
-  }
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    return Error{ErrorCode::not_found, file, {}, "cannot be read", "check its permissions"};
-  }
-  // One byte more than is allowed tells a file that is too large, even one that grows meanwhile.
-  std::string text;
-  std::string block(std::size_t{64} << 10, '\0');
-  while (in && text.size() <= scenario_limits::file_bytes) {
-    in.read(block.data(), static_cast<std::streamsize>(block.size()));
-    text.append(block, 0, static_cast<std::size_t>(in.gcount()));
-  }
-  return load(text, file, paths);
+  const Result<std::string> text =
+      detail::read_text_file(file, scenario_limits::file_bytes, "name a scenario in JSON");
+  if (!text) return text.error();
+  return load(*text, file, paths);
 }
 
 }  // namespace

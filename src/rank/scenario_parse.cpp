@@ -2,6 +2,7 @@
 #include "crashrank/rank/scenario.hpp"
 #include "rank/json_object.hpp"
 #include "rank/json_text.hpp"
+#include "rank/read_harm.hpp"
 
 #include <array>
 #include <cmath>
@@ -282,7 +283,7 @@ Scenario read_scenario(const json& document, Status& status) {
   Scenario scenario;
   const JsonObject root(document, {}, status,
                         {"$schema", "scenario_version", "name", "description", "models", "ego",
-                         "candidates", "actors", "horizon_s", "crush", "measure", "grip"});
+                         "candidates", "actors", "horizon_s", "crush", "measure", "harm", "grip"});
   root.require("scenario_version");
   root.text("$schema", limits::path_characters);
   if (root.has("scenario_version") && root.at("scenario_version") != 1) {
@@ -306,6 +307,12 @@ Scenario read_scenario(const json& document, Status& status) {
     } else {
       root.refuse("measure", measure.error().reason, measure.error().remedy);
     }
+  }
+  if (root.has("harm")) {
+    const JsonObject harm(root.at("harm"), "harm", status,
+                          {"risk_model", "weights", "people", "friction", "ranges", "after_impact",
+                           "least_struck_share"});
+    detail::read_harm(harm, scenario.harm);
   }
   scenario.grip = root.number("grip", {limits::min_grip, limits::max_grip}, 0.8);
   return scenario;

@@ -97,7 +97,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   Scene scene;
   scene.crush = scenario.crush;
   scene.measure = options.measure.value_or(scenario.measure);
-  scene.harm = options.harm;
+  scene.harm = options.harm.value_or(scenario.harm);
   scene.pulses = needs_crash(scene.measure);
   if (scene.pulses && scene.measure != Measure::intrusion && scene.harm.intervals) {
     scene.samples = harm_samples(scene.harm);
@@ -131,9 +131,10 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     prepare_body(scenario.models[body->model], scene.actors.back());
   }
 
-  const double slices = std::clamp(std::ceil(scenario.horizon_s / slice_length_s), 1.0, max_slices);
-  for (double i = 0.0; i <= slices; ++i) {
-    scene.slice_s.push_back(scenario.horizon_s * (i / slices));
+  const auto slices =
+      static_cast<int>(std::clamp(std::ceil(scenario.horizon_s / slice_length_s), 1.0, max_slices));
+  for (int i = 0; i <= slices; ++i) {
+    scene.slice_s.push_back(scenario.horizon_s * (static_cast<double>(i) / slices));
   }
   scene.slices.resize(scene.slice_s.size() - 1);
   std::vector<Box> boxes(scene.actors.size());

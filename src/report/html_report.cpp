@@ -5,6 +5,7 @@
 #include "report/page/embedded.hpp"
 #include "report/plan_view.hpp"
 #include "report/ranking_words.hpp"
+#include "report/score_text.hpp"
 #include "report/view_data.hpp"
 
 #include <fmt/format.h>
@@ -143,7 +144,9 @@ private:
 
   void verdict() {
     if (result_.ranking.empty()) return;
-    out_ += "<section class='verdict'><h2>Least destructive: " + escape_xml(name_of(0)) + "</h2>\n";
+    out_ += "<section class='verdict'><h2>";
+    out_ += result_.measure == Measure::harm ? "Least harmful: " : "Least destructive: ";
+    out_ += escape_xml(name_of(0)) + "</h2>\n";
     out_ += result_.ranking.size() > 1
                 ? "<p>" + escape_xml(detail::reason_words(scenario_, result_, 0)) + "</p>\n"
                 : "<p>It is the only candidate.</p>\n";
@@ -155,8 +158,26 @@ private:
       }
       out_ += "</p>\n";
     }
+    const std::vector<std::string> open =
+        detail::not_separable_words(result_, result_.ranking.size());
+    if (!open.empty()) {
+      constexpr std::size_t shown = 12;
+      out_ += "<p class='note' id='separability'>";
+      for (std::size_t i = 0; i < std::min(shown, open.size()); ++i) {
+        out_ += (i > 0 ? "; " : "") + escape_xml(open[i]);
+      }
+      if (open.size() > shown) out_ += fmt::format("; and {} more pairs", open.size() - shown);
+      out_ += ".</p>\n";
+    } else if (!result_.samples.empty() && result_.ranking.size() > 1) {
+      out_ += fmt::format(
+          "<p class='note' id='separability'>Every place can be told from the next: no order turns "
+          "round in more than {:.0f} % of {} samples of what is not known.</p>\n",
+          100.0 * separable_share, result_.samples.size());
+    }
     out_ += "</section>\n";
   }
+
+  bool simulated() const { return needs_crash(result_.measure); }
 
   void view() {
     out_ +=
@@ -180,9 +201,17 @@ private:
         "<section><h2>Ranking</h2>\n<table class='ranking'><thead><tr><th>rank</th>"
         "<th>candidate</th><th>";
     out_ += std::string(measure_name(result_.measure)) + " [" +
-            escape_xml(measure_unit(result_.measure)) +
-            "]</th><th>hits</th><th>after s</th><th>closing m/s</th><th>along the normal m/s</th>"
-            "<th>damaged m², ego</th><th>others</th><th>ego's parts</th></tr></thead><tbody>\n";
+            escape_xml(measure_unit(result_.measure)) + "]</th>";
+    if (simulated()) out_ += "<th>interval</th><th>may rank</th>";
+    out_ += "<th>hits</th><th>after s</th><th>closing m/s</th>";
+    if (simulated()) {
+      out_ +=
+          "<th>delta-v m/s, ego</th><th>other</th><th>crush m, ego</th><th>other</th>"
+          "<th>harm, ego</th><th>others</th>";
+    } else {
+      out_ += "<th>along the normal m/s</th>";
+    }
+    out_ += "<th>damaged m², ego</th><th>others</th><th>ego's parts</th></tr></thead><tbody>\n";
     for (std::size_t place = 0; place < result_.ranking.size(); ++place) row(place, top);
     out_ += "</tbody></table></section>\n";
   }
@@ -195,12 +224,13 @@ private:
     out_ += is_drawn(place) ? fmt::format("<td><a href='#c{}'>", place + 1) : std::string("<td>");
     out_ += escape_xml(name_of(place)) + (is_drawn(place) ? "</a></td>" : "</td>");
     out_ += fmt::format("<td class='score'><span class='bar' style='width:{:.1f}px'></span>{}</td>",
-                        width,
-                        ranked.score ? fmt::format("{:.5g}", *ranked.score)
-                                     : fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
-                                                   ranked.score_interval.highest));
+                        width, detail::score_text(ranked));
+    if (simulated()) {
+      out_ += "<td class='n'>" + detail::interval_text(ranked) + "</td><td class='n'>" +
+              detail::places_text(ranked) + "</td>";
+    }
     if (ranked.contacts.empty()) {
-      out_ += "<td colspan='7' class='free'>";
+      out_ += fmt::format("<td colspan='{}' class='free'>", simulated() ? 12 : 7);
       out_ += ranked.grazes.empty() ? "nothing" : "nothing, but grazes";
       out_ += "</td></tr>\n";
       return;
@@ -219,12 +249,34 @@ private:
       parts += ego.parts[i];
     }
     if (ego.parts.size() > 4) parts += fmt::format(" +{}", ego.parts.size() - 4);
+    out_ += fmt::format("<td>{}</td><td class='n'>{:.3f}</td><td class='n'>{:.1f}</td>",
+                        escape_xml(hit), first.time_of_impact_s, first.closing_speed_mps);
+    if (simulated()) {
+      severity_cells(ranked);
+    } else {
+      out_ += fmt::format("<td class='n'>{:.1f}</td>", first.normal_speed_mps);
+    }
+    out_ += fmt::format("<td class='n'>{:.2f}</td><td class='n'>{:.2f}</td><td>{}</td></tr>\n",
+                        ego.area_m2, other.area_m2, escape_xml(parts));
+  }
+
+  /// Of all contacts: changes of velocity and harm add up, crush is the deepest. As many digits as
+  /// the ranges leave of anything.
+  void severity_cells(const CandidateResult& ranked) {
+    BodyOutcome ego;
+    BodyOutcome other;
+    for (const Contact& contact : ranked.contacts) {
+      ego.delta_v_mps += contact.severity.ego.delta_v_mps;
+      other.delta_v_mps = std::max(other.delta_v_mps, contact.severity.other.delta_v_mps);
+      ego.crush_m = std::max(ego.crush_m, contact.severity.ego.crush_m);
+      other.crush_m = std::max(other.crush_m, contact.severity.other.crush_m);
+      ego.harm += contact.severity.ego.harm;
+      other.harm += contact.severity.other.harm;
+    }
     out_ += fmt::format(
-        "<td>{}</td><td class='n'>{:.3f}</td><td class='n'>{:.1f}</td>"
-        "<td class='n'>{:.1f}</td><td class='n'>{:.2f}</td><td class='n'>{:.2f}"
-        "</td><td>{}</td></tr>\n",
-        escape_xml(hit), first.time_of_impact_s, first.closing_speed_mps, first.normal_speed_mps,
-        ego.area_m2, other.area_m2, escape_xml(parts));
+        "<td class='n'>{:.1f}</td><td class='n'>{:.1f}</td><td class='n'>{:.2f}</td>"
+        "<td class='n'>{:.2f}</td><td class='n'>{:.2g}</td><td class='n'>{:.2g}</td>",
+        ego.delta_v_mps, other.delta_v_mps, ego.crush_m, other.crush_m, ego.harm, other.harm);
   }
 
   void candidate(std::size_t place) {
@@ -261,8 +313,15 @@ private:
     out_ +=
         "<footer>Made by crashrank. Plans: the ego blue, what it hits sand, the shaded outline "
         "its start, the arrow the closing velocity, damage red. Damage is what the rigid "
-        "bodies pass through in the scenario's crush, not a deformation; the measures are "
-        "measures of damage, not of harm to people.</footer>\n";
+        "bodies pass through in the scenario's crush, not a deformation.";
+    if (result_.measure != Measure::harm) {
+      out_ += " The measure is one of the crash, not of harm to people.";
+    } else {
+      for (const std::string& line : detail::harm_words(result_.harm)) {
+        out_ += "<br>" + escape_xml(line);
+      }
+    }
+    out_ += "</footer>\n";
     if (has_view()) {
       out_ += "<script>";
       add_script(detail::embedded_three());

@@ -103,6 +103,7 @@ Json harm_json(const HarmOptions& harm) {
             {"restitution", Json::array({r.least_restitution, r.most_restitution})},
             {"risk_speed", Json::array({r.least_risk_speed, r.most_risk_speed})},
             {"all_models", r.all_models}}},
+          {"least_struck_share", harm.least_struck_share},
           {"after_impact",
            {{"deceleration_mps2", harm.after.deceleration_mps2},
             {"longest_s", harm.after.longest_s},
@@ -210,27 +211,34 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
   for (std::size_t i = 0; i < result.actors.size(); ++i) {
     actors.push_back(body_json(scenario, scenario.actors[i].name, result.actors[i]));
   }
+  Json not_separable = Json::array();
+  for (std::size_t place = 0; place + 1 < result.ranking.size(); ++place) {
+    if (result.ranking[place].separable) continue;
+    not_separable.push_back({{"ranks", Json::array({place + 1, place + 2})},
+                             {"overtaken_share", result.ranking[place].overtaken}});
+  }
   const RankWork& work = result.work;
-  const Json document{
-      {"scenario", scenario.name},
-      {"measure", measure_name(result.measure)},
-      {"measure_unit", measure_unit(result.measure)},
-      {"harm", needs_crash(result.measure) ? harm_json(result.harm) : nullptr},
-      {"stability",
-       {{"samples", result.samples.size()}, {"not_separable_above_share", separable_share}}},
-      {"complete", result.complete},
-      {"proved", result.proved},
-      {"in_race", std::move(in_race)},
-      {"elapsed_s", result.elapsed_s},
-      {"ego", body_json(scenario, "ego", result.ego)},
-      {"actors", std::move(actors)},
-      {"work",
-       {{"box_tests", work.box_tests},
-        {"body_pairs", work.body_pairs},
-        {"impact_bv_tests", work.impact.bv_tests},
-        {"impact_primitive_tests", work.impact.primitive_tests},
-        {"damage_queries", work.damage_queries}}},
-      {"ranking", std::move(ranking)}};
+  const Json document{{"scenario", scenario.name},
+                      {"measure", measure_name(result.measure)},
+                      {"measure_unit", measure_unit(result.measure)},
+                      {"harm", needs_crash(result.measure) ? harm_json(result.harm) : nullptr},
+                      {"stability",
+                       {{"samples", result.samples.size()},
+                        {"not_separable_above_share", separable_share},
+                        {"not_separable", std::move(not_separable)}}},
+                      {"complete", result.complete},
+                      {"proved", result.proved},
+                      {"in_race", std::move(in_race)},
+                      {"elapsed_s", result.elapsed_s},
+                      {"ego", body_json(scenario, "ego", result.ego)},
+                      {"actors", std::move(actors)},
+                      {"work",
+                       {{"box_tests", work.box_tests},
+                        {"body_pairs", work.body_pairs},
+                        {"impact_bv_tests", work.impact.bv_tests},
+                        {"impact_primitive_tests", work.impact.primitive_tests},
+                        {"damage_queries", work.damage_queries}}},
+                      {"ranking", std::move(ranking)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -2,6 +2,7 @@
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/report/table.hpp"
 #include "report/damage_summary.hpp"
+#include "report/score_text.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@ namespace crashrank {
 namespace {
 
 using detail::DamageSummary;
+using detail::score_text;
 
 /// The first few names, and how many more there are.
 std::string shortened(const std::vector<std::string>& names) {
@@ -23,17 +25,16 @@ std::string shortened(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string score_text(const CandidateResult& ranked) {
-  if (ranked.score) return fmt::format("{:.5g}", *ranked.score);
-  return fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
-                     ranked.score_interval.highest);
-}
-
 std::vector<std::string> cells(const Scenario& scenario, View<const Model> models,
                                const RankResult& result, std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
   std::vector<std::string> row{std::to_string(place + 1), result.candidates[ranked.candidate].name,
                                score_text(ranked)};
+  const bool simulated = needs_crash(result.measure);
+  if (simulated) {
+    row.push_back(detail::interval_text(ranked));
+    row.push_back(detail::places_text(ranked));
+  }
   if (ranked.contacts.empty()) {
     row.emplace_back(ranked.grazes.empty() ? "nothing" : "nothing (grazes)");
     return row;
@@ -46,8 +47,19 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   row.push_back(hit);
   row.push_back(fmt::format("{:.3f}", first.time_of_impact_s));
   row.push_back(fmt::format("{:.1f}", first.closing_speed_mps));
-  row.push_back(fmt::format("{} + {}", ego.triangles, other.triangles));
-  row.push_back(fmt::format("{:.2f} + {:.2f}", ego.area_m2, other.area_m2));
+  if (simulated) {
+    double delta_v = 0.0;
+    double crush = 0.0;
+    for (const Contact& contact : ranked.contacts) {
+      delta_v += contact.severity.ego.delta_v_mps;
+      crush = std::max(crush, contact.severity.ego.crush_m);
+    }
+    row.push_back(fmt::format("{:.1f}", delta_v));
+    row.push_back(fmt::format("{:.2f}", crush));
+  } else {
+    row.push_back(fmt::format("{} + {}", ego.triangles, other.triangles));
+    row.push_back(fmt::format("{:.2f} + {:.2f}", ego.area_m2, other.area_m2));
+  }
   row.push_back(shortened(ego.parts));
   return row;
 }
@@ -58,17 +70,23 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
                          const RankResult& result, const RankingTextOptions& options) {
   const std::size_t all = result.ranking.size();
   const std::size_t shown = options.top == 0 ? all : std::min(options.top, all);
-  Table table(
-      {{"rank", true},
-       {"candidate"},
-       {std::string(measure_name(result.measure)) + " [" + measure_unit(result.measure) + "]",
-        true},
-       {"hits"},
-       {"after s", true},
-       {"closing m/s", true},
-       {"triangles", true},
-       {"area m2", true},
-       {"ego's parts"}});
+  const bool simulated = needs_crash(result.measure);
+  std::vector<Table::Column> columns{
+      {"rank", true},
+      {"candidate"},
+      {std::string(measure_name(result.measure)) + " [" + measure_unit(result.measure) + "]",
+       true}};
+  if (simulated) {
+    columns.push_back({"interval"});
+    columns.push_back({"may rank", true});
+  }
+  columns.push_back({"hits"});
+  columns.push_back({"after s", true});
+  columns.push_back({"closing m/s", true});
+  columns.push_back({simulated ? "delta-v m/s" : "triangles", true});
+  columns.push_back({simulated ? "crush m" : "area m2", true});
+  columns.push_back({"ego's parts"});
+  Table table(std::move(columns));
   for (std::size_t place = 0; place < shown; ++place) {
     table.add_row(cells(scenario, models, result, place));
   }
@@ -83,9 +101,16 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
   const auto free = static_cast<std::size_t>(
       std::count_if(result.ranking.begin(), result.ranking.end(),
                     [](const CandidateResult& ranked) { return !ranked.collides; }));
-  text += fmt::format("\n{} of {} touch nothing. Damage is ego + others. Ranked in {:.1f} ms{}.\n",
-                      free, all, result.elapsed_s * 1e3,
-                      result.complete ? "" : "; the answer is partial");
+  for (const std::string& words : detail::not_separable_words(result, shown)) {
+    text += words + "\n";
+  }
+  text += fmt::format("\n{} of {} touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
+                      simulated ? " Delta-v (over all contacts) and crush are the ego's."
+                                : " Damage is ego + others.",
+                      result.elapsed_s * 1e3, result.complete ? "" : "; the answer is partial");
+  if (result.measure == Measure::harm) {
+    for (const std::string& line : detail::harm_words(result.harm)) text += line + "\n";
+  }
   return text;
 }
 

@@ -1,5 +1,7 @@
 #include "report/ranking_words.hpp"
 
+#include "report/score_text.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -78,9 +80,9 @@ std::string tie_words(const CandidateResult& first, const CandidateResult& secon
 }  // namespace
 
 std::string score_words(const CandidateResult& ranked, Measure measure) {
-  if (ranked.score) return fmt::format("{:.5g} {}", *ranked.score, measure_unit(measure));
-  return fmt::format("{:.3g} to {:.3g} {}", ranked.score_interval.lowest,
-                     ranked.score_interval.highest, measure_unit(measure));
+  const std::string interval = interval_text(ranked);
+  return score_text(ranked) + " " + measure_unit(measure) +
+         (interval.empty() ? "" : " (" + interval + ")");
 }
 
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
@@ -117,8 +119,14 @@ std::string reason_words(const Scenario& scenario, const RankResult& result, std
   }
   text += fmt::format("What counts here is the {}: {} against {}", what_counts(result.measure),
                       score_words(first, result.measure), score_words(second, result.measure));
-  if (*first.score > 0.0) {
+  if (*first.score > 0.0 && first.separable) {
     text += fmt::format(", {:.0f} % more", 100.0 * (*second.score / *first.score - 1.0));
+  }
+  if (!first.separable) {
+    text += fmt::format(
+        ". The two are not separable: in {:.0f} % of {} samples of what is not known their order "
+        "turns round",
+        100.0 * first.overtaken, result.samples.size());
   }
   return text + "." + other_view(result, first, second);
 }

@@ -32,7 +32,7 @@ TEST(Rank, JsonHasTheContractsShape) {
   cli_test::write_box_scenario(place);
   const Json answer = ranked(place);
   EXPECT_EQ(answer.at("scenario"), "box ahead");
-  EXPECT_EQ(answer.at("measure"), "polygons");
+  EXPECT_EQ(answer.at("measure"), "harm");
   EXPECT_EQ(answer.at("complete"), true);
   EXPECT_EQ(answer.at("proved"), true);
   EXPECT_TRUE(answer.at("in_race").is_array());
@@ -47,8 +47,12 @@ TEST(Rank, JsonHasTheContractsShape) {
     last = one["score"];
     const std::vector<double> interval = one.at("score_interval");
     ASSERT_EQ(interval.size(), 2U);
-    EXPECT_EQ(interval[0], one["score"]);
-    EXPECT_EQ(interval[1], one["score"]);
+    EXPECT_LE(interval[0], one["score"].get<double>());
+    EXPECT_GE(interval[1], one["score"].get<double>());
+    EXPECT_TRUE(one.at("separable_from_next").is_boolean());
+    ASSERT_EQ(one.at("places").size(), 2U);
+    EXPECT_LE(one["places"][0], i + 1);
+    EXPECT_GE(one["places"][1], i + 1);
     EXPECT_TRUE(one.at("collides").is_boolean());
     EXPECT_EQ(one.at("contacts").empty(), !one["collides"].get<bool>());
     for (const char* key : {"damaged_triangles", "damaged_area_m2"}) {
@@ -67,7 +71,7 @@ TEST(Rank, JsonHasTheContractsShape) {
 TEST(Rank, WhatIsHitWhenAndHowFast) {
   const Workplace place;
   cli_test::write_box_scenario(place);
-  const Json answer = ranked(place);
+  const Json answer = ranked(place, {"--measure", "polygons"});
   EXPECT_EQ(answer["ranking"][0]["candidate"], "brake");
   EXPECT_EQ(answer["ranking"][0]["score"], 0.0);
   EXPECT_EQ(answer["ranking"][0]["collides"], false);

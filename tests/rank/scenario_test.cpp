@@ -69,6 +69,15 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
   EXPECT_EQ(s.crush.time_s, 0.05);
   EXPECT_FALSE(s.crush.depth_m.has_value());
   EXPECT_EQ(s.measure, Measure::area);
+  EXPECT_EQ(s.harm.model, RiskModel::malliaris_monfort);
+  EXPECT_EQ(s.harm.weights.pedestrian, 2.0);
+  EXPECT_EQ(s.harm.weights.property_per_mj, 0.5);
+  EXPECT_EQ(s.harm.weights.cyclist, 1.0);
+  EXPECT_EQ(s.harm.weights.people_in_ego, 3.0);
+  EXPECT_EQ(s.harm.ranges.least_friction, 0.2);
+  EXPECT_EQ(s.harm.ranges.most_friction, 0.5);
+  EXPECT_FALSE(s.harm.ranges.all_models);
+  EXPECT_EQ(s.harm.after.most_contacts, 1U);
   EXPECT_EQ(s.grip, 0.8);
 }
 

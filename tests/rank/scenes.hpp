@@ -62,6 +62,7 @@ struct Scene {
 
   Scene() {
     scenario.name = "test";
+    scenario.measure = Measure::polygons;
     scenario.grid.reset();
     scenario.add_straight_braking = false;
   }

@@ -4,6 +4,7 @@ schema, accepts what the parser accepts, and refuses what it refuses as far as a
 
 import copy
 import json
+import os
 import sys
 import unittest
 
@@ -50,6 +51,18 @@ class Schema(unittest.TestCase):
             with self.subTest(variant["why"]):
                 document = patched(sample, variant["patch"])
                 self.assertEqual(self.validator.is_valid(document), expected)
+
+    def test_profiles_say_what_scenarios_say(self):
+        folder = os.path.dirname(SCHEMA)
+        profile = load(os.path.join(folder, "profile.schema.json"))
+        jsonschema.Draft202012Validator.check_schema(profile)
+        for name, member in self.schema["$defs"]["harm"]["properties"].items():
+            self.assertEqual(profile["properties"][name], member)
+        for name in os.listdir(os.path.join(folder, "profiles")):
+            if name.endswith(".json"):
+                shipped = load(os.path.join(folder, "profiles", name))
+                self.assertEqual(
+                    list(jsonschema.Draft202012Validator(profile).iter_errors(shipped)), [])
 
     def test_accepts_what_is_shipped(self):
         for path in SHIPPED:

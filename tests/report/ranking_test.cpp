@@ -58,5 +58,66 @@ TEST(RankingText, IsSafeForATerminalAndSaysThatItIsPartial) {
   EXPECT_NE(short_text.find("and 2 more"), std::string::npos);
 }
 
+/// The same ranking by harm, with what is not known.
+Told by_harm() {
+  Told told;
+  RankResult& result = told.result;
+  result.measure = Measure::harm;
+  result.complete = true;
+  result.samples.resize(129);
+  result.harm.weights.cyclist = 0.75;
+  result.harm.weights.people_in_bus = 31.0;
+  CandidateResult& hit = result.ranking[1];
+  hit.score = 0.2174;
+  hit.score_interval = {0.1634, 0.3512};
+  hit.best_place = 1;
+  hit.worst_place = 2;
+  hit.overtaken = 0.38;
+  hit.separable = false;
+  CandidateResult& last = result.ranking[2];
+  last.score = 4321.987;
+  last.score_interval = {4000.0, 4999.0};
+  return told;
+}
+
+TEST(RankingText, TellsNoDigitThatTheIntervalLeavesOpen) {
+  const Told told = by_harm();
+  const std::string text = ranking_text(told.scenario, told.models, told.result);
+  for (const char* word :
+       {"0.2 ", "0.1 to 0.4", "4300", "4000 to 5000", "2-3", "not separable", "38 %", "129 samples",
+        "cyclist 0.75", "31 in a bus", "MAIS3+", "choice", "friction", "restitution"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
+  }
+  EXPECT_NE(text.find("rank 2 and 3 not separable"), std::string::npos) << text;
+  EXPECT_EQ(text.find("0.21"), std::string::npos) << text;
+  EXPECT_EQ(text.find("4321"), std::string::npos) << text;
+  // Without ranges everything is told, and nothing about stability.
+  Told plain = by_harm();
+  plain.result.ranking[1].score_interval = {0.2174, 0.2174};
+  plain.result.ranking[1].separable = true;
+  const std::string exact = ranking_text(plain.scenario, plain.models, plain.result);
+  EXPECT_NE(exact.find("0.2174"), std::string::npos) << exact;
+  EXPECT_EQ(exact.find("separable"), std::string::npos) << exact;
+}
+
+TEST(RankingJson, TellsStabilityAndEveryWeight) {
+  const Told told = by_harm();
+  const auto answer = nlohmann::json::parse(ranking_json(told.scenario, told.models, told.result));
+  EXPECT_EQ(answer["stability"]["samples"], 129);
+  ASSERT_EQ(answer["stability"]["not_separable"].size(), 1U);
+  EXPECT_EQ(answer["stability"]["not_separable"][0]["ranks"], nlohmann::json::array({2, 3}));
+  EXPECT_EQ(answer["ranking"][1]["places"], nlohmann::json::array({2, 3}));
+  EXPECT_EQ(answer["ranking"][1]["separable_from_next"], false);
+  EXPECT_EQ(answer["ranking"][1]["overtaken_share"], 0.38);
+  for (const char* weight :
+       {"ego_occupant", "other_occupant", "pedestrian", "cyclist", "motorcyclist",
+        "property_per_mj", "people_in_ego", "people_in_car", "people_in_truck", "people_in_bus"}) {
+    EXPECT_TRUE(answer["harm"]["weights"][weight].is_number()) << weight;
+  }
+  EXPECT_EQ(answer["harm"]["weights"]["cyclist"], 0.75);
+  EXPECT_TRUE(answer["harm"]["least_struck_share"].is_number());
+  EXPECT_TRUE(answer["harm"]["after_impact"]["most_contacts"].is_number());
+}
+
 }  // namespace
 }  // namespace crashrank

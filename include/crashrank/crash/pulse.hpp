@@ -65,7 +65,8 @@ struct PulseResult {
 /// Equal and opposite impulses act at one point, so momentum is conserved to rounding; each step is
 /// at most the one that takes the most energy out, so energy is never gained.
 ///
-/// Cost: facets that may touch × steps, some milliseconds with the default cells. Allocates. Safe from any thread.
+/// Cost: facets that may touch × steps, some milliseconds with the default cells. Allocates. Safe
+/// from any thread.
 /// Where it fails: vertical motion, rolling, parts that break off; what A is made of is told by its
 /// strength, not by the mesh. Facets are B's, so exchanging the bodies changes the answer a little.
 CRASHRANK_API PulseResult simulate_pulse(const PulseBody& a, const PulseBody& b,

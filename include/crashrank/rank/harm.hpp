@@ -2,9 +2,7 @@
 
 #include "crashrank/base/export.hpp"
 #include "crashrank/crash/injury.hpp"
-#include "crashrank/rank/scenario.hpp"
-
-#include <Eigen/Core>
+#include "crashrank/rank/body_kind.hpp"
 
 #include <cstddef>
 #include <vector>

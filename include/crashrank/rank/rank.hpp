@@ -33,8 +33,8 @@ struct RankOptions {
   unsigned workers = 1;
   Policy policy = Policy::late_match;  ///< how the dispatch's jobs find their workers
   std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
-  HarmOptions harm;
-  ImpactOptions impact;  ///< `start_is_apart` is decided inside
+  std::optional<HarmOptions> harm;     ///< absent: the scenario's
+  ImpactOptions impact;                ///< `start_is_apart` is decided inside
 };
 
 /// What a crash does to one body.
@@ -73,8 +73,8 @@ struct BodyOutcome {
 
 /// The crash with one body: it as it moves when met, the ego as the contacts before left it.
 struct ContactSeverity {
-  /// The crush phase was followed (measures that need it); otherwise one rigid impulse at the point
-  /// of first contact.
+  /// Crush and harm were told (measures that need them). The changes of velocity are the pulse's in
+  /// any case: the same numbers under every measure.
   bool simulated = false;
   bool slides = false;
   double duration_s = 0.0;

@@ -5,6 +5,8 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/crash/motion.hpp"
 #include "crashrank/mesh/import.hpp"
+#include "crashrank/rank/body_kind.hpp"
+#include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/measure.hpp"
 
 #include <Eigen/Core>
@@ -15,28 +17,6 @@
 #include <vector>
 
 namespace crashrank {
-
-/// What a body is; decides its mass where none is given.
-enum class BodyKind {
-  car,
-  truck,
-  bus,
-  motorcycle,
-  bicycle,
-  pedestrian,
-  barrier,
-  pole,
-  building,
-};
-
-/// "car", "truck", ... as in scenario files.
-CRASHRANK_API const char* body_kind_name(BodyKind kind) noexcept;
-
-/// Mass of a body from its kind and size, kg: a car −1333.5 + 526.9·(length·width)^0.8 and at least
-/// 300, a truck 25000, a bus 13000, a motorcycle 250, a bicycle 90, a pedestrian 75, rider included
-/// (TUM's planner for harm-aware trajectories). Barriers, poles and buildings do not move:
-/// infinity. `extent_m` is length, width, height.
-CRASHRANK_API double guess_mass_kg(BodyKind kind, const Eigen::Vector3d& extent_m);
 
 /// A shape of a scenario, before anybody has read its mesh.
 struct ScenarioModel {
@@ -107,7 +87,8 @@ struct Scenario {
   std::vector<ScenarioActor> actors;
   double horizon_s = 4.0;
   Crush crush;
-  Measure measure = Measure::polygons;
+  Measure measure = Measure::harm;
+  HarmOptions harm;   ///< weights and ranges; the defaults where the file is silent
   double grip = 0.8;  ///< friction between tyre and road
 };
 

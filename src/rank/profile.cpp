@@ -1,0 +1,62 @@
+#include "crashrank/rank/profile.hpp"
+
+#include "crashrank/base/guarded.hpp"
+#include "rank/json_object.hpp"
+#include "rank/json_text.hpp"
+#include "rank/read_harm.hpp"
+#include "rank/text_file.hpp"
+
+namespace crashrank {
+namespace {
+
+constexpr std::size_t name_characters = 128;
+constexpr std::size_t text_characters = 4000;
+
+Result<HarmOptions> parse(const std::string& text, const std::string& file,
+                          const HarmOptions& otherwise) {
+  if (text.size() > harm_limits::file_bytes) {
+    return Error{ErrorCode::limit_exceeded, file, {}, "is larger than 1 MiB", "shorten it"};
+  }
+  Result<nlohmann::json> document = detail::parse_json(text);
+  if (!document) {
+    document.error().file = file;
+    return document.error();
+  }
+  Status status = Success{};
+  const detail::JsonObject root(
+      *document, {}, status,
+      {"$schema", "profile_version", "name", "description", "risk_model", "weights", "people",
+       "friction", "ranges", "after_impact", "least_struck_share"});
+  root.require("profile_version");
+  root.text("$schema", text_characters);
+  if (root.has("profile_version") && root.at("profile_version") != 1) {
+    root.refuse("profile_version", "is not a version this program reads", "it reads version 1");
+  }
+  root.name("name", name_characters);
+  root.text("description", text_characters);
+  HarmOptions harm = otherwise;
+  if (status.ok()) detail::read_harm(root, harm);
+  if (!status.ok()) {
+    status.error().file = file;
+    return status.error();
+  }
+  return harm;
+}
+
+}  // namespace
+
+Result<HarmOptions> parse_profile(const std::string& text, const std::string& file,
+                                  const HarmOptions& otherwise) {
+  return detail::guarded([&] { return parse(text, file, otherwise); });
+}
+
+Result<HarmOptions> load_profile_file(const std::string& file, const HarmOptions& otherwise) {
+  return detail::guarded([&]() -> Result<HarmOptions> {
+    const Result<std::string> text =
+        detail::read_text_file(file, harm_limits::file_bytes, "name a profile in JSON");
+    if (!text) return text.error();
+    return parse(*text, file, otherwise);
+  });
+}
+
+}  // namespace crashrank

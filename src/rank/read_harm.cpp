@@ -1,0 +1,92 @@
+#include "rank/read_harm.hpp"
+
+#include <string>
+
+namespace crashrank::detail {
+namespace {
+
+namespace limits = harm_limits;
+
+constexpr NumberRange weight{0.0, limits::weight};
+constexpr NumberRange people{0.0, limits::people};
+constexpr NumberRange friction{0.0, limits::friction};
+constexpr NumberRange share{0.0, 1.0};
+
+/// [least, most], the first no greater than the second.
+void read_range(const JsonObject& object, const char* key, NumberRange range, double& least,
+                double& most) {
+  const nlohmann::json* ends = object.array(key, 2, 2);
+  if (ends == nullptr) return;
+  const double first =
+      checked_number((*ends)[0], object.path_of(key) + "[0]", range, object.status(), least);
+  const double last =
+      checked_number((*ends)[1], object.path_of(key) + "[1]", range, object.status(), most);
+  if (first > last) object.refuse(key, "ends before it begins", "write it as [least, most]");
+  least = first;
+  most = last;
+}
+
+void read_weights(const JsonObject& parent, HarmWeights& w) {
+  if (parent.has("weights")) {
+    const JsonObject object(parent.at("weights"), parent.path_of("weights"), parent.status(),
+                            {"ego_occupant", "other_occupant", "pedestrian", "cyclist",
+                             "motorcyclist", "property_per_mj"});
+    w.ego_occupant = object.number("ego_occupant", weight, w.ego_occupant);
+    w.other_occupant = object.number("other_occupant", weight, w.other_occupant);
+    w.pedestrian = object.number("pedestrian", weight, w.pedestrian);
+    w.cyclist = object.number("cyclist", weight, w.cyclist);
+    w.motorcyclist = object.number("motorcyclist", weight, w.motorcyclist);
+    w.property_per_mj = object.number("property_per_mj", weight, w.property_per_mj);
+  }
+  if (parent.has("people")) {
+    const JsonObject object(parent.at("people"), parent.path_of("people"), parent.status(),
+                            {"ego", "car", "truck", "bus"});
+    w.people_in_ego = object.number("ego", people, w.people_in_ego);
+    w.people_in_car = object.number("car", people, w.people_in_car);
+    w.people_in_truck = object.number("truck", people, w.people_in_truck);
+    w.people_in_bus = object.number("bus", people, w.people_in_bus);
+  }
+}
+
+void read_ranges(const JsonObject& parent, HarmRanges& r) {
+  if (!parent.has("ranges")) return;
+  const JsonObject object(parent.at("ranges"), parent.path_of("ranges"), parent.status(),
+                          {"friction", "strength", "restitution", "risk_speed", "all_models"});
+  read_range(object, "friction", friction, r.least_friction, r.most_friction);
+  read_range(object, "strength", {limits::min_strength, limits::max_strength}, r.least_strength,
+             r.most_strength);
+  read_range(object, "restitution", share, r.least_restitution, r.most_restitution);
+  read_range(object, "risk_speed", {limits::min_risk_speed, limits::max_risk_speed},
+             r.least_risk_speed, r.most_risk_speed);
+  r.all_models = object.flag("all_models", r.all_models);
+}
+
+}  // namespace
+
+void read_harm(const JsonObject& object, HarmOptions& harm) {
+  constexpr std::size_t name_characters = 128;
+  if (object.has("risk_model")) {
+    const Result<RiskModel> model =
+        risk_model_from_name(object.text("risk_model", name_characters));
+    if (model) {
+      harm.model = *model;
+    } else {
+      object.refuse("risk_model", model.error().reason, model.error().remedy);
+    }
+  }
+  read_weights(object, harm.weights);
+  harm.friction = object.number("friction", friction, harm.friction);
+  read_ranges(object, harm.ranges);
+  if (object.has("after_impact")) {
+    const JsonObject after(object.at("after_impact"), object.path_of("after_impact"),
+                           object.status(), {"deceleration_mps2", "longest_s", "most_contacts"});
+    harm.after.deceleration_mps2 = after.number(
+        "deceleration_mps2", {0.0, limits::deceleration_mps2}, harm.after.deceleration_mps2);
+    harm.after.longest_s = after.number("longest_s", {0.0, limits::after_s}, harm.after.longest_s);
+    harm.after.most_contacts =
+        after.count("most_contacts", 1, limits::contacts, harm.after.most_contacts);
+  }
+  harm.least_struck_share = object.number("least_struck_share", share, harm.least_struck_share);
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,160 @@
+#include "rank/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace crashrank {
+namespace {
+
+using scenes::box_mesh;
+using scenes::of;
+using scenes::Scene;
+
+/// A wall across the lane, somebody on foot on its left, a standing car on its right.
+Scene square() {
+  Scene scene;
+  const std::size_t car =
+      scene.add_model("car", box_mesh({2.0F, 0.9F, 0.7F}, 4, {0, 0, 0.7F}), BodyKind::car, 1400.0);
+  const std::size_t wall =
+      scene.add_model("wall", box_mesh({0.5F, 2.0F, 1.0F}, 2, {0, 0, 1}), BodyKind::building);
+  const std::size_t person = scene.add_model(
+      "person", box_mesh({0.2F, 0.3F, 0.85F}, 2, {0, 0, 0.85F}), BodyKind::pedestrian);
+  scene.scenario.ego.model = car;
+  scene.scenario.ego.speed_mps = 14.0;
+  scene.scenario.measure = Measure::harm;
+  scene.add_actor("wall", wall, 20.0, 0.0);
+  scene.add_actor("person", person, 16.0, 4.5);
+  scene.add_actor("standing", car, 20.0, -4.5);
+  scene.add_candidate("wall", 0.0);
+  scene.add_candidate("wall, a little slower", -0.5);
+  scene.add_candidate("person", -2.0, 0.09);
+  scene.add_candidate("standing car", 0.0, -0.07);
+  return scene;
+}
+
+TEST(Stability, SamplesTellPlacesAndSeparation) {
+  const RankResult result = square().ranked();
+  ASSERT_EQ(result.samples.size(), 129U);
+  for (const CandidateResult& c : result.ranking) {
+    ASSERT_EQ(c.sample_scores.size(), result.samples.size());
+    EXPECT_NEAR(c.sample_scores.front(), *c.score, 1e-12);
+    EXPECT_LE(c.score_interval.lowest, *c.score);
+    EXPECT_GE(c.score_interval.highest, *c.score);
+  }
+  // Places and shares once more, the slow way.
+  const std::size_t count = result.ranking.size();
+  for (std::size_t place = 0; place < count; ++place) {
+    const CandidateResult& c = result.ranking[place];
+    std::size_t best = count;
+    std::size_t worst = 0;
+    std::size_t turned = 0;
+    for (std::size_t s = 0; s < result.samples.size(); ++s) {
+      std::size_t before = 0;
+      for (std::size_t other = 0; other < count; ++other) {
+        const double theirs = result.ranking[other].sample_scores[s];
+        const double ours = c.sample_scores[s];
+        if (theirs < ours || (theirs == ours && other < place)) ++before;
+      }
+      best = std::min(best, before);
+      worst = std::max(worst, before);
+      if (place + 1 < count && result.ranking[place + 1].sample_scores[s] < c.sample_scores[s]) {
+        ++turned;
+      }
+    }
+    EXPECT_EQ(c.best_place, best);
+    EXPECT_EQ(c.worst_place, worst);
+    EXPECT_DOUBLE_EQ(c.overtaken, static_cast<double>(turned) / 129.0);
+    EXPECT_EQ(c.separable, c.overtaken <= separable_share);
+  }
+}
+
+TEST(Stability, WhatIsWrongForBothAlikeDoesNotCount) {
+  const RankResult result = square().ranked();
+  const CandidateResult& fast = of(result, "wall");
+  const CandidateResult& slow = of(result, "wall, a little slower");
+  // Their intervals overlap widely, and yet the slower one is better in every sample.
+  EXPECT_LT(*slow.score, *fast.score);
+  EXPECT_LT(fast.score_interval.lowest, slow.score_interval.highest);
+  for (std::size_t s = 0; s < result.samples.size(); ++s) {
+    EXPECT_LT(slow.sample_scores[s], fast.sample_scores[s]);
+  }
+}
+
+TEST(Stability, WithoutRangesThereIsOneAnswer) {
+  Scene scene = square();
+  HarmRanges& r = scene.scenario.harm.ranges;
+  r.least_friction = r.most_friction = scene.scenario.harm.friction;
+  r.least_strength = r.most_strength = 1.0;
+  r.least_restitution = r.most_restitution = 0.0;
+  r.least_risk_speed = r.most_risk_speed = 1.0;
+  r.all_models = false;
+  const RankResult result = scene.ranked();
+  EXPECT_EQ(result.samples.size(), 2U);
+  for (std::size_t place = 0; place < result.ranking.size(); ++place) {
+    const CandidateResult& c = result.ranking[place];
+    EXPECT_NEAR(c.score_interval.lowest, *c.score, 1e-9);
+    EXPECT_NEAR(c.score_interval.highest, *c.score, 1e-9);
+    EXPECT_EQ(c.best_place, place);
+    EXPECT_EQ(c.worst_place, place);
+    EXPECT_TRUE(c.separable);
+  }
+  RankOptions options;
+  options.harm = scene.scenario.harm;
+  options.harm->intervals = false;
+  const RankResult bare = scene.ranked(options);
+  EXPECT_TRUE(bare.samples.empty());
+  EXPECT_EQ(bare.ranking.front().score, result.ranking.front().score);
+}
+
+TEST(Stability, TheModelsCornersAreThere) {
+  HarmOptions options;
+  const std::vector<HarmSample> samples = harm_samples(options);
+  ASSERT_EQ(samples.size(), 129U);
+  for (const RiskModel model : {RiskModel::tum, RiskModel::malliaris_monfort,
+                                RiskModel::malliaris_rosen, RiskModel::joksch_monfort}) {
+    EXPECT_EQ(std::count_if(samples.begin() + 1, samples.end(),
+                            [model](const HarmSample& s) { return s.model == model; }),
+              32);
+  }
+  HarmExposure e;
+  e.delta_v_mps = 12.0;
+  EXPECT_EQ(harm_of(e, options, samples.front()), harm_of(e, options));
+}
+
+TEST(Stability, BoundsHoldForAllDirectionsAndFronts) {
+  for (const RiskModel model : {RiskModel::tum, RiskModel::malliaris_monfort,
+                                RiskModel::malliaris_rosen, RiskModel::joksch_monfort}) {
+    HarmOptions options;
+    options.model = model;
+    for (const BodyKind kind : {BodyKind::car, BodyKind::pedestrian, BodyKind::bicycle}) {
+      for (int step = 1; step < 40; ++step) {
+        HarmExposure e;
+        e.kind = kind;
+        e.delta_v_mps = step;
+        e.closing_speed_mps = step;
+        const double most = most_harm(e, options);
+        for (int side = 0; side < 36; ++side) {
+          e.pdof_deg = 10.0 * side;
+          for (const double edge : {0.3, 0.6, 0.9, 1.5}) {
+            e.leading_edge_m = edge;
+            EXPECT_LE(harm_of(e, options), most);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Stability, WhoIsBrushedIsStruckLessHard) {
+  const HarmOptions options;
+  const double reduced = 75.0 * 1500.0 / 1575.0;
+  const double full = 10.0 * reduced / 75.0;
+  EXPECT_NEAR(struck_speed_mps(10.0, full, 75.0, reduced, options), 10.0, 1e-12);
+  EXPECT_NEAR(struck_speed_mps(10.0, 0.5 * full, 75.0, reduced, options), 5.0, 1e-12);
+  EXPECT_NEAR(struck_speed_mps(10.0, 0.0, 75.0, reduced, options), 3.0, 1e-12);
+  EXPECT_NEAR(struck_speed_mps(10.0, 3.0 * full, 75.0, reduced, options), 10.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace crashrank
