@@ -8,12 +8,16 @@
 
 #include "crashrank/rank/profile.hpp"
 #include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/ranker.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/tree/model.hpp"
 #include "crashrank/tree/model_file.hpp"
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,7 +39,15 @@ struct Options {
   std::string policy = "late-match";
   std::string depth = "auto";
   bool json = false;
+  double deadline_ms = std::numeric_limits<double>::infinity();
+  std::uint64_t work_budget = std::numeric_limits<std::uint64_t>::max();
+  bool first_place = false;
   TreeArguments tree;
+
+  bool bounded() const {
+    return std::isfinite(deadline_ms) || first_place ||
+           work_budget != std::numeric_limits<std::uint64_t>::max();
+  }
   std::vector<std::string> allowed_folders;
 };
 
@@ -126,6 +138,27 @@ Status write_report(const std::string& path, const std::string& page) {
   return file->close();
 }
 
+/// Ranks within a budget; what is known at its end is then told in full, off the clock.
+Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario,
+                                const std::vector<Model>& models, const RankOptions& how) {
+  Result<std::vector<Candidate>> candidates = make_candidates(
+      scenario, static_cast<double>(models[scenario.ego.model].mesh.bounds().extent().x()));
+  if (!candidates) return candidates.error();
+  RankerOptions ranker_options;
+  ranker_options.rank = how;
+  ranker_options.limits.candidates = candidates->size();
+  ranker_options.limits.actors = scenario.actors.size();
+  ranker_options.limits.triangles = std::numeric_limits<std::size_t>::max();
+  Result<Ranker> ranker = Ranker::prepare(scenario, models, ranker_options);
+  if (!ranker) return ranker.error();
+  RankBudget budget;
+  budget.deadline_s = 1e-3 * options.deadline_ms;
+  budget.work = options.work_budget;
+  budget.first_place_only = options.first_place;
+  const RankerAnswer answer = ranker->rank(*candidates, budget);
+  return ranker->explain(*candidates, answer);
+}
+
 int run(const Options& options) {
   RankOptions how;
   how.workers = options.workers;
@@ -154,7 +187,9 @@ int run(const Options& options) {
   }
   const Result<std::vector<Model>> models = load_models(*scenario, options.tree);
   if (!models) return fail(models.error());
-  const Result<RankResult> ranked = rank(*scenario, *models, how);
+  const Result<RankResult> ranked = options.bounded()
+                                        ? rank_bounded(options, *scenario, *models, how)
+                                        : rank(*scenario, *models, how);
   if (!ranked) {
     Error error = ranked.error();
     if (error.file.empty()) error.file = options.scenario;
@@ -177,7 +212,8 @@ int run(const Options& options) {
     text.colours = colours_wanted();
     print(ranking_text(*scenario, *models, *ranked, text));
   }
-  return ranked->complete ? exit_done : exit_budget;
+  const bool answered = ranked->complete || (options.first_place && ranked->proved);
+  return answered ? exit_done : exit_budget;
 }
 
 constexpr const char* epilogue =
@@ -188,7 +224,8 @@ Examples:
   crashrank rank scenario.json
   crashrank rank scenario.json --measure closing-energy --json --damage out
   crashrank rank scenario.json --profile weights.json
-  crashrank rank scenario.json --report report.html)";
+  crashrank rank scenario.json --report report.html
+  crashrank rank scenario.json --deadline-ms 20 --workers 2)";
 
 }  // namespace
 
@@ -216,6 +253,16 @@ void add_rank(CLI::App& app, Action& action) {
       ->add_option("--workers", options->workers,
                    "Threads that share the work; the answer is the same (default 1)")
       ->check(CLI::Range(1U, max_workers));
+  command
+      ->add_option("--deadline-ms", options->deadline_ms,
+                   "Answer within this time, in what is known by then; counted from the call, "
+                   "meshes and trees being ready")
+      ->check(CLI::Range(0.0, 1e9));
+  command->add_option("--work-budget", options->work_budget,
+                      "Answer in what is known after this many tests of boxes, triangles and "
+                      "facets; the same on every machine");
+  command->add_flag("--first-place", options->first_place,
+                    "Answer as soon as the first place is proved");
   command->add_option("--policy", options->policy, policy_help());
   command->add_option("--depth", options->depth,
                       "Distribution depth at which trees are cut, 1 to 16, or auto (default)");

@@ -35,6 +35,7 @@
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/profile.hpp"
 #include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/ranker.hpp"
 #include "crashrank/rank/scenario.hpp"
 
 #include "crashrank/report/damage_model.hpp"

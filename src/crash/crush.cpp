@@ -229,9 +229,9 @@ CrushResult crush(const PulseBody& a, const PulseBody& b, const Vector3d& point_
   Vector3d high_a;
   Vector3d low_b;
   Vector3d high_b;
-  detail::LookStack stack;
-  detail::view_bounds(a, result.frame, low_a, high_a, stack);
-  detail::view_bounds(b, result.frame, low_b, high_b, stack);
+  detail::LookMemory memory;
+  detail::view_bounds(a, result.frame, low_a, high_a, memory);
+  detail::view_bounds(b, result.frame, low_b, high_b, memory);
   const Vector3d low = low_a.cwiseMax(low_b);
   const Vector3d high = high_a.cwiseMin(high_b);
   if (!(low.y() < high.y() && low.z() < high.z())) return result;
@@ -243,8 +243,8 @@ CrushResult crush(const PulseBody& a, const PulseBody& b, const Vector3d& point_
   if ((a.strength.rigid && b.strength.rigid) || !(energy_j > 0.0)) return result;
   DepthMap map_a;
   DepthMap map_b;
-  detail::depth_map(a, result.frame, result.grid, map_a, stack);
-  detail::depth_map(b, result.frame, result.grid, map_b, stack);
+  detail::depth_map(a, result.frame, result.grid, map_a, memory);
+  detail::depth_map(b, result.frame, result.grid, map_b, memory);
   Press press(a, b, result.frame, map_a, map_b);
   if (press.empty()) return result;
 

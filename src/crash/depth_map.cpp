@@ -156,16 +156,54 @@ private:
   double margin_ = 0.0;
 };
 
+/// Cells of a grid that boxes may cover, found at less cost than those of triangles: a little too
+/// many rather than one too few.
+class CoveredCells {
+public:
+  explicit CoveredCells(const ViewGrid& grid)
+      : grid_(grid),
+        per_w_(1.0 / grid.cell_w_m),
+        per_h_(1.0 / grid.cell_h_m),
+        columns_(static_cast<double>(grid.columns)),
+        rows_(static_cast<double>(grid.rows)) {}
+
+  Span columns(double low, double high) const {
+    return span((low - grid_.low_w_m) * per_w_, (high - grid_.low_w_m) * per_w_, columns_);
+  }
+  Span rows(double low, double high) const {
+    return span((low - grid_.low_h_m) * per_h_, (high - grid_.low_h_m) * per_h_, rows_);
+  }
+
+private:
+  /// Middles lie at i + 1/2.
+  static Span span(double low, double high, double count) {
+    constexpr double slack = 1e-6;
+    const double from = std::max(low - 0.5 - slack, 0.0);
+    const double to = std::min(high - 0.5 + slack, count - 1.0);
+    if (!(to >= 0.0) || !(from <= to)) return {};
+    auto first = static_cast<std::size_t>(from);
+    if (static_cast<double>(first) < from) ++first;
+    const std::size_t end = static_cast<std::size_t>(to) + 1;
+    return first < end ? Span{first, end} : Span{};
+  }
+
+  const ViewGrid& grid_;
+  double per_w_;
+  double per_h_;
+  double columns_;
+  double rows_;
+};
+
 /// Whether a box could still show anywhere: some middle of a cell lies before it, where what has
 /// been seen so far does not reach past it on both sides.
-bool may_show(const DepthMap& map, const Vector3d& low, const Vector3d& high) {
-  const ViewGrid& grid = map.grid;
-  const Span columns = cells_between(low.y(), high.y(), grid.low_w_m, grid.cell_w_m, grid.columns);
+bool may_show(const DepthMap& map, const CoveredCells& cells, const Vector3d& low,
+              const Vector3d& high) {
+  const Span columns = cells.columns(low.y(), high.y());
   if (columns.first >= columns.end) return false;
-  const Span rows = cells_between(low.z(), high.z(), grid.low_h_m, grid.cell_h_m, grid.rows);
+  const Span rows = cells.rows(low.z(), high.z());
   for (std::size_t row = rows.first; row < rows.end; ++row) {
     for (std::size_t column = columns.first; column < columns.end; ++column) {
-      const std::size_t cell = grid.index(column, row);
+      const std::size_t cell = map.grid.index(column, row);
       if (map.least_m[cell] > low.x() || map.greatest_m[cell] < high.x()) return true;
     }
   }
@@ -175,17 +213,41 @@ bool may_show(const DepthMap& map, const Vector3d& low, const Vector3d& high) {
 }  // namespace
 
 void view_bounds(const AabbTree& tree, const ViewOfBody& view, Vector3d& low, Vector3d& high,
-                 LookStack& stack) {
+                 LookMemory& memory) {
   low = Vector3d::Constant(endless);
   high = -low;
   if (tree.empty()) return;
   const SeenBoxes boxes(tree, view);
+  Vector3d from;
+  Vector3d to;
+  const auto include = [&](const Node& leaf) {
+    for (std::uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
+      for (const Eigen::Vector3f& corner : tree.triangles[slot].corner) {
+        const Vector3d p = view(corner);
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+      }
+    }
+  };
+  // Straight down to what is likely to be outermost each way, so that little is left to look at.
+  for (int way = 0; way < 6; ++way) {
+    const int axis = way / 2;
+    const auto outer = [&](std::uint32_t index) {
+      boxes.see(tree.nodes[index].box, from, to);
+      return way % 2 == 0 ? to[axis] : -from[axis];
+    };
+    const Node* node = &tree.nodes[0];
+    while (!node->is_leaf()) {
+      const bool left = outer(node->first) >= outer(node->first + 1);
+      node = &tree.nodes[left ? node->first : node->first + 1];
+    }
+    include(*node);
+  }
+  std::vector<std::uint32_t>& stack = memory.stack;
   stack.assign(1, 0);
-  while (!stack.empty()) {
+  while (!stack.empty() && memory.goes_on()) {
     const Node& node = tree.nodes[stack.back()];
     stack.pop_back();
-    Vector3d from;
-    Vector3d to;
     boxes.see(node.box, from, to);
     if ((from.array() >= low.array()).all() && (to.array() <= high.array()).all()) continue;
     if (!node.is_leaf()) {
@@ -193,17 +255,11 @@ void view_bounds(const AabbTree& tree, const ViewOfBody& view, Vector3d& low, Ve
       stack.push_back(node.first);
       continue;
     }
-    for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
-      for (const Eigen::Vector3f& corner : tree.triangles[slot].corner) {
-        const Vector3d p = view(corner);
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-      }
-    }
+    include(node);
   }
 }
 
-void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookStack& stack) {
+void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookMemory& memory) {
   map.least_m.assign(map.grid.size(), endless);
   map.greatest_m.assign(map.grid.size(), -endless);
   if (tree.empty()) return;
@@ -212,16 +268,18 @@ void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, Look
   Vector3d to;
   boxes.see(tree.nodes[0].box, from, to);
   const double middle = 0.5 * (from.x() + to.x());
+  const CoveredCells cells(map.grid);
   const auto outer = [&](std::uint32_t node) {
     boxes.see(tree.nodes[node].box, from, to);
     return std::max(to.x() - middle, middle - from.x());
   };
+  std::vector<std::uint32_t>& stack = memory.stack;
   stack.assign(1, 0);
-  while (!stack.empty()) {
+  while (!stack.empty() && memory.goes_on()) {
     const Node& node = tree.nodes[stack.back()];
     stack.pop_back();
     boxes.see(node.box, from, to);
-    if (!may_show(map, from, to)) continue;
+    if (!may_show(map, cells, from, to)) continue;
     if (!node.is_leaf()) {
       // What is further out hides more.
       const bool right_first = outer(node.first + 1) > outer(node.first);
@@ -237,19 +295,19 @@ void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, Look
 }
 
 void view_bounds(const PulseBody& body, const ViewFrame& frame, Vector3d& low, Vector3d& high,
-                 LookStack& stack) {
+                 LookMemory& memory) {
   if (body.tree != nullptr) {
-    view_bounds(*body.tree, ViewOfBody(body.pose, frame), low, high, stack);
+    view_bounds(*body.tree, ViewOfBody(body.pose, frame), low, high, memory);
   } else {
     crashrank::view_bounds(*body.mesh, body.pose, frame, low, high);
   }
 }
 
 void depth_map(const PulseBody& body, const ViewFrame& frame, const ViewGrid& grid, DepthMap& map,
-               LookStack& stack) {
+               LookMemory& memory) {
   if (body.tree != nullptr) {
     map.grid = grid;
-    depth_map(*body.tree, ViewOfBody(body.pose, frame), map, stack);
+    depth_map(*body.tree, ViewOfBody(body.pose, frame), map, memory);
   } else {
     map = crashrank::depth_map(*body.mesh, body.pose, frame, grid);
   }

@@ -69,14 +69,16 @@ double longest(const Vector3d& gap, double less, double acceleration, double eno
 
 ImpactSearch::ImpactSearch(const AabbTree& a, const Motion& motion_a, const AabbTree& b,
                            const Motion& motion_b, double from, double until,
-                           std::uint64_t max_steps, SearchMemory& memory)
+                           const ImpactOptions& options, SearchMemory& memory)
     : a_(a),
       motion_a_(motion_a),
       b_(b),
       motion_b_(motion_b),
       radii_{radius_of(a), radius_of(b)},
       until_(until),
-      steps_left_(max_steps),
+      steps_left_(options.max_steps),
+      stop_(options.stop),
+      stop_context_(options.stop_context),
       memory_(memory) {
   const std::size_t needed = traversal_stack_size(a.depth, b.depth);
   if (memory_.stack.size() < needed) memory_.stack.resize(needed);
@@ -154,8 +156,10 @@ const Knot& ImpactSearch::knot(std::size_t index) {
 double ImpactSearch::limit() const noexcept { return std::min(best_.time, until_); }
 
 bool ImpactSearch::spend(std::uint64_t& counter) {
+  constexpr std::uint64_t between_looks = 256;
   ++counter;
-  if (steps_left_ == 0) {
+  const bool look = stop_ != nullptr && steps_left_ % between_looks == 0;
+  if (steps_left_ == 0 || (look && stop_(stop_context_))) {
     exhausted_ = true;
     return false;
   }

@@ -43,6 +43,9 @@ struct Thresholds {
   double prove_m = 0.0;  ///< proved apart by more than this; below `stop_m`
 };
 
+/// Most times at which a search looks at both motions: knots, and kinks among them.
+inline constexpr std::size_t most_search_times = 1536;
+
 /// Buffers of a search, kept between searches.
 struct SearchMemory {
   struct Entry {
@@ -61,7 +64,7 @@ struct SearchMemory {
 class ImpactSearch {
 public:
   ImpactSearch(const AabbTree& a, const Motion& motion_a, const AabbTree& b, const Motion& motion_b,
-               double from, double until, std::uint64_t max_steps, SearchMemory& memory);
+               double from, double until, const ImpactOptions& options, SearchMemory& memory);
 
   /// The first meeting in [from, until], `time` infinite when there is none. `known` is a meeting
   /// that the caller has already: nothing later is looked for. When the steps run out, `exhausted`
@@ -100,6 +103,8 @@ private:
   Radii radii_;
   double until_;
   std::uint64_t steps_left_;
+  bool (*stop_)(void*) = nullptr;
+  void* stop_context_ = nullptr;
   SearchMemory& memory_;
   Thresholds thresholds_;
   Meeting best_;

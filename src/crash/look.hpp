@@ -26,22 +26,35 @@ struct ViewOfBody {
   }
 };
 
-/// Memory of the looks at a body's tree.
-using LookStack = std::vector<std::uint32_t>;
+/// Memory of the looks at a body's tree, and who may end them early.
+struct LookMemory {
+  std::vector<std::uint32_t> stack;
+  /// Asked every few hundred boxes; once it says true what is looked at stays incomplete.
+  bool (*stop)(void* stop_context) = nullptr;
+  void* stop_context = nullptr;
+  bool stopped = false;
+  std::uint32_t boxes = 0;
+
+  bool goes_on() {
+    constexpr std::uint32_t between_looks = 256;
+    if (stop != nullptr && ++boxes % between_looks == 0 && stop(stop_context)) stopped = true;
+    return !stopped;
+  }
+};
 
 /// As `view_bounds` of the tree's mesh, to the bit, without looking at vertices inside the bounds
 /// known already.
 void view_bounds(const AabbTree& tree, const ViewOfBody& view, Eigen::Vector3d& low,
-                 Eigen::Vector3d& high, LookStack& stack);
+                 Eigen::Vector3d& high, LookMemory& memory);
 
 /// As `depth_map` of the tree's mesh into `map.grid`, to the bit, without looking at triangles
 /// between the middles of cells or behind what is seen already.
-void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookStack& stack);
+void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookMemory& memory);
 
 /// The body's tree is looked at where it has one, its mesh otherwise.
 void view_bounds(const PulseBody& body, const ViewFrame& frame, Eigen::Vector3d& low,
-                 Eigen::Vector3d& high, LookStack& stack);
+                 Eigen::Vector3d& high, LookMemory& memory);
 void depth_map(const PulseBody& body, const ViewFrame& frame, const ViewGrid& grid, DepthMap& map,
-               LookStack& stack);
+               LookMemory& memory);
 
 }  // namespace crashrank::detail

@@ -111,20 +111,33 @@ Motion::Motion(const FreeMotion& free) : kind_(FreeMotion{rigid(free.start), fre
 Motion Motion::at_rest(const Pose& pose) { return FreeMotion{pose, {}}; }
 
 Result<Motion> Motion::timed(View<const TimedPose> poses) {
-  if (poses.empty()) return make_error(ErrorCode::bad_input, "a timed motion needs a pose");
-  Timed segments(poses.size());
+  Motion motion;
+  const Status made = motion.become_timed(poses);
+  if (!made) return made.error();
+  return motion;
+}
+
+Status Motion::become_timed(View<const TimedPose> poses) {
+  if (!std::holds_alternative<Timed>(kind_)) kind_ = Timed{};
+  Timed& segments = *std::get_if<Timed>(&kind_);
+  segments.assign(poses.size(), Segment{});
+  const auto refuse = [this](std::size_t i, std::string reason, std::string remedy = {}) {
+    kind_ = FreeMotion{};
+    Error error = make_error(ErrorCode::bad_input, std::move(reason), std::move(remedy));
+    error.place = "pose " + std::to_string(i);
+    return error;
+  };
+  if (poses.empty()) {
+    kind_ = FreeMotion{};
+    return make_error(ErrorCode::bad_input, "a timed motion needs a pose");
+  }
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto bad = [i](std::string reason, std::string remedy = {}) {
-      Error error = make_error(ErrorCode::bad_input, std::move(reason), std::move(remedy));
-      error.place = "pose " + std::to_string(i);
-      return error;
-    };
-    if (!std::isfinite(poses[i].time_s)) return bad("its time is not finite");
+    if (!std::isfinite(poses[i].time_s)) return refuse(i, "its time is not finite");
     if (i > 0 && !(poses[i].time_s > poses[i - 1].time_s)) {
-      return bad("its time is not later than the one before", "sort the poses by time");
+      return refuse(i, "its time is not later than the one before", "sort the poses by time");
     }
     if (!(rigidity_error(poses[i].pose) <= max_rigidity_error)) {
-      return bad("it is not a rigid motion");
+      return refuse(i, "it is not a rigid motion");
     }
     segments[i].time = poses[i].time_s;
     segments[i].pose = rigid(poses[i].pose);
@@ -140,9 +153,7 @@ Result<Motion> Motion::timed(View<const TimedPose> poses) {
       segments[i].velocity.angular_radps = turn.axis() * (turn.angle() / seconds);
     }
   }
-  Motion motion;
-  motion.kind_ = std::move(segments);
-  return motion;
+  return Success{};
 }
 
 void Motion::planar_state(const Planar& planar, double t, Pose& pose, Velocity& velocity) {

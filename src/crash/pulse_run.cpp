@@ -28,6 +28,10 @@ PlanarBody make_planar(const RigidBody& body, const ViewFrame& frame) {
   return p;
 }
 
+double turning_j(const PlanarBody& body) {
+  return body.inverse_inertia > 0.0 ? 0.5 * body.spin * body.spin / body.inverse_inertia : 0.0;
+}
+
 }  // namespace
 
 void PlanarBody::push(const Vector2d& impulse, double moment) {
@@ -43,6 +47,31 @@ void PlanarBody::move(double dt) {
   sine = std::sin(angle);
 }
 
+void PulseMemory::prepare(double longest_m, double highest_m, std::uint32_t deepest,
+                          const PulseOptions& options) {
+  constexpr double most_cells = 1024.0;  // across and up, see `grid_over`
+  const double across = std::min(std::ceil((longest_m + 1.0) / options.cell_w_m) + 4.0, most_cells);
+  const double rows = std::min(std::ceil(highest_m / options.cell_h_m) + 1.0, most_cells);
+  const double cells = across * rows;
+  // From one column to the next a line of facets may go from A's front to its back; pieces are as
+  // long as a cell.
+  const double pieces = 2.0 * cells * (longest_m / options.cell_w_m + 3.0);
+  const auto cell_count = static_cast<std::size_t>(cells);
+  const auto facet_count = static_cast<std::size_t>(pieces);
+  for (DepthMap* map : {&map_a, &map_b}) {
+    map->least_m.reserve(cell_count);
+    map->greatest_m.reserve(cell_count);
+  }
+  look.stack.reserve(std::size_t{deepest} + 64);
+  facets.reserve(facet_count);
+  laws.reserve(facet_count);
+  row_front_m.reserve(static_cast<std::size_t>(rows) + 1);
+  crushed_m.reserve(cell_count);
+  wakes_m.reserve(facet_count);
+  awake.reserve(facet_count);
+  at.reserve(facet_count);
+}
+
 bool can_press(const PulseBody& a, const PulseBody& b, const Vector3d& along) {
   return along.head<2>().norm() > 0.0 && (a.rigid.movable() || b.rigid.movable()) &&
          !(a.strength.rigid && b.strength.rigid);
@@ -51,12 +80,14 @@ bool can_press(const PulseBody& a, const PulseBody& b, const Vector3d& along) {
 void look(const PulseBody& a, const PulseBody& b, const ViewFrame& frame,
           const PulseOptions& options, PulseMemory& memory) {
   memory.facets.clear();
+  memory.looked_at = 1;
+  memory.look.stopped = false;
   Vector3d low_a;
   Vector3d high_a;
   Vector3d low_b;
   Vector3d high_b;
-  view_bounds(a, frame, low_a, high_a, memory.stack);
-  view_bounds(b, frame, low_b, high_b, memory.stack);
+  view_bounds(a, frame, low_a, high_a, memory.look);
+  view_bounds(b, frame, low_b, high_b, memory.look);
   const double low = std::max(low_a.z(), low_b.z());
   const double high = std::min(high_a.z(), high_b.z());
   if (!(low < high)) return;
@@ -71,8 +102,9 @@ void look(const PulseBody& a, const PulseBody& b, const ViewFrame& frame,
   // Rows have to be the same.
   grid_b.rows = grid_a.rows;
   grid_b.cell_h_m = grid_a.cell_h_m;
-  depth_map(a, frame, grid_a, memory.map_a, memory.stack);
-  depth_map(b, frame, grid_b, memory.map_b, memory.stack);
+  depth_map(a, frame, grid_a, memory.map_a, memory.look);
+  depth_map(b, frame, grid_b, memory.map_b, memory.look);
+  if (memory.look.stopped) return;
   facets_of(memory.map_b, low_b.x() + (high_a.x() - low_a.x()), memory.facets);
 
   memory.row_front_m.assign(grid_a.rows, -endless);
@@ -82,6 +114,7 @@ void look(const PulseBody& a, const PulseBody& b, const ViewFrame& frame,
       memory.row_front_m[row] = std::max(memory.row_front_m[row], memory.map_a.greatest_m[cell]);
     }
   }
+  memory.looked_at += 2 * grid_a.size() + memory.facets.size();
   const Material material(b, frame);
   memory.laws.resize(memory.facets.size());
   if (material.rigid()) {
@@ -111,6 +144,7 @@ PulseRun::PulseRun(const PulseBody& a, const PulseBody& b, const ViewFrame& fram
       b_(make_planar(b.rigid, frame)),
       material_a_(a, frame),
       material_b_(b, frame) {
+  energy_before_j_ = moving_j();
   over_ = memory.facets.empty();
   if (over_) return;
   memory.crushed_m.assign(memory.map_a.grid.size(), 0.0);
@@ -314,15 +348,26 @@ bool PulseRun::advance(int steps) {
 }
 
 double PulseRun::most_left_ns() const {
-  if (over_) return 0.0;
   const double inverse = a_.inverse_mass + b_.inverse_mass;
-  if (!(inverse > 0.0)) return 0.0;
-  const auto turning = [](const PlanarBody& body) {
-    return body.inverse_inertia > 0.0 ? body.spin * body.spin / body.inverse_inertia : 0.0;
-  };
+  if (over_ || !(inverse > 0.0)) return 0.0;
   const double speed = (a_.velocity - b_.velocity).norm();
-  const double turns = turning(a_) + turning(b_);
+  const double turns = 2.0 * (turning_j(a_) + turning_j(b_));
   return (1.0 + 1e-9) * (speed + std::sqrt(speed * speed + turns * inverse)) / inverse;
+}
+
+double PulseRun::most_left_j() const {
+  const double inverse = a_.inverse_mass + b_.inverse_mass;
+  if (over_ || !(inverse > 0.0)) return 0.0;
+  const double speed = (a_.velocity - b_.velocity).norm();
+  return (1.0 + 1e-9) * (0.5 * speed * speed / inverse + turning_j(a_) + turning_j(b_)) +
+         1e-12 * energy_before_j_;
+}
+
+double PulseRun::moving_j() const {
+  const auto moving = [](const PlanarBody& body) {
+    return body.inverse_mass > 0.0 ? 0.5 * body.velocity.squaredNorm() / body.inverse_mass : 0.0;
+  };
+  return moving(a_) + moving(b_) + turning_j(a_) + turning_j(b_);
 }
 
 Vector3d PulseRun::in_world(const Vector2d& v) const {

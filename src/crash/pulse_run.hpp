@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,7 +27,7 @@ struct FacetLaw {
 struct PulseMemory {
   DepthMap map_a;
   DepthMap map_b;
-  LookStack stack;
+  LookMemory look;
   std::vector<Facet> facets;  ///< of B
   std::vector<FacetLaw> laws;
   std::vector<double> row_front_m;   ///< greatest u of A by row
@@ -34,6 +35,11 @@ struct PulseMemory {
   std::vector<double> wakes_m;       ///< by facet: sleeps until this much was moved
   std::vector<std::uint32_t> awake;  ///< facets that may touch, rising
   std::vector<Eigen::Vector2d> at;   ///< of those: where they are in A as it was
+  std::uint64_t looked_at = 0;       ///< cells and facets that the last look went over
+
+  /// Room for pulses of a body A that is seen at most this long and high, trees at most this deep.
+  void prepare(double longest_m, double highest_m, std::uint32_t deepest,
+               const PulseOptions& options);
 };
 
 /// Whether there is anything to simulate: a horizontal direction, a body that moves, one that
@@ -41,7 +47,7 @@ struct PulseMemory {
 bool can_press(const PulseBody& a, const PulseBody& b, const Eigen::Vector3d& along);
 
 /// Looks at two bodies' surfaces in each other's way, once for any number of pulses between them.
-/// No facets are left where they cannot meet.
+/// No facets are left where they cannot meet, or where `memory.look` was stopped.
 void look(const PulseBody& a, const PulseBody& b, const ViewFrame& frame,
           const PulseOptions& options, PulseMemory& memory);
 
@@ -86,6 +92,10 @@ public:
   /// No more impulse can follow than this, N·s: kinetic energy of the two about their common centre
   /// of mass is never gained, and that is what further impulses live on.
   double most_left_ns() const;
+  /// No more energy can be dissipated than this, J.
+  double most_left_j() const;
+  /// Kinetic energy that both have lost so far, J.
+  double dissipated_j() const { return std::max(0.0, energy_before_j_ - moving_j()); }
   /// How much has acted so far, world axes, on A.
   Eigen::Vector3d impulse_ns() const { return in_world(impulse_); }
   /// Facets looked at so far.
@@ -112,6 +122,7 @@ private:
   void move();
   Eigen::Vector3d in_world(const Eigen::Vector2d& v) const;
   void tell(const RigidBody& body, const PlanarBody& end, double sign, BodyImpulse& told) const;
+  double moving_j() const;
 
   const PulseOptions& options_;
   PulseVariant variant_;
@@ -132,6 +143,7 @@ private:
   double moved_m_ = 0.0;    ///< no facet has moved further in A's frame
   double next_wake_m_ = 0.0;
   std::uint64_t work_ = 0;
+  double energy_before_j_ = 0.0;
   Eigen::Vector2d impulse_ = Eigen::Vector2d::Zero();
   double pressed_ = 0.0;
   Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();

@@ -5,6 +5,7 @@
 
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/distance.hpp"
+#include "crashrank/collide/traverse.hpp"
 #include "crashrank/crash/containment.hpp"
 
 #include <algorithm>
@@ -23,6 +24,21 @@ ImpactWorkspace::ImpactWorkspace() : state_(std::make_unique<State>()) {}
 ImpactWorkspace::~ImpactWorkspace() = default;
 ImpactWorkspace::ImpactWorkspace(ImpactWorkspace&&) noexcept = default;
 ImpactWorkspace& ImpactWorkspace::operator=(ImpactWorkspace&&) noexcept = default;
+
+void ImpactWorkspace::prepare(std::uint32_t depth_a, std::uint32_t depth_b) {
+  const std::size_t needed = traversal_stack_size(depth_a, depth_b);
+  State& memory = *state_;
+  if (memory.search.stack.size() < needed) memory.search.stack.resize(needed);
+  if (memory.distance.stack.size() < needed) memory.distance.stack.resize(needed);
+  memory.collide.prepare(depth_a, depth_b);
+  memory.search.times.reserve(detail::most_search_times);
+  if (memory.search.knots.size() < detail::most_search_times) {
+    memory.search.knots.resize(detail::most_search_times);
+  }
+  // A leaf's triangles against a leaf's: a query for any pair ends with them.
+  constexpr std::size_t leaf_pairs = 4096;
+  memory.pairs.reserve(leaf_pairs);
+}
 
 namespace {
 
@@ -151,7 +167,7 @@ public:
       impact.time_s = until_;
       return;
     }
-    detail::ImpactSearch search(a_, motion_a_, b_, motion_b_, near, until_, options_.max_steps,
+    detail::ImpactSearch search(a_, motion_a_, b_, motion_b_, near, until_, options_,
                                 memory_.search);
     decide(search, near, impact);
     impact.work += search.work();

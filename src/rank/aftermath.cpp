@@ -10,6 +10,8 @@
 namespace crashrank::detail {
 namespace {
 
+constexpr double pose_step_s = 0.05;
+
 using Eigen::Vector3d;
 
 /// What is left of a speed under even deceleration, and the way until then.
@@ -39,14 +41,13 @@ Eigen::Matrix3d yawed(double angle_rad) {
 
 }  // namespace
 
-Aftermath::Aftermath(const Scene& scene, const Candidate& candidate, double start_s,
-                     const EgoAtContact& ego, const EgoAfterContact& after)
-    : start_s_(start_s),
-      ego_(ego),
-      after_(after),
-      center_in_body_m_(scene.ego.mass.center_m),
-      deceleration_mps2_(
-          std::max(scene.harm.after.deceleration_mps2, -candidate.acceleration_mps2)) {
+void Aftermath::begin(const Scene& scene, const Candidate& candidate, double start_s,
+                      const EgoAtContact& ego, const EgoAfterContact& after) {
+  start_s_ = start_s;
+  ego_ = ego;
+  after_ = after;
+  center_in_body_m_ = scene.ego.mass.center_m;
+  deceleration_mps2_ = std::max(scene.harm.after.deceleration_mps2, -candidate.acceleration_mps2);
   // Tyres that push sideways act about as far from the centre of mass as the mass does.
   const MassProperties& mass = scene.ego.mass;
   const double gyration_m = std::sqrt(mass.inertia_kgm2(2, 2) / mass.mass_kg);
@@ -65,18 +66,26 @@ Aftermath::Aftermath(const Scene& scene, const Candidate& candidate, double star
   }
   until_s_ = std::min(horizon_s, over_s + follow_s);
 
-  constexpr double step_s = 0.05;
   constexpr double least_s = 1e-6;
-  std::vector<TimedPose> poses{{start_s, ego.pose}};
-  if (after.duration_s > least_s) poses.push_back({over_s, pose(0.0)});
-  const double rest_s = until_s_ - poses.back().time_s;
-  const auto steps = static_cast<int>(std::ceil(std::max(rest_s, 0.0) / step_s));
+  poses_.clear();
+  poses_.push_back({start_s, ego.pose});
+  if (after.duration_s > least_s) poses_.push_back({over_s, pose(0.0)});
+  const double rest_s = until_s_ - poses_.back().time_s;
+  const auto steps = static_cast<int>(std::ceil(std::max(rest_s, 0.0) / pose_step_s));
   for (int i = 1; i <= steps && rest_s > least_s; ++i) {
     const double since_s = rest_s * i / steps;
-    poses.push_back({over_s + since_s, pose(since_s)});
+    poses_.push_back({over_s + since_s, pose(since_s)});
   }
-  const Result<Motion> moves = Motion::timed({poses.data(), poses.size()});
-  motion_ = moves ? *moves : Motion::at_rest(ego.pose);
+  if (!motion_.become_timed({poses_.data(), poses_.size()})) motion_ = Motion::at_rest(ego.pose);
+}
+
+void Aftermath::prepare(const Scene& scene) {
+  const double longest_s = std::min(scene.slice_s.back(), scene.harm.after.longest_s);
+  const auto most = static_cast<std::size_t>(std::ceil(longest_s / pose_step_s)) + 3;
+  poses_.resize(most);
+  for (std::size_t i = 0; i < most; ++i) poses_[i] = {static_cast<double>(i), Pose{}};
+  const Status held = motion_.become_timed({poses_.data(), most});
+  static_cast<void>(held);
 }
 
 Velocity Aftermath::slowed(double since_s) const {

@@ -3,15 +3,19 @@
 #include "rank/contact_severity.hpp"
 #include "rank/scene.hpp"
 
+#include <vector>
+
 namespace crashrank::detail {
 
 /// The ego from a contact on: through the crash, then as it leaves it, slowed evenly to standstill.
 class Aftermath {
 public:
-  /// `ego` at the contact, which began at `start_s`, and what the crash made of it.
-  /// A candidate that brakes harder than AfterImpact goes on braking.
-  Aftermath(const Scene& scene, const Candidate& candidate, double start_s, const EgoAtContact& ego,
-            const EgoAfterContact& after);
+  /// Begun with a contact: `ego` at it, `start_s` its time, and what the crash made of the ego. One
+  /// object serves any number, one after another.
+  void begin(const Scene& scene, const Candidate& candidate, double start_s,
+             const EgoAtContact& ego, const EgoAfterContact& after);
+  /// Room for all that begin in a scene.
+  void prepare(const Scene& scene);
 
   /// Rests at the contact's pose before it.
   const Motion& motion() const { return motion_; }
@@ -35,6 +39,7 @@ private:
   double deceleration_mps2_ = 0.0;
   double spin_deceleration_radps2_ = 0.0;
   Motion motion_;
+  std::vector<TimedPose> poses_;
 };
 
 }  // namespace crashrank::detail

@@ -1,5 +1,7 @@
 #include "rank/contact_severity.hpp"
 
+#include "rank/crash_setup.hpp"
+
 #include "crashrank/crash/pulse.hpp"
 #include "crashrank/crash/severity.hpp"
 
@@ -68,20 +70,6 @@ CrushStrength strength_of(BodyKind kind, double mass_kg, const Box& box) {
   return CrushStrength::unyielding();
 }
 
-PulseBody pulse_body(const Body& body, const Pose& pose, const Velocity& velocity) {
-  PulseBody placed;
-  placed.pose = pose;
-  placed.mesh = &body.model->mesh;
-  placed.tree = &body.model->tree;
-  placed.rigid = place(body.mass, placed.pose, velocity);
-  placed.strength = body.strength;
-  if (!placed.rigid.movable()) {
-    placed.rigid.velocity = Velocity{};
-    placed.strength = CrushStrength::unyielding();
-  }
-  return placed;
-}
-
 void tell(const BodySeverity& from, BodyOutcome& to) {
   to.delta_v_mps = from.delta_v_total_mps;
   to.delta_v_x_mps = from.delta_v_mps.x();
@@ -113,41 +101,6 @@ void tell_pulse(const PulseBody& a, const PulseBody& b, const PulseResult& pulse
   };
   fill(a, pulse.a, told.ego);
   fill(b, pulse.b, told.other);
-}
-
-SeverityOptions coarse(double friction) {
-  SeverityOptions options;
-  options.pulse.friction = friction;
-  options.pulse.cell_w_m = 0.05;
-  options.pulse.cell_h_m = 0.2;
-  options.pulse.step_s = 0.001;
-  options.pulse.longest_s = 0.2;
-  options.crush.cell_m = 0.1;
-  return options;
-}
-
-/// The speed at which people outside cars are struck, from the delta-v of a pulse.
-double struck(const Scene& scene, const Body& body, const Body& striker, const Contact& contact,
-              double delta_v_mps) {
-  if (std::isinf(body.mass_kg)) return contact.closing_speed_mps;
-  const double reduced_kg = std::isinf(striker.mass_kg)
-                                ? body.mass_kg
-                                : body.mass_kg * striker.mass_kg / (body.mass_kg + striker.mass_kg);
-  return struck_speed_mps(contact.closing_speed_mps, delta_v_mps, body.mass_kg, reduced_kg,
-                          scene.harm);
-}
-
-HarmExposure exposure_of(const Scene& scene, const Body& body, const Body& striker, bool ego,
-                         const Contact& contact, const BodyOutcome& outcome) {
-  HarmExposure e;
-  e.kind = body.kind;
-  e.ego = ego;
-  e.delta_v_mps = outcome.delta_v_mps;
-  e.pdof_deg = outcome.pdof_deg;
-  e.closing_speed_mps = struck(scene, body, striker, contact, outcome.delta_v_mps);
-  e.leading_edge_m = striker.leading_edge_m;
-  e.crush_energy_j = outcome.crush_energy_j;
-  return e;
 }
 
 /// The score that one contact adds in a sample.
@@ -227,25 +180,15 @@ void prepare_body(const ScenarioModel& model, Body& body) {
 
 EgoAfterContact tell_severity(const Scene& scene, const EgoAtContact& ego, Contact& contact) {
   const Body& other = scene.actors[contact.actor];
-  Pose other_pose;
-  Velocity other_velocity;
-  other.motion.state_at(contact.time_of_impact_s, other_pose, other_velocity);
-  const PulseBody a = pulse_body(scene.ego, ego.pose, ego.left);
-  const PulseBody b = pulse_body(other, other_pose, other_velocity);
+  const CrashSetup crash = set_up_crash(scene, ego, contact);
   ContactSeverity& told = contact.severity;
-  EgoAfterContact after;
-  after.velocity = a.rigid.velocity;
-  const Vector3d closing =
-      velocity_of_point(ego.left, ego.pose.translation, contact.point_m) -
-      velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
-  Vector3d along(closing.x(), closing.y(), 0.0);
-  if (!(along.norm() > 1e-6)) along = Vector3d(contact.normal.x(), contact.normal.y(), 0.0);
   const SeverityOptions how = coarse(scene.harm.friction);
   if (!scene.pulses) {
-    tell_pulse(a, b, simulate_pulse(a, b, contact.point_m, along, how.pulse), told);
-    return after;
+    tell_pulse(crash.a, crash.b,
+               simulate_pulse(crash.a, crash.b, contact.point_m, crash.along, how.pulse), told);
+    return after_pulse(crash, {});
   }
-  const Severity severity = crash_severity(a, b, contact.point_m, along, how);
+  const Severity severity = crash_severity(crash.a, crash.b, contact.point_m, crash.along, how);
   told.simulated = true;
   told.slides = severity.pulse.slides;
   told.duration_s = severity.pulse.duration_s;
@@ -257,14 +200,8 @@ EgoAfterContact tell_severity(const Scene& scene, const EgoAtContact& ego, Conta
   told.other.harm =
       harm_of(exposure_of(scene, other, scene.ego, false, contact, told.other), scene.harm);
   told.harm = told.ego.harm + told.other.harm;
-  if (!scene.samples.empty()) tell_samples(scene, a, b, along, contact);
-  if (severity.pulse.acts) {
-    after.duration_s = severity.pulse.duration_s;
-    after.moved_m = severity.pulse.moved_a_m;
-    after.turned_rad = severity.pulse.turned_a_rad;
-    after.velocity = severity.pulse.a.after;
-  }
-  return after;
+  if (!scene.samples.empty()) tell_samples(scene, crash.a, crash.b, crash.along, contact);
+  return after_pulse(crash, severity.pulse);
 }
 
 }  // namespace crashrank::detail

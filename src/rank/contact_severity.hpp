@@ -22,8 +22,8 @@ struct EgoAfterContact {
   Velocity velocity;  ///< linear: of its centre of mass
 };
 
-/// Fills in `contact.severity` from both bodies at first contact: the pulse, and with `scene.pulses`
-/// the crush and the harm that follow from it.
+/// Fills in `contact.severity` from both bodies at first contact: the pulse, and with
+/// `scene.pulses` the crush and the harm that follow from it.
 EgoAfterContact tell_severity(const Scene& scene, const EgoAtContact& ego, Contact& contact);
 
 /// What the search and the scores need of a body beside its shape.

@@ -1,9 +1,10 @@
 #include "rank/evaluate.hpp"
 
+#include "rank/bounds.hpp"
 #include "rank/contact_severity.hpp"
 #include "rank/follow.hpp"
+#include "rank/hits.hpp"
 #include "rank/meet.hpp"
-#include "rank/near.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,64 +14,6 @@
 
 namespace crashrank::detail {
 namespace {
-
-// A contact that begins this long after the first one still belongs to the same crash.
-double longest_window_s(const Scene& scene) {
-  return scene.crush.depth_m ? scenario_limits::crush_time_s : scene.crush.time_s;
-}
-
-double window_s(const Scene& scene, double closing_speed_mps) {
-  if (!scene.crush.depth_m) return scene.crush.time_s;
-  if (!(closing_speed_mps > 0.0)) return 0.0;
-  return std::min(*scene.crush.depth_m / closing_speed_mps, scenario_limits::crush_time_s);
-}
-
-bool starts_as_the_ego(const Scene& scene, const Motion& motion) {
-  const Pose pose = motion.pose_at(0.0);
-  return pose.rotation == scene.ego_start.rotation &&
-         pose.translation == scene.ego_start.translation;
-}
-
-// Fills scratch.hits with everything but clean misses. Returns false when some question stayed
-// undecided.
-bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work) {
-  scratch.hits.clear();
-  find_near(scene, ego, 0.0, scene.slice_s.back(), scratch, work);
-  const bool same_start = starts_as_the_ego(scene, ego);
-  bool decided = true;
-  double first_s = std::numeric_limits<double>::infinity();
-  // All that come near in the same slice are asked up to the same time, so that no answer depends
-  // on the order of the actors.
-  double until_s = first_s;
-  std::size_t slice = scene.slices.size();
-  for (const Scratch::Near& near : scratch.near) {
-    if (near.first_slice != slice) {
-      slice = near.first_slice;
-      until_s = first_s + longest_window_s(scene);
-    }
-    const double from = scene.slice_s[near.first_slice];
-    const double until = std::min(scene.slice_s[near.last_slice + 1], until_s);
-    if (from > until) continue;
-    const Body& actor = scene.actors[near.actor];
-    ImpactOptions options = scene.impact;
-    options.start_is_apart =
-        near.first_slice > 0 || (same_start && scene.apart_at_start[near.actor] != 0);
-    const Impact impact = time_of_impact(scene.ego.model->tree, ego, actor.model->tree,
-                                         actor.motion, from, until, scratch.impact, options);
-    ++work.body_pairs;
-    work.impact += impact.work;
-    if (impact.state == ImpactState::undecided) decided = false;
-    if (impact.state == ImpactState::none || impact.state == ImpactState::undecided) continue;
-    scratch.hits.push_back({near.actor, impact});
-    if (impact.hit()) first_s = std::min(first_s, impact.time_s);
-  }
-  std::sort(scratch.hits.begin(), scratch.hits.end(),
-            [](const Scratch::Hit& p, const Scratch::Hit& q) {
-              return p.impact.time_s != q.impact.time_s ? p.impact.time_s < q.impact.time_s
-                                                        : p.actor < q.actor;
-            });
-  return decided;
-}
 
 void add_grazes(const Scratch& scratch, CandidateResult& result) {
   const double until = result.collides ? result.contacts.front().time_of_impact_s
@@ -135,77 +78,6 @@ double score_of(const CandidateResult& result, Measure measure) {
   return score;
 }
 
-double surface_m2(const TriangleMesh& mesh) {
-  double area = 0.0;
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    const Triangle t = mesh.triangle(i);
-    const Eigen::Vector3d a = t.corner[0].cast<double>();
-    area += 0.5 * (t.corner[1].cast<double>() - a).cross(t.corner[2].cast<double>() - a).norm();
-  }
-  return area;
-}
-
-// No crash of this candidate can score more.
-double highest_score(const Scene& scene, const Motion& ego) {
-  const double end = scene.slice_s.back();
-  const auto top_speed = [end](const Body& body, const Motion& motion) {
-    const MotionBound bound = motion.bound(0.0, end);
-    return bound.speed_mps + bound.angular_radps * body.radius_m;
-  };
-  const auto most_energy = [&](const Body& body, const Motion& motion) {
-    const double speed = top_speed(body, motion);
-    return std::isfinite(body.mass_kg) ? 0.5 * body.mass_kg * speed * speed : 0.0;
-  };
-  double score = 0.0;
-  switch (scene.measure) {
-    case Measure::polygons:
-      score = static_cast<double>(scene.ego.model->mesh.size());
-      for (const Body& body : scene.actors) score += static_cast<double>(body.model->mesh.size());
-      break;
-    case Measure::area:
-      score = surface_m2(scene.ego.model->mesh);
-      for (const Body& body : scene.actors) score += surface_m2(body.model->mesh);
-      break;
-    case Measure::closing_energy:
-      for (const Body& body : scene.actors) {
-        // The point of contact may lie as far from either origin as both bodies reach.
-        const double speed = top_speed(scene.ego, ego) + top_speed(body, body.motion);
-        score += closing_energy_j(scene.ego.mass_kg, body.mass_kg, 1.001 * speed);
-      }
-      break;
-    case Measure::delta_v:
-      // Without rebound nobody's speed changes by more than both had.
-      for (const Body& body : scene.actors) {
-        score += 2.0 * (top_speed(scene.ego, ego) + top_speed(body, body.motion));
-      }
-      break;
-    case Measure::energy:
-      for (const Body& body : scene.actors)
-        score += most_energy(body, body.motion) + most_energy(scene.ego, ego);
-      break;
-    case Measure::intrusion:
-      for (const Body& body : scene.actors) score += 2.0 * (body.radius_m + scene.ego.radius_m);
-      break;
-    case Measure::harm:
-      for (const Body& body : scene.actors) {
-        // Risk is 1 at most, and at such a speed it is as good as that.
-        constexpr double surely_mps = 1e3;
-        HarmExposure worst;
-        worst.delta_v_mps = surely_mps;
-        worst.closing_speed_mps = surely_mps;
-        worst.crush_energy_j = most_energy(body, body.motion) + most_energy(scene.ego, ego);
-        worst.kind = scene.ego.kind;
-        worst.ego = true;
-        score += harm_of(worst, scene.harm);
-        worst.kind = body.kind;
-        worst.ego = false;
-        score += harm_of(worst, scene.harm);
-      }
-      break;
-  }
-  return score;
-}
-
 // What the candidate scores in every sample, and the interval of those under its own risk model.
 void add_samples(const Scene& scene, CandidateResult& result) {
   if (scene.samples.empty()) return;
@@ -221,13 +93,6 @@ void add_samples(const Scene& scene, CandidateResult& result) {
     interval.lowest = std::min(interval.lowest, result.sample_scores[i]);
     interval.highest = std::max(interval.highest, result.sample_scores[i]);
   }
-}
-
-EgoAtContact planned(const Motion& motion, double time_s) {
-  EgoAtContact ego;
-  motion.state_at(time_s, ego.pose, ego.met);
-  ego.left = ego.met;
-  return ego;
 }
 
 }  // namespace
@@ -276,7 +141,9 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
     result.score_interval = {*result.score, *result.score};
     add_samples(scene, result);
   } else {
-    result.score_interval = {0.0, highest_score(scene, candidate.motion)};
+    ScoreBounds bounds;
+    bounds.prepare(scene);
+    result.score_interval = {0.0, bounds.most(scene, candidate.motion)};
   }
   return result;
 }

@@ -25,6 +25,9 @@ struct Scratch {
   std::vector<Hit> hits;
   ImpactWorkspace impact;
   DamageScratch damage;
+  /// Given to the search for contacts, see ImpactOptions.
+  bool (*stop)(void* stop_context) = nullptr;
+  void* stop_context = nullptr;
 };
 
 /// A candidate followed to its contacts, with the damage still to be read.

@@ -18,9 +18,14 @@ constexpr int halvings = 10;  // to 20 microseconds, under a millimetre at 40 m/
 /// The search for the next body that the ego meets.
 class Next {
 public:
-  Next(const Scene& scene, const Aftermath& aftermath, const std::vector<Contact>& met,
-       Scratch& scratch, RankWork& work)
-      : scene_(scene), aftermath_(aftermath), met_(met), scratch_(scratch), work_(work) {}
+  Next(const Scene& scene, const Aftermath& aftermath, View<const std::size_t> met,
+       const Watch& watch, Scratch& scratch, RankWork& work)
+      : scene_(scene),
+        aftermath_(aftermath),
+        met_(met),
+        watch_(watch),
+        scratch_(scratch),
+        work_(work) {}
 
   /// The first by time, then by actor.
   std::optional<Scratch::Hit> find(double from_s) {
@@ -28,6 +33,10 @@ public:
     const auto steps = static_cast<int>(std::ceil((aftermath_.until_s() - from_s) / step_s));
     for (int i = 0; i <= steps; ++i) {
       const double time_s = std::min(from_s + i * step_s, aftermath_.until_s());
+      if (watch_.expired()) {
+        stopped_ = true;
+        return std::nullopt;
+      }
       std::optional<Scratch::Hit> first;
       for (const Scratch::Near& near : scratch_.near) {
         if (time_s < scene_.slice_s[near.first_slice] ||
@@ -46,10 +55,11 @@ public:
     return std::nullopt;
   }
 
+  bool stopped() const { return stopped_; }
+
 private:
   bool is_met(std::size_t actor) const {
-    return std::any_of(met_.begin(), met_.end(),
-                       [actor](const Contact& contact) { return contact.actor == actor; });
+    return std::find(met_.begin(), met_.end(), actor) != met_.end();
   }
 
   bool intersect(std::size_t actor, double time_s, bool any) {
@@ -97,30 +107,53 @@ private:
 
   const Scene& scene_;
   const Aftermath& aftermath_;
-  const std::vector<Contact>& met_;
+  View<const std::size_t> met_;
+  const Watch& watch_;
   Scratch& scratch_;
   RankWork& work_;
+  bool stopped_ = false;
 };
 
 }  // namespace
 
+std::optional<Scratch::Hit> find_next(const Scene& scene, const Aftermath& aftermath,
+                                      View<const std::size_t> met, double from_s,
+                                      const Watch& watch, bool& stopped, Scratch& scratch,
+                                      RankWork& work) {
+  Next next(scene, aftermath, met, watch, scratch, work);
+  const std::optional<Scratch::Hit> hit = next.find(from_s);
+  stopped = next.stopped();
+  return hit;
+}
+
+Contact make_following_contact(const Scene& scene, const EgoAtContact& ego,
+                               const Scratch::Hit& hit) {
+  Contact contact = make_contact(scene, ego, hit.actor, hit.impact);
+  // Where surfaces already intersect, no facet tells a direction that means something.
+  if (contact.closing.norm() > 0.0) contact.normal = contact.closing.normalized();
+  contact.normal_speed_mps = contact.closing_speed_mps;
+  return contact;
+}
+
 void follow(const Scene& scene, const Candidate& candidate, const EgoAtContact& first,
             const EgoAfterContact& left, Approach& found, Scratch& scratch, RankWork& work) {
+  const Watch no_watch;
   std::vector<Contact>& contacts = found.result.contacts;
+  std::vector<std::size_t> met;
   EgoAtContact ego = first;
   EgoAfterContact after = left;
+  Aftermath aftermath;
   while (contacts.size() < scene.harm.after.most_contacts) {
+    met.push_back(contacts.back().actor);
     const double start_s = contacts.back().time_of_impact_s;
-    const Aftermath aftermath(scene, candidate, start_s, ego, after);
+    aftermath.begin(scene, candidate, start_s, ego, after);
     if (!(aftermath.until_s() > start_s)) break;
-    const std::optional<Scratch::Hit> hit =
-        Next(scene, aftermath, contacts, scratch, work).find(start_s);
+    bool stopped = false;
+    const std::optional<Scratch::Hit> hit = find_next(scene, aftermath, {met.data(), met.size()},
+                                                      start_s, no_watch, stopped, scratch, work);
     if (!hit) break;
     ego = aftermath.at(hit->impact.time_s);
-    Contact contact = make_contact(scene, ego, hit->actor, hit->impact);
-    // Where surfaces already intersect, no facet tells a direction that means something.
-    if (contact.closing.norm() > 0.0) contact.normal = contact.closing.normalized();
-    contact.normal_speed_mps = contact.closing_speed_mps;
+    Contact contact = make_following_contact(scene, ego, *hit);
     after = tell_severity(scene, ego, contact);
     contacts.push_back(std::move(contact));
     found.after.push_back(aftermath.motion());

@@ -86,21 +86,35 @@ bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const TriangleD
 }
 
 bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree& tree,
-             std::vector<std::uint32_t>& stack) {
+             const Node& leaf) {
+  for (std::uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
+    if (crosses(p, q, crashrank::to_double(tree.triangles[slot]))) return true;
+  }
+  return false;
+}
+
+// `hint` is the leaf that the path before this one crossed, if any: neighbours often cross it too.
+bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree& tree,
+             std::vector<std::uint32_t>& stack, std::uint32_t& hint) {
   const Segment segment{tree.axes.transpose() * (0.5 * (p + q)),
                         tree.axes.transpose() * (0.5 * (q - p))};
+  if (!may_touch(segment, tree.nodes[0].box)) return false;
+  if (tree.nodes[hint].is_leaf() && may_touch(segment, tree.nodes[hint].box) &&
+      crosses(p, q, tree, tree.nodes[hint])) {
+    return true;
+  }
   stack.assign(1, 0);
   while (!stack.empty()) {
-    const Node& node = tree.nodes[stack.back()];
+    const std::uint32_t index = stack.back();
+    const Node& node = tree.nodes[index];
     stack.pop_back();
-    if (!may_touch(segment, node.box)) continue;
-    if (!node.is_leaf()) {
-      stack.push_back(node.first + 1);
-      stack.push_back(node.first);
-      continue;
+    if (node.is_leaf()) {
+      if (!crosses(p, q, tree, node)) continue;
+      hint = index;
+      return true;
     }
-    for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
-      if (crosses(p, q, crashrank::to_double(tree.triangles[slot]))) return true;
+    for (const std::uint32_t child : {node.first + 1, node.first}) {
+      if (may_touch(segment, tree.nodes[child].box)) stack.push_back(child);
     }
   }
   return false;
@@ -118,13 +132,14 @@ std::uint64_t add_passed(const Body& moving, const Pose& first, const Pose& last
   const SweptBoxes swept(tree, first, last);
   scratch.path.assign(mesh.vertices.size(), Path::unknown);
   std::uint64_t followed = 0;
+  std::uint32_t hint = 0;
   const auto crossing = [&](std::uint32_t vertex) {
     Path& path = scratch.path[vertex];
     if (path == Path::unknown) {
       ++followed;
       const Eigen::Vector3d p = carry(first, mesh.vertices[vertex]);
       const Eigen::Vector3d q = carry(last, mesh.vertices[vertex]);
-      path = crosses(p, q, other, scratch.fixed_stack) ? Path::crossing : Path::clear;
+      path = crosses(p, q, other, scratch.fixed_stack, hint) ? Path::crossing : Path::clear;
     }
     return path == Path::crossing;
   };

@@ -49,20 +49,6 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
                     !model.mass_kg.has_value()};
 }
 
-void find_apart_at_start(Scene& scene) {
-  scene.apart_at_start.assign(scene.actors.size(), 1);
-  const Motion standing = Motion::at_rest(scene.ego_start);
-  const Box ego = swept_box(scene.ego, standing, 0.0, 0.0, scene.impact.tolerance_m);
-  ImpactWorkspace workspace;
-  scene.work.box_tests += scene.slices.front().query(ego, [&](std::size_t i) {
-    const Body& actor = scene.actors[i];
-    const Impact impact = initial_state(scene.ego.model->tree, scene.ego_start, actor.model->tree,
-                                        actor.motion.pose_at(0.0), workspace, scene.impact);
-    scene.apart_at_start[i] = impact.state == ImpactState::none ? 1 : 0;
-    scene.work.impact += impact.work;
-  });
-}
-
 }  // namespace
 
 Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
@@ -137,16 +123,31 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.slice_s.push_back(scenario.horizon_s * (static_cast<double>(i) / slices));
   }
   scene.slices.resize(scene.slice_s.size() - 1);
-  std::vector<Box> boxes(scene.actors.size());
-  for (std::size_t s = 0; s < scene.slices.size(); ++s) {
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      boxes[i] = swept_box(scene.actors[i], scene.actors[i].motion, scene.slice_s[s],
-                           scene.slice_s[s + 1], scene.impact.tolerance_m);
-    }
-    scene.slices[s].build(boxes);
-  }
-  find_apart_at_start(scene);
+  scene.boxes.resize(scene.actors.size());
+  scene.apart_at_start.resize(scene.actors.size());
+  ImpactWorkspace workspace;
+  place_actors(scene, workspace);
   return scene;
+}
+
+void place_actors(Scene& scene, ImpactWorkspace& workspace) {
+  for (std::size_t s = 0; s < scene.slices.size(); ++s) {
+    for (std::size_t i = 0; i < scene.actors.size(); ++i) {
+      scene.boxes[i] = swept_box(scene.actors[i], scene.actors[i].motion, scene.slice_s[s],
+                                 scene.slice_s[s + 1], scene.impact.tolerance_m);
+    }
+    scene.slices[s].build(scene.boxes);
+  }
+  std::fill(scene.apart_at_start.begin(), scene.apart_at_start.end(), char{1});
+  const Motion standing = Motion::at_rest(scene.ego_start);
+  const Box ego = swept_box(scene.ego, standing, 0.0, 0.0, scene.impact.tolerance_m);
+  scene.work.box_tests += scene.slices.front().query(ego, [&](std::size_t i) {
+    const Body& actor = scene.actors[i];
+    const Impact impact = initial_state(scene.ego.model->tree, scene.ego_start, actor.model->tree,
+                                        actor.motion.pose_at(0.0), workspace, scene.impact);
+    scene.apart_at_start[i] = impact.state == ImpactState::none ? 1 : 0;
+    scene.work.impact += impact.work;
+  });
 }
 
 }  // namespace crashrank::detail

@@ -46,6 +46,7 @@ struct Scene {
   /// Time is cut into slices; in each the actors' swept boxes are ready to be asked.
   std::vector<double> slice_s;  ///< ends of the slices, from 0 to the horizon
   std::vector<BroadPhase> slices;
+  std::vector<Box> boxes;  ///< of the actors, while slices are built
   /// Whether the ego at its start is known to be clear of an actor, by actor.
   std::vector<char> apart_at_start;
   Crush crush;
@@ -59,5 +60,9 @@ struct Scene {
 
 Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
                          const RankOptions& options, RankResult& result);
+
+/// Reads the actors' motions: sweeps their boxes, and says which actors the ego at its start is
+/// clear of. Allocates only to grow beyond what was held before.
+void place_actors(Scene& scene, ImpactWorkspace& workspace);
 
 }  // namespace crashrank::detail

@@ -195,6 +195,17 @@ Json body_json(const Scenario& scenario, const std::string& name, const RankedBo
           {"mass_guessed", body.mass_guessed}};
 }
 
+Json effort_json(const RankerEffort& effort) {
+  return {{"work", effort.work},
+          {"without_search", effort.without_search},
+          {"without_crash", effort.without_crash},
+          {"fully_evaluated", effort.fully_evaluated},
+          {"left_early", effort.left_early},
+          {"prepare_s", effort.prepare_s},
+          {"bounds_s", effort.bounds_s},
+          {"refining_s", effort.refining_s}};
+}
+
 }  // namespace
 
 std::string ranking_json(const Scenario& scenario, View<const Model> models,
@@ -218,27 +229,28 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
                              {"overtaken_share", result.ranking[place].overtaken}});
   }
   const RankWork& work = result.work;
-  const Json document{{"scenario", scenario.name},
-                      {"measure", measure_name(result.measure)},
-                      {"measure_unit", measure_unit(result.measure)},
-                      {"harm", needs_crash(result.measure) ? harm_json(result.harm) : nullptr},
-                      {"stability",
-                       {{"samples", result.samples.size()},
-                        {"not_separable_above_share", separable_share},
-                        {"not_separable", std::move(not_separable)}}},
-                      {"complete", result.complete},
-                      {"proved", result.proved},
-                      {"in_race", std::move(in_race)},
-                      {"elapsed_s", result.elapsed_s},
-                      {"ego", body_json(scenario, "ego", result.ego)},
-                      {"actors", std::move(actors)},
-                      {"work",
-                       {{"box_tests", work.box_tests},
-                        {"body_pairs", work.body_pairs},
-                        {"impact_bv_tests", work.impact.bv_tests},
-                        {"impact_primitive_tests", work.impact.primitive_tests},
-                        {"damage_queries", work.damage_queries}}},
-                      {"ranking", std::move(ranking)}};
+  Json document{{"scenario", scenario.name},
+                {"measure", measure_name(result.measure)},
+                {"measure_unit", measure_unit(result.measure)},
+                {"harm", needs_crash(result.measure) ? harm_json(result.harm) : nullptr},
+                {"stability",
+                 {{"samples", result.samples.size()},
+                  {"not_separable_above_share", separable_share},
+                  {"not_separable", std::move(not_separable)}}},
+                {"complete", result.complete},
+                {"proved", result.proved},
+                {"in_race", std::move(in_race)},
+                {"elapsed_s", result.elapsed_s},
+                {"ego", body_json(scenario, "ego", result.ego)},
+                {"actors", std::move(actors)},
+                {"work",
+                 {{"box_tests", work.box_tests},
+                  {"body_pairs", work.body_pairs},
+                  {"impact_bv_tests", work.impact.bv_tests},
+                  {"impact_primitive_tests", work.impact.primitive_tests},
+                  {"damage_queries", work.damage_queries}}},
+                {"ranking", std::move(ranking)}};
+  if (result.effort) document["effort"] = effort_json(*result.effort);
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -108,6 +108,21 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
                       simulated ? " Delta-v (over all contacts) and crush are the ego's."
                                 : " Damage is ego + others.",
                       result.elapsed_s * 1e3, result.complete ? "" : "; the answer is partial");
+  if (!result.complete) {
+    text += result.proved ? "The first place is proved.\n"
+                          : fmt::format("The first place is not proved: {} are in the race.\n",
+                                        result.in_race.size());
+  }
+  if (result.effort) {
+    const RankerEffort& effort = *result.effort;
+    text += fmt::format(
+        "Scores: {} from swept boxes, {} from contacts, {} from simulated crashes; {} left "
+        "early as not to be first. Preparing took {:.1f} ms, the boxes {:.2f} ms, refining {:.2f} "
+        "ms, {} "
+        "tests.\n",
+        effort.without_search, effort.without_crash, effort.fully_evaluated, effort.left_early,
+        1e3 * effort.prepare_s, 1e3 * effort.bounds_s, 1e3 * effort.refining_s, effort.work);
+  }
   if (result.measure == Measure::harm) {
     for (const std::string& line : detail::harm_words(result.harm)) text += line + "\n";
   }

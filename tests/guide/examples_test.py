@@ -10,14 +10,16 @@ PROGRAM, BIN, ROOT = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.ar
 SCENARIO = str(ROOT / "data/scenarios/crossing_traffic.json")
 
 
-def run(*command):
-    return subprocess.run([str(word) for word in command], check=True, capture_output=True,
-                          text=True).stdout
+def run(*command, code=0):
+    done = subprocess.run([str(word) for word in command], check=False, capture_output=True,
+                          text=True)
+    assert done.returncode == code, done.stderr
+    return done.stdout
 
 
 class Examples(unittest.TestCase):
-    def ranking(self, *options):
-        return json.loads(run(PROGRAM, "rank", SCENARIO, "--json", *options))["ranking"]
+    def ranking(self, *options, code=0):
+        return json.loads(run(PROGRAM, "rank", SCENARIO, "--json", *options, code=code))["ranking"]
 
     def test_first_choice(self):
         first = self.ranking()[0]["candidate"] + "\n"
@@ -27,6 +29,13 @@ class Examples(unittest.TestCase):
     def test_frames(self):
         expected = (ROOT / "apps/examples/frames.expected").read_text(encoding="utf-8")
         self.assertEqual(run(BIN / "example_frames"), expected)
+
+    def test_ten_hertz(self):
+        names = {entry["candidate"] for entry in self.ranking("--work-budget", "0", code=4)}
+        lines = run(BIN / "example_ten_hertz", SCENARIO).splitlines()
+        self.assertEqual(len(lines), 5)
+        for line in lines:
+            self.assertIn(line.split(": ")[1].split(", harm")[0], names)
 
     def test_own_harm(self):
         rows = [line.rsplit(maxsplit=4) for line in run(BIN / "example_own_harm",

@@ -96,6 +96,10 @@ public:
   /// naming the first pose that is out of order, not finite or not rigid.
   static Result<Motion> timed(View<const TimedPose> poses);
 
+  /// Becomes such a motion, in the memory that an earlier one was kept in: where it was a timed one
+  /// of as many poses, nothing is allocated. After an error it rests.
+  Status become_timed(View<const TimedPose> poses);
+
   /// Body to world at time t. About 50 ns.
   Pose pose_at(double t_s) const;
 

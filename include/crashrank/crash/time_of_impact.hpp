@@ -28,6 +28,10 @@ struct ImpactOptions {
   /// The caller knows that the bodies are apart at the start (it asked `initial_state` before, for
   /// instance once for all candidates of one scene): the start is not tested again.
   bool start_is_apart = false;
+  /// Asked every few hundred steps, some 20 µs, with `stop_context`; once it says true the answer is
+  /// `undecided`. May be null.
+  bool (*stop)(void* stop_context) = nullptr;
+  void* stop_context = nullptr;
 };
 
 /// Work done by a query.
@@ -85,6 +89,9 @@ public:
   ImpactWorkspace& operator=(ImpactWorkspace&&) noexcept;
   ImpactWorkspace(const ImpactWorkspace&) = delete;
   ImpactWorkspace& operator=(const ImpactWorkspace&) = delete;
+
+  /// Room for all queries between two trees of such depths.
+  void prepare(std::uint32_t depth_a, std::uint32_t depth_b);
 
   struct State;
   State& state() noexcept { return *state_; }

@@ -172,6 +172,18 @@ struct RankWork {
   }
 };
 
+/// What a Ranker's call did and how long it took.
+struct RankerEffort {
+  std::uint64_t work = 0;          ///< tests of boxes, triangles and facets: what a budget cuts
+  std::size_t without_search = 0;  ///< scores known from the swept boxes alone
+  std::size_t without_crash = 0;   ///< and from the search for contacts, no crash simulated
+  std::size_t fully_evaluated = 0;
+  std::size_t left_early = 0;  ///< bounds showed that they cannot be first; not evaluated fully
+  double prepare_s = 0.0;      ///< of Ranker::prepare, wall time, before the call
+  double bounds_s = 0.0;       ///< in the swept boxes' round
+  double refining_s = 0.0;     ///< in all rounds after it
+};
+
 /// The answer, least harmful first.
 struct RankResult {
   Measure measure = Measure::polygons;
@@ -187,7 +199,8 @@ struct RankResult {
   RankedBody ego;
   std::vector<RankedBody> actors;
   RankWork work;
-  double elapsed_s = 0.0;  ///< wall time of the call
+  double elapsed_s = 0.0;              ///< wall time of the call
+  std::optional<RankerEffort> effort;  ///< where a Ranker told it
 };
 
 /// Ranks the candidates of a scenario by what they would destroy. `models` belong to

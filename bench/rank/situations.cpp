@@ -1,0 +1,76 @@
+#include "bench/rank/situations.hpp"
+
+#include "bench/workload.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <random>
+#include <utility>
+
+namespace bench {
+namespace {
+
+using namespace crashrank;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// In [-1, 1), the same with every library.
+double even(std::mt19937_64& engine) {
+  return static_cast<double>(engine() >> 11U) * 0x1p-52 - 1.0;
+}
+
+}  // namespace
+
+Result<Situations> make_situations(const std::string& file, std::size_t triangles,
+                                   std::size_t variants, std::uint64_t seed) {
+  Result<Scenario> scenario = load_scenario_file(file);
+  if (!scenario) return scenario.error();
+  Situations s;
+  s.scenario = std::move(*scenario);
+  s.name = std::filesystem::path(file).stem().string();
+  for (const ScenarioModel& wanted : s.scenario.models) {
+    auto start = Clock::now();
+    TriangleMesh mesh;
+    if (triangles == 0) {
+      Result<TriangleMesh> read = imported_mesh(wanted.path);
+      if (!read) return read.error();
+      mesh = std::move(*read);
+    } else {
+      mesh = shipped_model(std::filesystem::path(wanted.path).stem().string(), triangles);
+    }
+    s.load_s += seconds_since(start);
+    s.triangles = std::max(s.triangles, mesh.size());
+    start = Clock::now();
+    Result<Model> model = make_model(std::move(mesh));
+    if (!model) return model.error();
+    s.build_s += seconds_since(start);
+    s.models.push_back(std::move(*model));
+  }
+  Result<std::vector<Candidate>> candidates = make_candidates(
+      s.scenario, static_cast<double>(s.models[s.scenario.ego.model].mesh.bounds().extent().x()));
+  if (!candidates) return candidates.error();
+  s.candidates = std::move(*candidates);
+
+  std::mt19937_64 engine(seed);
+  for (std::size_t variant = 0; variant < variants; ++variant) {
+    std::vector<Motion> motions;
+    for (ScenarioActor actor : s.scenario.actors) {
+      if (variant > 0 && actor.poses.empty()) {
+        actor.pose.translation.x() += 2.0 * even(engine);
+        actor.pose.translation.y() += 0.5 * even(engine);
+        actor.speed_mps *= 1.0 + 0.2 * even(engine);
+      }
+      Result<Motion> motion = make_motion(actor);
+      if (!motion) return motion.error();
+      motions.push_back(std::move(*motion));
+    }
+    s.motions.push_back(std::move(motions));
+  }
+  return s;
+}
+
+}  // namespace bench

@@ -1,0 +1,131 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/result.hpp"
+#include "crashrank/base/view.hpp"
+#include "crashrank/crash/motion.hpp"
+#include "crashrank/rank/candidate.hpp"
+#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/scenario.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+namespace crashrank {
+
+/// What a Ranker sets memory aside for; more is refused.
+struct RankerLimits {
+  std::size_t candidates = 1024;
+  std::size_t actors = 64;
+  std::size_t triangles = 4'000'000;  ///< of any one model
+};
+
+struct RankerOptions {
+  /// Measure, harm, impact, and workers: the calling thread and `workers` - 1 more share the work.
+  /// Samples of the harm's ranges are not evaluated, whatever HarmOptions::intervals says.
+  RankOptions rank;
+  RankerLimits limits;
+  bool pinned = false;        ///< see PoolOptions
+  std::int32_t spin_us = -1;  ///< see PoolOptions
+};
+
+/// When a ranking ends at the latest.
+struct RankBudget {
+  /// Counted from the call. Infinity: all is ranked.
+  double deadline_s = std::numeric_limits<double>::infinity();
+  /// In tests of boxes, triangles and facets; what is cut off is the same on every machine and for
+  /// every number of workers.
+  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
+  /// Ends as soon as the first place is proved.
+  bool first_place_only = false;
+};
+
+/// How far a candidate was followed.
+enum class RankStage : std::uint8_t {
+  unseen,    ///< nothing but what no candidate can exceed
+  near,      ///< the bodies that its swept boxes meet are known; exact where there are none
+  searched,  ///< its contacts, or the first of them, are known; exact without any
+  followed,  ///< some of its contacts were simulated, further ones may come
+  scored,    ///< its score is known
+};
+
+/// One candidate of an answer.
+struct RankedCandidate {
+  std::size_t candidate = 0;  ///< index into the candidates asked about
+  RankStage stage = RankStage::unseen;
+  bool known = false;      ///< `score` is the final one
+  bool in_race = true;     ///< can still be first
+  double score = 0.0;      ///< where it is known
+  ScoreInterval interval;  ///< holds the final score, whatever was left undone
+  /// From the stage `searched` on: its first contact.
+  bool collides = false;
+  bool grazes = false;  ///< passes something within the tolerance before that
+  std::size_t actor = 0;
+  double time_of_impact_s = 0.0;
+  double closing_speed_mps = 0.0;
+};
+
+/// An answer, most promising first; it looks into the Ranker and stands until its next call.
+struct RankerAnswer {
+  Status status = Success{};  ///< usage where the call was refused; nothing is ranked then
+  View<const RankedCandidate> ranking;
+  bool complete = false;    ///< every score is known
+  bool proved = false;      ///< no other candidate can still take the first place
+  std::size_t in_race = 0;  ///< how many can
+  double elapsed_s = 0.0;   ///< from the call until it returns, as far as it can be told within it
+  RankerEffort effort;
+  /// Of the ranking: order, stages and the bits of scores and intervals. The same on every machine
+  /// whenever the answer is.
+  std::uint64_t hash = 0;
+};
+
+/// Ranks candidates against a deadline, in memory set aside beforehand.
+///
+/// Every candidate carries an interval that holds its final score. Refined are first those that can
+/// still win, the most promising first; once the first place is proved, the others. A candidate
+/// goes through: the bodies that its swept boxes meet (none: the score is 0); the search for its
+/// contact (none: 0; otherwise what nobody can exceed at that closing speed); then its crashes, one
+/// by one, each left as soon as the score can no longer be the lowest. Bounds rest on what the
+/// pulse promises, momentum conserved and energy never gained: see harm.hpp.
+///
+/// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls are those by
+/// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and `intrusion`,
+/// and harm that weighs property, whose last stage allocates.
+/// The deadline is looked at every 20 µs or so of work. With no deadline the scores have the bits
+/// of `crashrank::rank`, and so has the order.
+///
+/// One thread at a time calls the members; different Rankers are independent.
+class CRASHRANK_API Ranker {
+public:
+  /// Sets up the workers, the memory and the scenario's situation. `models` have to outlive the
+  /// Ranker. Errors: as `crashrank::rank`; usage where limits are exceeded.
+  static Result<Ranker> prepare(const Scenario& scenario, View<const Model> models,
+                                const RankerOptions& options = {});
+
+  Ranker(Ranker&&) noexcept;
+  Ranker& operator=(Ranker&&) noexcept;
+  ~Ranker();
+
+  /// The situation has changed: where the ego starts, and how each actor moves from now on, in the
+  /// scenario's order. Costs some µs an actor and allocates nothing but for timed motions. Errors:
+  /// usage where their number is another.
+  Status move_actors(const Pose& ego_start, View<const Motion> actors) noexcept;
+
+  /// Candidates have to stay until the call returns. Errors (in the answer): usage where there are
+  /// more than the limits allow.
+  RankerAnswer rank(View<const Candidate> candidates, const RankBudget& budget = {}) noexcept;
+
+  /// What `rank` would have told of an answer: the known candidates in full, with contacts and
+  /// damage, the others with their intervals. Evaluates and allocates; not for use on time.
+  Result<RankResult> explain(View<const Candidate> candidates, const RankerAnswer& answer);
+
+private:
+  struct State;
+  explicit Ranker(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace crashrank

@@ -1,0 +1,90 @@
+#include "rank/hits.hpp"
+
+#include "rank/near.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace crashrank::detail {
+namespace {
+
+// A contact that begins this long after the first one still belongs to the same crash.
+double longest_window_s(const Scene& scene) {
+  return scene.crush.depth_m ? scenario_limits::crush_time_s : scene.crush.time_s;
+}
+
+}  // namespace
+
+double window_s(const Scene& scene, double closing_speed_mps) {
+  if (!scene.crush.depth_m) return scene.crush.time_s;
+  if (!(closing_speed_mps > 0.0)) return 0.0;
+  return std::min(*scene.crush.depth_m / closing_speed_mps, scenario_limits::crush_time_s);
+}
+
+namespace {
+
+bool starts_as_the_ego(const Scene& scene, const Motion& motion) {
+  const Pose pose = motion.pose_at(0.0);
+  return pose.rotation == scene.ego_start.rotation &&
+         pose.translation == scene.ego_start.translation;
+}
+
+}  // namespace
+
+bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work) {
+  scratch.hits.clear();
+  find_near(scene, ego, 0.0, scene.slice_s.back(), scratch, work);
+  const bool same_start = starts_as_the_ego(scene, ego);
+  bool decided = true;
+  double first_s = std::numeric_limits<double>::infinity();
+  // All that come near in the same slice are asked up to the same time, so that no answer depends
+  // on the order of the actors.
+  double until_s = first_s;
+  std::size_t slice = scene.slices.size();
+  for (const Scratch::Near& near : scratch.near) {
+    if (near.first_slice != slice) {
+      slice = near.first_slice;
+      until_s = first_s + longest_window_s(scene);
+    }
+    const double from = scene.slice_s[near.first_slice];
+    const double until = std::min(scene.slice_s[near.last_slice + 1], until_s);
+    if (from > until) continue;
+    const Body& actor = scene.actors[near.actor];
+    ImpactOptions options = scene.impact;
+    options.stop = scratch.stop;
+    options.stop_context = scratch.stop_context;
+    options.start_is_apart =
+        near.first_slice > 0 || (same_start && scene.apart_at_start[near.actor] != 0);
+    const Impact impact = time_of_impact(scene.ego.model->tree, ego, actor.model->tree,
+                                         actor.motion, from, until, scratch.impact, options);
+    ++work.body_pairs;
+    work.impact += impact.work;
+    if (impact.state == ImpactState::undecided) decided = false;
+    if (impact.state == ImpactState::none || impact.state == ImpactState::undecided) continue;
+    scratch.hits.push_back({near.actor, impact});
+    if (impact.hit()) first_s = std::min(first_s, impact.time_s);
+  }
+  std::sort(scratch.hits.begin(), scratch.hits.end(),
+            [](const Scratch::Hit& p, const Scratch::Hit& q) {
+              return p.impact.time_s != q.impact.time_s ? p.impact.time_s < q.impact.time_s
+                                                        : p.actor < q.actor;
+            });
+  return decided;
+}
+
+EgoAtContact planned(const Motion& motion, double time_s) {
+  EgoAtContact ego;
+  motion.state_at(time_s, ego.pose, ego.met);
+  ego.left = ego.met;
+  return ego;
+}
+
+bool grazes_before(const Scratch& scratch, double until_s) {
+  return std::any_of(scratch.hits.begin(), scratch.hits.end(), [until_s](const Scratch::Hit& hit) {
+    const bool grazing = hit.impact.state == ImpactState::grazing;
+    return (grazing || hit.impact.grazed) &&
+           (grazing ? hit.impact.time_s : hit.impact.graze_time_s) <= until_s;
+  });
+}
+
+}  // namespace crashrank::detail

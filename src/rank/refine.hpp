@@ -1,0 +1,67 @@
+#pragma once
+
+#include "crash/pulse_run.hpp"
+#include "crashrank/rank/ranker.hpp"
+#include "rank/aftermath.hpp"
+#include "rank/bounds.hpp"
+#include "rank/contact_severity.hpp"
+#include "rank/evaluate.hpp"
+#include "rank/watch.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// Memory of one worker of a Ranker.
+struct RefineScratch {
+  Scratch evaluate;
+  PulseMemory pulse;
+  Aftermath aftermath;
+  std::vector<std::size_t> near;
+};
+
+/// A candidate on its way to its score, between two steps.
+struct Refined {
+  RankedCandidate told;
+  bool stuck = false;  ///< a question about it stayed undecided: no step follows
+  double sum = 0.0;    ///< of the crashes simulated so far
+  /// Bodies met, the pending one included.
+  std::array<std::size_t, harm_limits::contacts> met{};
+  std::size_t met_count = 0;
+  Contact pending;   ///< whose crash comes next
+  EgoAtContact ego;  ///< at that
+
+  bool open() const noexcept { return !told.known && !stuck; }
+};
+
+/// What a step needs to know.
+struct RefineQuery {
+  const Scene& scene;
+  const ScoreBounds& bounds;
+  const Candidate& candidate;
+  /// The step may end once the score is proved to exceed this.
+  double give_up_above;
+  const Watch& watch;
+};
+
+/// What came of a step.
+struct StepEnd {
+  std::uint64_t work = 0;
+  bool finished = true;  ///< false: time was up first; the interval may be narrower all the same
+};
+
+/// A candidate nothing was looked at of.
+Refined unrefined(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
+                  std::size_t index);
+
+/// Takes an open candidate one stage further. Depends on the query and the candidate's own state
+/// alone. The interval only ever narrows.
+StepEnd refine(const RefineQuery& query, Refined& state, RefineScratch& scratch);
+
+/// The order of `ranks_before`, for what is known of candidates so far.
+bool promises_more(const RankedCandidate& a, const RankedCandidate& b);
+
+}  // namespace crashrank::detail

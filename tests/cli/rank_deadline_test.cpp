@@ -1,0 +1,96 @@
+#include "cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace {
+
+using cli_test::Json;
+using cli_test::Outcome;
+using cli_test::Workplace;
+
+Outcome ranked(const Workplace& place, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"rank", "scenario.json", "--json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return place.crashrank(arguments);
+}
+
+std::map<std::string, double> scores(const Json& answer) {
+  std::map<std::string, double> found;
+  for (const Json& one : answer.at("ranking")) {
+    if (!one.at("score").is_null()) found[one.at("candidate")] = one.at("score");
+  }
+  return found;
+}
+
+TEST(RankDeadline, WithoutWorkOnlyIntervalsAreKnownAndTheCodeIsThatOfABudget) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const std::map<std::string, double> all = scores(ranked(place, {}).json());
+  const std::vector<std::vector<std::string>> budgets{{"--work-budget", "0"},
+                                                      {"--deadline-ms", "0"}};
+  for (const std::vector<std::string>& none : budgets) {
+    const Outcome run = ranked(place, none);
+    EXPECT_EQ(run.code, 4);
+    const Json answer = run.json();
+    EXPECT_EQ(answer.at("complete"), false);
+    EXPECT_EQ(answer.at("proved"), false);
+    EXPECT_EQ(answer.at("in_race").size(), all.size());
+    ASSERT_EQ(answer.at("ranking").size(), all.size());
+    for (const Json& one : answer.at("ranking")) {
+      EXPECT_TRUE(one.at("score").is_null());
+      const std::vector<double> interval = one.at("score_interval");
+      EXPECT_LE(interval.at(0), all.at(one.at("candidate")));
+      EXPECT_GE(interval.at(1), all.at(one.at("candidate")));
+    }
+  }
+}
+
+TEST(RankDeadline, TimeEnoughGivesThePlainScores) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  for (const std::string measure : {"harm", "polygons"}) {
+    const Json plain = ranked(place, {"--measure", measure}).json();
+    const Outcome run = ranked(place, {"--measure", measure, "--deadline-ms", "100000"});
+    EXPECT_EQ(run.code, 0);
+    EXPECT_EQ(scores(run.json()), scores(plain));
+    EXPECT_EQ(run.json().at("effort").at("left_early"), 0);
+    EXPECT_FALSE(plain.contains("effort"));
+  }
+}
+
+TEST(RankDeadline, ABudgetOfWorkCutsTheSameEveryTime) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  for (const char* work : {"50", "500", "5000", "50000"}) {
+    Json one = ranked(place, {"--measure", "harm", "--work-budget", work}).json();
+    Json two = ranked(place, {"--measure", "harm", "--work-budget", work, "--workers", "3"}).json();
+    EXPECT_EQ(one.at("ranking"), two.at("ranking")) << work;
+    EXPECT_EQ(one.at("in_race"), two.at("in_race")) << work;
+    EXPECT_EQ(one.at("effort").at("work"), two.at("effort").at("work")) << work;
+  }
+}
+
+TEST(RankDeadline, TheFirstPlaceIsEnoughWhereItIsAskedFor) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Json plain = ranked(place, {"--measure", "harm"}).json();
+  const Outcome run = ranked(place, {"--measure", "harm", "--first-place"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.json().at("proved"), true);
+  EXPECT_EQ(run.json().at("ranking").at(0).at("candidate"),
+            plain.at("ranking").at(0).at("candidate"));
+}
+
+TEST(RankDeadline, BudgetsThatAreNoneAreRefused) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  EXPECT_EQ(ranked(place, {"--deadline-ms", "-1"}).code, 2);
+  EXPECT_EQ(ranked(place, {"--deadline-ms", "soon"}).code, 2);
+  EXPECT_EQ(ranked(place, {"--work-budget", "-3"}).code, 2);
+}
+
+}  // namespace

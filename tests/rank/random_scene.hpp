@@ -1,0 +1,90 @@
+#pragma once
+
+#include "oracle/random.hpp"
+#include "rank/scenes.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+
+namespace crashrank::scenes {
+
+/// A closed wedge, its front lower than its rear.
+inline TriangleMesh wedge_mesh(float length, float width, float rear, float front) {
+  TriangleMesh mesh;
+  const float x = 0.5F * length;
+  const float y = 0.5F * width;
+  mesh.vertices = {{-x, -y, 0.0F}, {x, -y, 0.0F},  {x, y, 0.0F},  {-x, y, 0.0F},
+                   {-x, -y, rear}, {x, -y, front}, {x, y, front}, {-x, y, rear}};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+                    {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+  mesh.parts.push_back({"hull", 0, 12});
+  return mesh;
+}
+
+/// A closed round body that stands on the ground.
+inline TriangleMesh round_mesh(float radius, float height, std::uint32_t sides) {
+  TriangleMesh mesh;
+  for (const float z : {0.0F, height}) {
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const float angle =
+          2.0F * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(sides);
+      mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+  }
+  mesh.vertices.emplace_back(0.0F, 0.0F, 0.0F);
+  mesh.vertices.emplace_back(0.0F, 0.0F, height);
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t j = (i + 1) % sides;
+    mesh.triangles.push_back({i, j, j + sides});
+    mesh.triangles.push_back({i, j + sides, i + sides});
+    mesh.triangles.push_back({2 * sides, j, i});
+    mesh.triangles.push_back({2 * sides + 1, i + sides, j + sides});
+  }
+  mesh.parts.push_back({"hull", 0, static_cast<std::uint32_t>(mesh.size())});
+  return mesh;
+}
+
+/// Traffic of every kind around an ego, from cheap bodies of 12 to 500 triangles.
+inline Scene traffic(std::uint64_t seed) {
+  oracle::Random random(seed);
+  const auto real = [&random](double low, double high) {
+    return static_cast<float>(random.real(low, high));
+  };
+  Scene scene;
+  const auto car = [&] {
+    if (random.chance(0.5)) {
+      return wedge_mesh(real(3.2, 5.0), real(1.5, 2.0), real(1.2, 1.6), real(0.5, 1.0));
+    }
+    const float half_height = real(0.6, 0.8);
+    return box_mesh({real(1.6, 2.5), real(0.75, 1.0), half_height},
+                    static_cast<int>(random.integer(1, 6)), {0.0F, 0.0F, half_height});
+  };
+  scene.scenario.ego.model = scene.add_model("ego", car(), BodyKind::car, random.real(800, 2500));
+  scene.add_model("car", car(), BodyKind::car, random.real(800, 2500));
+  scene.add_model("truck", box_mesh({4.0F, 1.25F, 1.5F}, 2, {0.0F, 0.0F, 1.9F}), BodyKind::truck,
+                  random.real(8000, 30000));
+  scene.add_model("pedestrian", round_mesh(0.3F, 1.75F, 8), BodyKind::pedestrian, 75.0);
+  scene.add_model("cyclist", wedge_mesh(1.8F, 0.5F, 1.6F, 1.2F), BodyKind::bicycle, 90.0);
+  scene.add_model("pole", round_mesh(0.15F, 5.0F, 10), BodyKind::pole);
+  scene.add_model("wall", box_mesh({6.0F, 0.2F, 1.0F}, 1, {0.0F, 0.0F, 1.0F}), BodyKind::building);
+  scene.scenario.ego.speed_mps = random.real(5, 30);
+  scene.scenario.horizon_s = random.real(1.5, 3.0);
+  scene.scenario.grid = CandidateGrid{3, 5};
+  const auto actors = static_cast<int>(random.integer(1, 7));
+  for (int i = 0; i < actors; ++i) {
+    const auto model = static_cast<std::size_t>(random.integer(1, 6));
+    const double ahead = random.real(5, 60);
+    const double aside = random.real(-1, 1) * random.real(0, 12);
+    ScenarioActor& actor = scene.add_actor("actor " + std::to_string(i), model, ahead, aside,
+                                           random.real(-3.14, 3.14));
+    if (model >= 5) continue;
+    actor.speed_mps = random.real(0, model >= 3 ? 5 : 20);
+    actor.acceleration_mps2 = random.real(-4, 2);
+    actor.yaw_rate_radps = random.real(-0.3, 0.3);
+  }
+  return scene;
+}
+
+}  // namespace crashrank::scenes

@@ -1,0 +1,170 @@
+#include "crashrank/rank/ranker.hpp"
+
+#include "rank/random_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#if defined(__linux__) && defined(__x86_64__)
+#include <linux/audit.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
+namespace {
+
+std::atomic<long> allocations{0};
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+  void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new[](std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace crashrank {
+namespace {
+
+struct Ready {
+  scenes::Scene scene;
+  std::vector<Candidate> candidates;
+  std::vector<Motion> motions;
+
+  explicit Ready(std::uint64_t seed) : scene(scenes::traffic(seed)) {
+    Result<std::vector<Candidate>> made = make_candidates(scene.scenario, 4.0);
+    if (made) candidates = std::move(*made);
+    for (const ScenarioActor& actor : scene.scenario.actors) {
+      motions.push_back(*make_motion(actor));
+    }
+  }
+
+  Result<Ranker> ranker(Measure measure, unsigned workers) const {
+    RankerOptions options;
+    options.rank.measure = measure;
+    options.rank.workers = workers;
+    return Ranker::prepare(scene.scenario, scene.models, options);
+  }
+};
+
+constexpr std::array<Measure, 4> without_allocation{Measure::harm, Measure::delta_v,
+                                                    Measure::energy, Measure::closing_energy};
+
+TEST(RankerCalls, NothingIsAllocatedFromTheFirstCallOn) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Ready ready(seed);
+    for (const Measure measure : without_allocation) {
+      for (const unsigned workers : {1U, 2U}) {
+        Result<Ranker> ranker = ready.ranker(measure, workers);
+        ASSERT_TRUE(ranker.ok());
+        std::vector<Motion> moved = ready.motions;
+        const Pose start = ready.scene.scenario.ego.pose;
+        const long before = allocations.load();
+        const RankerAnswer answer = ranker->rank(ready.candidates);
+        RankBudget budget;
+        budget.deadline_s = 1e-3;
+        const RankerAnswer cut = ranker->rank(ready.candidates, budget);
+        const Status status = ranker->move_actors(start, moved);
+        EXPECT_EQ(allocations.load(), before) << measure_name(measure) << ", seed " << seed;
+        EXPECT_TRUE(answer.complete);
+        EXPECT_TRUE(cut.status);
+        EXPECT_TRUE(status);
+      }
+    }
+  }
+}
+
+#if defined(__linux__) && defined(__x86_64__)
+
+/// Kills the process, all threads of it, at any system call but those by which threads wake and
+/// await each other and that which ends it. False where the system does not allow such a filter.
+bool allow_only_waiting() {
+  const auto load = [](std::uint32_t at) {
+    return sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, at);
+  };
+  const auto allow_if = [](std::uint32_t number, std::uint8_t otherwise) {
+    return sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, otherwise);
+  };
+  const auto answer = [](std::uint32_t value) {
+    return sock_filter BPF_STMT(BPF_RET | BPF_K, value);
+  };
+  std::vector<sock_filter> filter;
+  filter.push_back(load(offsetof(seccomp_data, nr)));
+  for (const std::uint32_t number :
+       {static_cast<std::uint32_t>(SYS_futex), static_cast<std::uint32_t>(SYS_sched_yield),
+        static_cast<std::uint32_t>(SYS_exit_group)}) {
+    filter.push_back(allow_if(number, 1));
+    filter.push_back(answer(SECCOMP_RET_ALLOW));
+  }
+  filter.push_back(answer(SECCOMP_RET_KILL_PROCESS));
+  sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
+  return syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program) == 0;
+}
+
+constexpr int not_allowed = 77;
+
+int rank_under_the_filter(const Ready& ready, bool misbehave) {
+  Result<Ranker> ranker = ready.ranker(Measure::harm, 3);
+  if (!ranker) return 1;
+  RankBudget budget;
+  budget.deadline_s = 2e-3;
+  // The first calls touch memory that was set aside; the kernel hands it out without being asked.
+  if (!allow_only_waiting()) return not_allowed;
+  for (int i = 0; i < 5; ++i) {
+    if (!ranker->rank(ready.candidates, budget).status) return 2;
+    if (!ranker->rank(ready.candidates).complete) return 3;
+  }
+  if (misbehave) syscall(SYS_getppid);
+  return 0;
+}
+
+int outcome_of(const Ready& ready, bool misbehave) {
+  const pid_t child = fork();
+  if (child == 0) _exit(rank_under_the_filter(ready, misbehave));
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST(RankerCalls, TheOnlySystemCallsWakeAndAwaitItsWorkers) {
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "sanitizers make system calls of their own";
+#endif
+  const Ready ready(3);
+  const int outcome = outcome_of(ready, false);
+  if (outcome == not_allowed) GTEST_SKIP() << "this system does not allow seccomp filters";
+  EXPECT_EQ(outcome, 0);
+  // The filter does stop what it should.
+  EXPECT_LT(outcome_of(ready, true), 0);
+}
+
+#endif
+
+}  // namespace
+}  // namespace crashrank

@@ -1,0 +1,263 @@
+#include "crashrank/rank/ranker.hpp"
+
+#include "rank/random_scene.hpp"
+#include "rank/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using scenes::Scene;
+using scenes::traffic;
+
+RankOptions options_of(Measure measure, unsigned workers = 1) {
+  RankOptions options;
+  options.measure = measure;
+  options.workers = workers;
+  options.harm.emplace();
+  options.harm->intervals = false;
+  return options;
+}
+
+/// A Ranker of a scene, its candidates, and the answer that it is held against.
+struct Case {
+  Scene scene;
+  RankResult plain;
+  std::vector<Candidate> candidates;
+  std::vector<double> scores;  ///< by candidate
+
+  Case(std::uint64_t seed, Measure measure) : scene(traffic(seed)) {
+    plain = scene.ranked(options_of(measure));
+    candidates = plain.candidates;
+    scores.assign(candidates.size(), -1.0);
+    for (const CandidateResult& c : plain.ranking) {
+      EXPECT_TRUE(c.score.has_value());
+      scores[c.candidate] = c.score.value_or(-1.0);
+    }
+  }
+
+  Ranker ranker(Measure measure, unsigned workers = 1) const {
+    RankerOptions options;
+    options.rank = options_of(measure, workers);
+    options.limits.candidates = 64;
+    Result<Ranker> made = Ranker::prepare(scene.scenario, scene.models, options);
+    EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().message());
+    return std::move(*made);
+  }
+};
+
+constexpr std::array<Measure, 7> measures{
+    Measure::harm,     Measure::delta_v, Measure::energy,   Measure::closing_energy,
+    Measure::polygons, Measure::area,    Measure::intrusion};
+
+/// How many scenes a property is tried on: more where CRASHRANK_RANKER_SCENES says so.
+std::uint64_t scenes_to_try(std::uint64_t otherwise) {
+  const char* const wish = std::getenv("CRASHRANK_RANKER_SCENES");
+  return wish != nullptr ? std::strtoull(wish, nullptr, 10) : otherwise;
+}
+
+TEST(Ranker, WithoutADeadlineItHasTheBitsOfThePlainRanking) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    for (const Measure measure : measures) {
+      SCOPED_TRACE(std::string(measure_name(measure)) + ", seed " + std::to_string(seed));
+      const Case c(seed, measure);
+      for (const unsigned workers : {1U, 3U}) {
+        Ranker ranker = c.ranker(measure, workers);
+        const RankerAnswer answer = ranker.rank(c.candidates);
+        ASSERT_TRUE(answer.status);
+        ASSERT_EQ(answer.ranking.size(), c.candidates.size());
+        EXPECT_TRUE(answer.complete);
+        EXPECT_TRUE(answer.proved);
+        EXPECT_EQ(answer.in_race, 1U);
+        for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
+          const RankedCandidate& told = answer.ranking[i];
+          ASSERT_EQ(told.candidate, c.plain.ranking[i].candidate);
+          ASSERT_TRUE(told.known);
+          ASSERT_EQ(told.score, *c.plain.ranking[i].score);
+        }
+      }
+    }
+  }
+}
+
+TEST(Ranker, TheFirstPlaceAloneIsTheRightOneAndTakesNoMoreWork) {
+  std::uint64_t all = 0;
+  std::uint64_t first = 0;
+  for (std::uint64_t seed = 100; seed < 112; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Case c(seed, Measure::harm);
+    Ranker ranker = c.ranker(Measure::harm);
+    all += ranker.rank(c.candidates).effort.work;
+    RankBudget budget;
+    budget.first_place_only = true;
+    const RankerAnswer answer = ranker.rank(c.candidates, budget);
+    EXPECT_TRUE(answer.proved);
+    EXPECT_EQ(answer.ranking[0].candidate, c.plain.ranking[0].candidate);
+    first += answer.effort.work;
+  }
+  EXPECT_LT(first, all);
+  std::printf("first place proved with %.3f of the work of all places\n",
+              static_cast<double>(first) / static_cast<double>(all));
+}
+
+struct Widths {
+  std::vector<double> shares;  ///< at a tenth of the work, of the first width
+};
+
+void cut_everywhere(std::uint64_t seed, Measure measure, std::uint64_t cuts, Widths& widths) {
+  SCOPED_TRACE(std::string(measure_name(measure)) + ", seed " + std::to_string(seed));
+  const Case c(seed, measure);
+  Ranker ranker = c.ranker(measure);
+  const std::uint64_t all = ranker.rank(c.candidates).effort.work;
+  std::vector<ScoreInterval> last(c.candidates.size(), {0.0, INFINITY});
+  std::vector<double> first(c.candidates.size(), 0.0);
+  for (std::uint64_t cut = 0; cut <= cuts; ++cut) {
+    RankBudget budget;
+    // Closer together where little has been done.
+    budget.work = cut < 4 ? cut : all * cut * cut / (cuts * cuts);
+    const RankerAnswer answer = ranker.rank(c.candidates, budget);
+    bool winner_in_race = false;
+    for (const RankedCandidate& told : answer.ranking) {
+      const std::size_t i = told.candidate;
+      ASSERT_TRUE(std::isfinite(told.interval.highest));
+      ASSERT_LE(told.interval.lowest, c.scores[i]) << "candidate " << i << ", cut " << cut;
+      ASSERT_GE(told.interval.highest, c.scores[i]) << "candidate " << i << ", cut " << cut;
+      ASSERT_GE(told.interval.lowest, last[i].lowest) << "candidate " << i << ", cut " << cut;
+      ASSERT_LE(told.interval.highest, last[i].highest) << "candidate " << i << ", cut " << cut;
+      ASSERT_TRUE(!told.known || told.score == c.scores[i]);
+      last[i] = told.interval;
+      if (cut == 0) first[i] = told.interval.highest - told.interval.lowest;
+      if (i == c.plain.ranking[0].candidate) winner_in_race = told.in_race;
+    }
+    ASSERT_TRUE(winner_in_race) << "cut " << cut;
+    ASSERT_TRUE(!answer.proved || answer.ranking[0].candidate == c.plain.ranking[0].candidate);
+  }
+  RankBudget tenth;
+  tenth.work = all / 10;
+  for (const RankedCandidate& told : ranker.rank(c.candidates, tenth).ranking) {
+    if (!(first[told.candidate] > 0.0)) continue;
+    widths.shares.push_back((told.interval.highest - told.interval.lowest) / first[told.candidate]);
+  }
+}
+
+TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
+  constexpr std::uint64_t first_seed = 1000;
+  constexpr std::uint64_t cuts = 14;
+  Widths widths;
+  const std::uint64_t scenes = scenes_to_try(30);
+  for (std::uint64_t i = 0; i < scenes; ++i) {
+    cut_everywhere(first_seed + i, Measure::harm, cuts, widths);
+    if (HasFatalFailure()) return;
+  }
+  ASSERT_FALSE(widths.shares.empty());
+  const auto middle = widths.shares.begin() + static_cast<std::ptrdiff_t>(widths.shares.size() / 2);
+  std::nth_element(widths.shares.begin(), middle, widths.shares.end());
+  std::printf(
+      "median width at a tenth of the work: %.4f of the first, %zu candidates, %llu scenes\n",
+      *middle, widths.shares.size(), static_cast<unsigned long long>(scenes));
+  EXPECT_LT(*middle, 0.2);
+}
+
+TEST(RankerProperty, IntervalsHoldForEveryMeasure) {
+  Widths widths;
+  for (const Measure measure : measures) {
+    for (std::uint64_t seed = 5000; seed < 5003; ++seed) {
+      cut_everywhere(seed, measure, 8, widths);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST(Ranker, ABudgetOfWorkCutsTheSameForEveryNumberOfWorkers) {
+  for (std::uint64_t seed = 200; seed < 206; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Case c(seed, Measure::harm);
+    Ranker one = c.ranker(Measure::harm, 1);
+    Ranker three = c.ranker(Measure::harm, 3);
+    const std::uint64_t all = one.rank(c.candidates).effort.work;
+    for (std::uint64_t part = 0; part <= 8; ++part) {
+      RankBudget budget;
+      budget.work = all * part / 8;
+      const RankerAnswer a = one.rank(c.candidates, budget);
+      const RankerAnswer b = three.rank(c.candidates, budget);
+      EXPECT_EQ(a.hash, b.hash);
+      EXPECT_EQ(a.effort.work, b.effort.work);
+      EXPECT_EQ(a.in_race, b.in_race);
+    }
+  }
+}
+
+TEST(Ranker, AnyDeadlineGivesASoundAnswer) {
+  const Case c(300, Measure::harm);
+  Ranker ranker = c.ranker(Measure::harm, 2);
+  for (const double deadline_s : {0.0, -1.0, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 1.0}) {
+    RankBudget budget;
+    budget.deadline_s = deadline_s;
+    const RankerAnswer answer = ranker.rank(c.candidates, budget);
+    ASSERT_TRUE(answer.status);
+    for (const RankedCandidate& told : answer.ranking) {
+      EXPECT_LE(told.interval.lowest, c.scores[told.candidate]);
+      EXPECT_GE(told.interval.highest, c.scores[told.candidate]);
+    }
+    Result<RankResult> full = ranker.explain(c.candidates, answer);
+    ASSERT_TRUE(full.ok());
+    ASSERT_EQ(full->ranking.size(), c.candidates.size());
+    for (const CandidateResult& told : full->ranking) {
+      EXPECT_EQ(told.score.value_or(c.scores[told.candidate]), c.scores[told.candidate]);
+    }
+  }
+}
+
+TEST(Ranker, MovedActorsAreRankedAsANewScenarioWouldBe) {
+  Scene scene = traffic(400);
+  RankerOptions options;
+  options.rank = options_of(Measure::harm);
+  Result<Ranker> ranker = Ranker::prepare(scene.scenario, scene.models, options);
+  ASSERT_TRUE(ranker.ok());
+  std::vector<Motion> motions;
+  for (ScenarioActor& actor : scene.scenario.actors) {
+    actor.pose.translation.x() -= 3.0;
+    actor.speed_mps *= 0.5;
+    motions.push_back(*make_motion(actor));
+  }
+  const RankResult plain = scene.ranked(options.rank);
+  ASSERT_TRUE(ranker->move_actors(scene.scenario.ego.pose, motions));
+  const RankerAnswer answer = ranker->rank(plain.candidates);
+  for (std::size_t i = 0; i < plain.ranking.size(); ++i) {
+    EXPECT_EQ(answer.ranking[i].candidate, plain.ranking[i].candidate);
+    EXPECT_EQ(answer.ranking[i].score, *plain.ranking[i].score);
+  }
+  motions.pop_back();
+  EXPECT_FALSE(ranker->move_actors(scene.scenario.ego.pose, motions));
+}
+
+TEST(Ranker, LimitsAreKept) {
+  const Case c(500, Measure::harm);
+  RankerOptions options;
+  options.rank = options_of(Measure::harm);
+  options.limits.candidates = 3;
+  Result<Ranker> ranker = Ranker::prepare(c.scene.scenario, c.scene.models, options);
+  ASSERT_TRUE(ranker.ok());
+  const RankerAnswer answer = ranker->rank(c.candidates);
+  EXPECT_FALSE(answer.status);
+  EXPECT_TRUE(answer.ranking.empty());
+  EXPECT_TRUE(ranker->rank({c.candidates.data(), 3}).status);
+  EXPECT_TRUE(ranker->rank({}).proved);
+  options.limits.actors = 0;
+  EXPECT_FALSE(Ranker::prepare(c.scene.scenario, c.scene.models, options).ok());
+  options.limits = {};
+  options.limits.triangles = 5;
+  EXPECT_FALSE(Ranker::prepare(c.scene.scenario, c.scene.models, options).ok());
+}
+
+}  // namespace
+}  // namespace crashrank
