@@ -5,18 +5,21 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <utility>
 
 namespace peers {
 namespace {
 
-crashrank::Model model_of(const TriangleMesh& mesh) {
+using SharedModel = std::shared_ptr<const crashrank::Model>;
+
+SharedModel model_of(const TriangleMesh& mesh) {
   crashrank::Result<crashrank::Model> model = crashrank::make_model(mesh);
   if (!model) {
     std::fprintf(stderr, "%s\n", model.error().message().c_str());
     std::exit(1);
   }
-  return std::move(*model);
+  return std::make_shared<crashrank::Model>(std::move(*model));
 }
 
 /// The vector engine, which picks its instructions at run time.
@@ -25,20 +28,20 @@ public:
   std::string name() const override { return "crashrank"; }
   void prepare(const TriangleMesh& a, const TriangleMesh& b) override {
     a_ = model_of(a);
-    b_ = model_of(b);
-    workspace_.prepare(a_, b_);
+    b_ = &a == &b ? a_ : model_of(b);
+    workspace_.prepare(*a_, *b_);
   }
   std::size_t all(const Pose& b_in_a) override {
-    return collide(a_, b_, b_in_a, pairs_, workspace_).pairs;
+    return collide(*a_, *b_, b_in_a, pairs_, workspace_).pairs;
   }
   bool any(const Pose& b_in_a) override {
-    return collide(a_, b_, b_in_a, pairs_, workspace_, {true}).intersecting;
+    return collide(*a_, *b_, b_in_a, pairs_, workspace_, {true}).intersecting;
   }
   void pairs(std::vector<Pair>& out) const override { out = pairs_; }
 
 private:
-  crashrank::Model a_;
-  crashrank::Model b_;
+  SharedModel a_;
+  SharedModel b_;
   std::vector<Pair> pairs_;
   crashrank::ModelWorkspace workspace_;
 };
@@ -49,20 +52,20 @@ class CrashrankScalar final : public Peer {
 public:
   std::string name() const override { return "crashrank scalar"; }
   void prepare(const TriangleMesh& a, const TriangleMesh& b) override {
-    a_ = std::move(model_of(a).tree);
-    b_ = std::move(model_of(b).tree);
+    a_ = model_of(a);
+    b_ = &a == &b ? a_ : model_of(b);
   }
   std::size_t all(const Pose& b_in_a) override {
-    return collide(a_, b_, b_in_a, pairs_, workspace_).pairs;
+    return collide(a_->tree, b_->tree, b_in_a, pairs_, workspace_).pairs;
   }
   bool any(const Pose& b_in_a) override {
-    return collide(a_, b_, b_in_a, pairs_, workspace_, {true}).intersecting;
+    return collide(a_->tree, b_->tree, b_in_a, pairs_, workspace_, {true}).intersecting;
   }
   void pairs(std::vector<Pair>& out) const override { out = pairs_; }
 
 private:
-  crashrank::AabbTree a_;
-  crashrank::AabbTree b_;
+  SharedModel a_;
+  SharedModel b_;
   std::vector<Pair> pairs_;
   crashrank::CollideWorkspace workspace_;
 };

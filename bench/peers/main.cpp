@@ -77,13 +77,16 @@ bool run(const Options& options, std::string name, crashrank::TriangleMesh mesh,
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Measures crashrank and other colliders side by side, one thread each"};
-  app.add_option("--triangles", options.triangles, "sizes of the shipped cars to measure on")
+  app.add_option("--triangles", options.triangles,
+                 "sizes of the shipped cars to measure on, 0 for none")
       ->delimiter(',');
   app.add_option("--peers", options.only, "measure only peers whose name contains one of these")
       ->delimiter(',');
   app.add_option("--poses", options.poses, "poses a regime");
   app.add_option("--rounds", options.measure.rounds, "rounds over all poses and peers");
   app.add_option("--budget", options.measure.budget_s, "seconds to repeat one query for");
+  app.add_option("--regimes", options.measure.regimes, "of deep, near, far")->delimiter(',');
+  app.add_option("--modes", options.measure.modes, "of all, any and 'all, cycled'");
   app.add_option("--seed", options.seed, "seed of the poses");
   app.add_option("--csv", options.csv, "file to write all rows to");
   app.add_option("--svg", options.svg, "file to write the chart to");
@@ -97,6 +100,7 @@ int main(int argc, char** argv) {
   std::vector<peers::Row> rows;
   bool good = true;
   for (const std::size_t triangles : options.triangles) {
+    if (triangles == 0) continue;
     const std::string car = triangles <= 20'000 ? "hatch" : "sedan";
     good = run(options, car, bench::shipped_model(car, triangles), rows) && good;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 #include <utility>
 
 namespace peers {
@@ -76,6 +77,10 @@ std::vector<Pair> sorted_pairs(Peer& peer, const Pose& pose) {
   return pairs;
 }
 
+bool wanted(const std::vector<std::string>& names, const char* name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::uint64_t without(const std::vector<Pair>& from, const std::vector<Pair>& what) {
   std::vector<Pair> rest;
   std::set_difference(from.begin(), from.end(), what.begin(), what.end(), std::back_inserter(rest));
@@ -94,7 +99,9 @@ public:
       peers_[p]->prepare(workload_.mesh, workload_.mesh);
     }
     for (std::size_t r = 0; r < regime_count; ++r) {
+      if (!wanted(options_.regimes, regime_names[r])) continue;
       for (const Mode mode : {Mode::all, Mode::any, Mode::cycled}) {
+        if (!wanted(options_.modes, mode_names[static_cast<std::size_t>(mode)])) continue;
         say((std::string(regime_names[r]) + " / " + mode_names[static_cast<std::size_t>(mode)])
                 .c_str());
         measure_mode(static_cast<Regime>(r), mode);

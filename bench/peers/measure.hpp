@@ -37,8 +37,10 @@ struct Row {
 };
 
 struct MeasureOptions {
-  int rounds = 2;          ///< each round visits every pose and, at each pose, every peer
-  double budget_s = 0.01;  ///< spent repeating one query, at least one repeat
+  int rounds = 2;                    ///< each round visits every pose and, at each pose, every peer
+  double budget_s = 0.01;            ///< spent repeating one query, at least one repeat
+  std::vector<std::string> regimes;  ///< measure only these; empty: all
+  std::vector<std::string> modes;
   bool progress = false;
 };
 

@@ -81,142 +81,208 @@ HWY_INLINE Boxes spread_box(const float* center, const float* half, std::size_t 
 /// crowd everything else out of the first cache.
 inline constexpr std::size_t prepared_kept = 16;
 
-/// One step: lanes of a node of A against lanes of a node of B.
-class Step {
+/// Pairs of clusters that wait while their corners come from memory. A step adds at most 64.
+inline constexpr std::size_t cluster_pairs_wait = 32;
+inline constexpr std::size_t max_cluster_pairs = cluster_pairs_wait + 64;
+
+/// Two clusters whose boxes overlap, by their entries in `WideNode::child`.
+struct ClusterPair {
+  std::uint32_t a;
+  std::uint32_t b;
+  float b_diagonal;  // m, bounds the distance of any two corners of B's
+};
+
+template <class T> HWY_INLINE void prefetch(const T& value) {
+  const char* line = reinterpret_cast<const char*>(&value);
+  for (std::size_t at = 0; at < sizeof(T); at += 64) __builtin_prefetch(line + at);
+}
+
+/// Bit r of the result: whether row r of an 8 by 8 matrix of bits has column c.
+HWY_INLINE std::uint32_t column(std::uint64_t rows, std::size_t c) {
+  return static_cast<std::uint32_t>(((rows >> c) & 0x0101010101010101U) * 0x0102040810204080U >>
+                                    56U);
+}
+
+/// The descent of two wide trees.
+class Descent {
 public:
-  Step(const WideQuery& query, WideSink& sink) : query_(query), sink_(sink) {
-    std::fill_n(a_kept_, prepared_kept, max_clusters);
-    std::fill_n(b_kept_, prepared_kept, max_clusters);
+  Descent(const WideQuery& query, WideSink& sink) : query_(query), hits_(sink), work_(sink.work) {
+    stack_ = sink.stack;
+    stack_size_ = sink.stack_size;
+    std::fill_n(a_kept_, prepared_kept, no_cluster);
+    std::fill_n(b_kept_, prepared_kept, no_cluster);
   }
 
-  /// Returns false to stop.
-  bool run(const WideTask& task, std::size_t& waiting) {
+  /// Works off all lane pairs below `start`.
+  void run(const WideTask& start) {
+    push(start);
+    while (waiting_ != 0) {
+      const WideTask task = stack_[--waiting_];
+      step(task);
+      // Where one pair is enough the clusters at hand come first.
+      if (pairs_ < (query_.any ? 1 : cluster_pairs_wait)) continue;
+      if (!collide_waiting()) return;
+    }
+    collide_waiting();
+  }
+  /// Hands over what is left.
+  void finish(WideSink& sink) {
+    hits_.flush();
+    sink.work = work_;
+  }
+
+private:
+  static constexpr std::uint32_t no_cluster = 0;  // no entry of a cluster is 0
+
+  /// Lanes of a node of A against lanes of a node of B.
+  void step(const WideTask& task) {
     const WideNode& na = query_.a_nodes[task.a_node];
     const WideNode& nb = query_.b_nodes[task.b_node];
     const Boxes a = load_boxes(na);
     const Boxes b = load_boxes(nb);
     const Boxes b_in_a =
         turn_boxes(b, query_.rotation, query_.abs_rotation, query_.a_from_b, query_.margin_a);
-    std::uint32_t a_lanes = task.a_lanes;
-    std::uint32_t b_lanes = task.b_lanes;
+    std::uint32_t a_lanes = task.a_lanes & na.used_lanes;
+    std::uint32_t b_lanes = task.b_lanes & nb.used_lanes;
     if ((a_lanes & (a_lanes - 1)) != 0) {  // more than one: the box around all may reject some of B
-      sink_.work.bv_tests += 8;
+      work_.bv_tests += 8;
       const Boxes own{all3(na.own_center.data()), all3(na.own_half.data())};
       b_lanes &= bits(overlap(own, b_in_a));
-      if (b_lanes == 0) return true;
+      if (b_lanes == 0) return;
     }
     const Boxes a_in_b =
         turn_boxes_back(a, query_.rotation, query_.abs_rotation, query_.b_from_a, query_.margin_b);
     if ((b_lanes & (b_lanes - 1)) != 0) {
-      sink_.work.bv_tests += 8;
+      work_.bv_tests += 8;
       const Boxes own{all3(nb.own_center.data()), all3(nb.own_half.data())};
       a_lanes &= bits(overlap(own, a_in_b));
-      if (a_lanes == 0) return true;
+      if (a_lanes == 0) return;
     }
-    store_boxes(b_in_a, b_in_a_);
-    std::uint32_t partners[8];  // of each lane of A
     if (__builtin_popcount(a_lanes) <= __builtin_popcount(b_lanes)) {
-      store_boxes(a_in_b, a_in_b_);
-      for (std::uint32_t left = a_lanes; left != 0; left &= left - 1) {
-        const auto i = lowest(left);
-        sink_.work.bv_tests += 8;
-        const Boxes one = spread_box(na.center[0].data(), na.half[0].data(), i);
-        const Boxes turned = spread_box(a_in_b_.center[0], a_in_b_.half[0], i);
-        partners[i] = bits(both(overlap(one, b_in_a), overlap(turned, b))) & b_lanes;
-      }
+      descend<true>(task, na, nb, meet(na, a_in_b, a_lanes, b, b_in_a, b_lanes, nb.leaf_lanes));
     } else {
-      for (std::uint32_t left = a_lanes; left != 0; left &= left - 1) {
-        partners[lowest(left)] = 0;
-      }
-      for (std::uint32_t left = b_lanes; left != 0; left &= left - 1) {
-        const auto j = lowest(left);
-        sink_.work.bv_tests += 8;
-        const Boxes one = spread_box(nb.center[0].data(), nb.half[0].data(), j);
-        const Boxes turned = spread_box(b_in_a_.center[0], b_in_a_.half[0], j);
-        std::uint32_t found = bits(both(overlap(one, a_in_b), overlap(turned, a))) & a_lanes;
-        for (; found != 0; found &= found - 1) partners[lowest(found)] |= 1U << j;
-      }
+      descend<false>(task, nb, na, meet(nb, b_in_a, b_lanes, a, a_in_b, a_lanes, na.leaf_lanes));
     }
-    return descend(task, na, a_lanes, nb, partners, a_in_b, waiting);
   }
 
-private:
-  bool descend(const WideTask& task, const WideNode& na, std::uint32_t a_lanes, const WideNode& nb,
-               const std::uint32_t* partners, const Boxes& a_in_b, std::size_t& waiting) {
-    std::uint32_t leaf_rows = 0;
-    for (std::uint32_t left = a_lanes; left != 0; left &= left - 1) {
+  /// Which lanes of one node, the rows, overlap which of the other, the columns, by what they are.
+  struct Meetings {
+    std::uint64_t clusters = 0;  ///< two clusters
+    std::uint64_t nodes = 0;     ///< two inner nodes
+    std::uint64_t cluster_node = 0;
+    std::uint64_t node_cluster = 0;
+  };
+
+  /// `one_turned`: boxes of the rows in the other frame. `other`, `other_turned`: boxes of the
+  /// columns.
+  HWY_INLINE Meetings meet(const WideNode& one, const Boxes& one_turned, std::uint32_t one_lanes,
+                           const Boxes& other, const Boxes& other_turned, std::uint32_t other_lanes,
+                           std::uint32_t other_leaves) {
+    store_boxes(one_turned, turned_);
+    Meetings met;
+    for (std::uint32_t left = one_lanes; left != 0; left &= left - 1) {
       const auto i = lowest(left);
-      const std::uint32_t found = partners[i];
-      const std::uint32_t leaves = found & nb.leaf_lanes;
-      const std::uint32_t inner = found & ~nb.leaf_lanes;
-      if ((na.leaf_lanes >> i & 1U) != 0) {
-        if (leaves != 0) {
-          leaf_rows |= 1U << i;
-          __builtin_prefetch(&query_.a_clusters[cluster_index(na.child[i])]);
-        }
-        for (std::uint32_t j = inner; j != 0; j &= j - 1) {
-          const std::uint32_t child = nb.child[lowest(j)];
-          push({task.a_node, child, 1U << i, query_.b_nodes[child].used_lanes}, waiting);
-        }
-      } else {
-        const std::uint32_t child = na.child[i];
-        const std::uint32_t used = query_.a_nodes[child].used_lanes;
-        if (leaves != 0) push({child, task.b_node, used, leaves}, waiting);
-        for (std::uint32_t j = inner; j != 0; j &= j - 1) {
-          const std::uint32_t other = nb.child[lowest(j)];
-          push({child, other, used, query_.b_nodes[other].used_lanes}, waiting);
-        }
-      }
+      work_.bv_tests += 8;
+      const Boxes own = spread_box(one.center[0].data(), one.half[0].data(), i);
+      const Boxes turned = spread_box(turned_.center[0], turned_.half[0], i);
+      const std::uint32_t found =
+          bits(both(overlap(own, other_turned), overlap(turned, other))) & other_lanes;
+      const std::uint32_t is_leaf = 0U - (one.leaf_lanes >> i & 1U);
+      const std::uint64_t leaves = found & other_leaves;
+      const std::uint64_t inner = found & ~other_leaves;
+      met.clusters |= (leaves & is_leaf) << 8 * i;
+      met.cluster_node |= (inner & is_leaf) << 8 * i;
+      met.node_cluster |= (leaves & ~is_leaf) << 8 * i;
+      met.nodes |= (inner & ~is_leaf) << 8 * i;
     }
-    if (leaf_rows == 0) return true;
-    return leaves(na, leaf_rows, nb, partners, a_in_b);
+    return met;
   }
 
-  bool leaves(const WideNode& na, std::uint32_t rows, const WideNode& nb,
-              const std::uint32_t* partners, const Boxes&) {
-    for (; rows != 0; rows &= rows - 1) {
-      const auto i = static_cast<std::size_t>(lowest(rows));
-      const Prepared& a = prepared_a(na, i);
-      for (std::uint32_t left = partners[i] & nb.leaf_lanes; left != 0; left &= left - 1) {
-        const auto j = lowest(left);
-        const Prepared& b = prepared_b(nb, j);
-        std::uint32_t ta = (1U << a.size) - 1U;
-        std::uint32_t tb = (1U << b.size) - 1U;
-        if (query_.body_boxes) {
-          // Triangles outside the other cluster's box take no part.
-          ta &= inside(a, spread_box(b_in_a_.center[0], b_in_a_.half[0], j));
-          if (ta == 0) continue;
-          tb &= inside(b, spread_box(na.center[0].data(), na.half[0].data(), i));
-          if (tb == 0) continue;
-        }
-        if (!collide_clusters(query_, a, ta, b, tb, sink_)) return false;
-      }
+  template <bool a_rows>
+  HWY_INLINE void descend(const WideTask& task, const WideNode& one, const WideNode& other,
+                          const Meetings& met) {
+    const std::uint32_t row_node = a_rows ? task.a_node : task.b_node;
+    const std::uint32_t column_node = a_rows ? task.b_node : task.a_node;
+    const auto put = [this](std::uint32_t row, std::uint32_t row_lanes, std::uint32_t col,
+                            std::uint32_t col_lanes) {
+      push(a_rows ? WideTask{row, col, row_lanes, col_lanes}
+                  : WideTask{col, row, col_lanes, row_lanes});
+    };
+    // A cluster's box is not looked at again: all clusters that meet one inner node go with it.
+    for (std::uint64_t left = met.cluster_node; left != 0;) {
+      const std::size_t c = static_cast<std::size_t>(__builtin_ctzll(left)) & 7U;
+      const std::uint32_t child = other.child[c];
+      prefetch((a_rows ? query_.b_nodes : query_.a_nodes)[child]);
+      put(row_node, column(left, c), child, 0xffU);
+      left &= ~(0x0101010101010101U << c);
+    }
+    for (std::uint64_t left = met.node_cluster; left != 0;) {
+      const std::size_t r = static_cast<std::size_t>(__builtin_ctzll(left)) >> 3U;
+      const std::uint32_t child = one.child[r];
+      prefetch((a_rows ? query_.a_nodes : query_.b_nodes)[child]);
+      put(child, 0xffU, column_node, static_cast<std::uint32_t>(left >> 8 * r) & 0xffU);
+      left &= ~(std::uint64_t{0xff} << 8 * r);
+    }
+    for (std::uint64_t left = met.nodes; left != 0; left &= left - 1) {
+      const auto at = static_cast<std::size_t>(__builtin_ctzll(left));
+      const std::uint32_t row = one.child[at >> 3U];
+      const std::uint32_t col = other.child[at & 7U];
+      prefetch(query_.a_nodes[a_rows ? row : col]);
+      prefetch(query_.b_nodes[a_rows ? col : row]);
+      put(row, 0xffU, col, 0xffU);
+    }
+    for (std::uint64_t left = met.clusters; left != 0; left &= left - 1) {
+      const auto at = static_cast<std::size_t>(__builtin_ctzll(left));
+      const std::uint32_t row = one.child[at >> 3U];
+      const std::uint32_t col = other.child[at & 7U];
+      const WideNode& nb = a_rows ? other : one;
+      const std::size_t lane = a_rows ? at & 7U : at >> 3U;
+      const ClusterPair pair{a_rows ? row : col, a_rows ? col : row,
+                             2.001F * (nb.half[0][lane] + nb.half[1][lane] + nb.half[2][lane])};
+      prefetch(query_.a_clusters[cluster_index(pair.a)]);
+      prefetch(query_.b_clusters[cluster_index(pair.b)]);
+      cluster_pairs_[pairs_++] = pair;
+    }
+  }
+
+  /// Returns false to stop.
+  bool collide_waiting() {
+    const std::size_t count = pairs_;
+    pairs_ = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const ClusterPair& pair = cluster_pairs_[k];
+      const Prepared& a = prepared_a(pair.a);
+      const Prepared& b = prepared_b(pair);
+      // Triangles outside the other cluster's box take no part.
+      const std::uint32_t a_lanes = inside(a, b) & ((1U << a.size) - 1U);
+      const std::uint32_t b_lanes = inside(b, a) & ((1U << b.size) - 1U);
+      if (a_lanes == 0 || b_lanes == 0) continue;
+      if (!collide_clusters(query_, a, a_lanes, b, b_lanes, hits_, work_)) return false;
     }
     return true;
   }
 
-  HWY_INLINE const Prepared& prepared_a(const WideNode& node, std::size_t lane) {
-    const std::uint32_t cluster = cluster_index(node.child[lane]);
-    const std::size_t slot = cluster % prepared_kept;
-    if (a_kept_[slot] != cluster) {
-      prepare_a(query_, node, lane, a_prepared_[slot]);
-      a_kept_[slot] = cluster;
+  HWY_INLINE const Prepared& prepared_a(std::uint32_t child) {
+    const std::size_t slot = child % prepared_kept;
+    if (a_kept_[slot] != child) {
+      prepare_a(query_, child, a_prepared_[slot]);
+      a_kept_[slot] = child;
     }
     return a_prepared_[slot];
   }
-  HWY_INLINE const Prepared& prepared_b(const WideNode& node, std::size_t lane) {
-    const std::uint32_t cluster = cluster_index(node.child[lane]);
-    const std::size_t slot = cluster % prepared_kept;
-    if (b_kept_[slot] != cluster) {
-      prepare_b(query_, node, lane, b_prepared_[slot]);
-      b_kept_[slot] = cluster;
+  HWY_INLINE const Prepared& prepared_b(const ClusterPair& pair) {
+    const std::size_t slot = pair.b % prepared_kept;
+    if (b_kept_[slot] != pair.b) {
+      prepare_b(query_, pair.b, pair.b_diagonal, b_prepared_[slot]);
+      b_kept_[slot] = pair.b;
     }
     return b_prepared_[slot];
   }
 
-  static HWY_INLINE std::uint32_t inside(const Prepared& p, const Boxes& box) {
-    const V8 low = box.center - box.half;
-    const V8 high = box.center + box.half;
+  /// Which triangles of one cluster are inside the box around the other.
+  static HWY_INLINE std::uint32_t inside(const Prepared& p, const Prepared& other) {
+    const V8 low = all3(other.own_low);
+    const V8 high = all3(other.own_high);
     const V8 lo = load3(p.low[0]);
     const V8 hi = load3(p.high[0]);
     return bits(both(both(both(at_most(lo.x, high.x), at_most(low.x, hi.x)),
@@ -224,15 +290,20 @@ private:
                      both(at_most(lo.z, high.z), at_most(low.z, hi.z))));
   }
 
-  void push(const WideTask& task, std::size_t& waiting) {
-    assert(waiting < sink_.stack_size);
-    sink_.stack[waiting++] = task;
+  HWY_INLINE void push(const WideTask& task) {
+    assert(waiting_ < stack_size_);
+    stack_[waiting_++] = task;
   }
 
   const WideQuery& query_;
-  WideSink& sink_;
-  StoredBoxes a_in_b_;
-  StoredBoxes b_in_a_;
+  HitBuffer hits_;
+  CollideWork work_;
+  WideTask* stack_;
+  std::size_t stack_size_;
+  std::size_t waiting_ = 0;
+  std::size_t pairs_ = 0;
+  StoredBoxes turned_;
+  ClusterPair cluster_pairs_[max_cluster_pairs];
   // Clusters made ready, by the last bits of their index: neighbours in the tree, which meet the
   // same clusters of the other body, have neighbouring indices.
   std::uint32_t a_kept_[prepared_kept];
@@ -241,15 +312,10 @@ private:
   Prepared b_prepared_[prepared_kept];
 };
 
-/// Works off all lane pairs below `start`.
 inline void wide_traverse(const WideQuery& query, const WideTask& start, WideSink& sink) {
-  Step step(query, sink);
-  std::size_t waiting = 0;
-  sink.stack[waiting++] = start;
-  while (waiting != 0) {
-    const WideTask task = sink.stack[--waiting];
-    if (!step.run(task, waiting)) return;
-  }
+  Descent descent(query, sink);
+  descent.run(start);
+  descent.finish(sink);
 }
 
 }  // namespace crashrank::detail::HWY_NAMESPACE

@@ -100,6 +100,17 @@ HWY_INLINE M8 differ(M8 a, M8 b) {
   CRASHRANK_EACH a.m[k] = hn::Xor(a.m[k], b.m[k]);
   return a;
 }
+/// The least and the greatest of eight.
+HWY_INLINE float least(F8 a) {
+  auto v = a.v[0];
+  for (std::size_t k = 1; k < vectors; ++k) v = hn::Min(v, a.v[k]);
+  return hn::GetLane(hn::MinOfLanes(FloatTag(), v));
+}
+HWY_INLINE float greatest(F8 a) {
+  auto v = a.v[0];
+  for (std::size_t k = 1; k < vectors; ++k) v = hn::Max(v, a.v[k]);
+  return hn::GetLane(hn::MaxOfLanes(FloatTag(), v));
+}
 /// yes where the mask is set, no elsewhere
 HWY_INLINE F8 select(M8 mask, F8 yes, F8 no) {
   CRASHRANK_EACH no.v[k] = hn::IfThenElse(mask.m[k], yes.v[k], no.v[k]);
@@ -150,6 +161,29 @@ HWY_INLINE void append_lanes(std::uint32_t byte, std::int32_t* out) {
 }
 HWY_INLINE void append_same(std::int32_t value, std::int32_t* out) {
   CRASHRANK_EACH hn::StoreU(hn::Set(IntTag(), value), IntTag(), out + k * tag_lanes);
+}
+
+/// Writes (a[ia[k]], b[ib[k]]) for every set bit k of `which`, one after the other; eight pairs of
+/// room are used whatever is set.
+HWY_INLINE void write_pairs(const std::uint32_t* a, const std::int32_t* ia, const std::uint32_t* b,
+                            const std::int32_t* ib, std::uint32_t which, std::int32_t* out) {
+#if HWY_TARGET <= HWY_AVX2
+  alignas(32) std::int32_t set[8];
+  append_lanes(which, set);
+  const auto chosen = hn::IndicesFromVec(IntTag(), hn::Load(IntTag(), set));
+  const auto pick = [&](const std::uint32_t* table, const std::int32_t* lanes) {
+    const auto index = hn::IndicesFromVec(IntTag(), hn::Load(IntTag(), lanes));
+    const auto all_eight = hn::BitCast(IntTag(), hn::Load(hn::RebindToUnsigned<IntTag>(), table));
+    return hn::TableLookupLanes(hn::TableLookupLanes(all_eight, index), chosen);
+  };
+  hn::StoreInterleaved2(pick(a, ia), pick(b, ib), IntTag(), out);
+#else
+  for (std::uint32_t left = which; left != 0; left &= left - 1) {
+    const int k = __builtin_ctz(left);
+    *out++ = static_cast<std::int32_t>(a[ia[k]]);
+    *out++ = static_cast<std::int32_t>(b[ib[k]]);
+  }
+#endif
 }
 
 /// Three coordinates of eight points or directions; in memory three rows of eight.

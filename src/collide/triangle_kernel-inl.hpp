@@ -27,6 +27,8 @@ struct alignas(64) Prepared {
   float edge[8];          // largest extent of the triangle, within its corners' errors
   float low[3][8];        // box, widened by what rounding may have moved it, in A's frame
   float high[3][8];
+  float own_low[3];  // the box around all of them
+  float own_high[3];
   float place[3];
   float error;   // m, a relative corner of B against the coordinates that `carry` gives
   float around;  // m, how far apart corners of touching boxes may be beyond their triangles' sizes
@@ -50,10 +52,21 @@ HWY_INLINE void store_shape(Prepared& p, V8 normal, F8 normal_error, V8 low, V8 
   store(maximum(extent.x, maximum(extent.y, extent.z)), p.edge);
 }
 
-HWY_INLINE void prepare_a(const WideQuery& query, const WideNode& node, std::size_t lane,
-                          Prepared& p) {
-  const TriangleCluster& cluster = query.a_clusters[cluster_index(node.child[lane])];
-  p.size = cluster_size(node.child[lane]);
+HWY_INLINE void store_boxes(Prepared& p, V8 low, V8 high) {
+  store3(low, p.low[0]);
+  store3(high, p.high[0]);
+  p.own_low[0] = least(low.x);
+  p.own_low[1] = least(low.y);
+  p.own_low[2] = least(low.z);
+  p.own_high[0] = greatest(high.x);
+  p.own_high[1] = greatest(high.y);
+  p.own_high[2] = greatest(high.z);
+}
+
+/// `child`: the cluster's entry in its node.
+HWY_INLINE void prepare_a(const WideQuery& query, std::uint32_t child, Prepared& p) {
+  const TriangleCluster& cluster = query.a_clusters[cluster_index(child)];
+  p.size = cluster_size(child);
   p.source = &cluster;
   const float* rows = cluster.corner[0].data();
   const V8 c0 = load3(rows);
@@ -61,13 +74,13 @@ HWY_INLINE void prepare_a(const WideQuery& query, const WideNode& node, std::siz
   const V8 c2 = load3(rows + 48);
   const V8 low = minimum(c0, minimum(c1, c2));
   const V8 high = maximum(c0, maximum(c1, c2));
-  store3(low, p.low[0]);
-  store3(high, p.high[0]);
+  store_boxes(p, low, high);
   const V8 e1 = c1 - c0;
   const V8 e2 = c2 - c0;
   store_shape(p, cross(e1, e2), all(0x1p-24F * 10.0F) * products(e1, e2), low, high);
 }
 
+/// `child`: the cluster's entry in its node; `diagonal`: twice the sum of its box's half extents.
 /// Carries a cluster of B into A's frame in float, relative to the place of its first corner, which
 /// is computed in double and rounded; what the rounding took away is given back to the corners.
 /// With u = 2^-24 and s twice the sum of the box's half extents, which bounds the distance of any
@@ -77,10 +90,10 @@ HWY_INLINE void prepare_a(const WideQuery& query, const WideNode& node, std::siz
 /// the real motion by its own error, and the reference place by as much. Together
 /// 9·u·s + 2·carry_error; 12 is used, which leaves room for the rounding of the bound and for the
 /// remainder's own rounding, u²·|place|, since carry_error holds 2^-50 of every coordinate.
-HWY_INLINE void prepare_b(const WideQuery& query, const WideNode& node, std::size_t lane,
+HWY_INLINE void prepare_b(const WideQuery& query, std::uint32_t child, float diagonal,
                           Prepared& p) {
-  const TriangleCluster& cluster = query.b_clusters[cluster_index(node.child[lane])];
-  p.size = cluster_size(node.child[lane]);
+  const TriangleCluster& cluster = query.b_clusters[cluster_index(child)];
+  p.size = cluster_size(child);
   p.source = &cluster;
   const float reference[3] = {cluster.corner[0][0], cluster.corner[1][0], cluster.corner[2][0]};
   const double x = reference[0];
@@ -95,7 +108,6 @@ HWY_INLINE void prepare_b(const WideQuery& query, const WideNode& node, std::siz
     remainder[i] = static_cast<float>(sum - p.place[i]);
     farthest = farthest > std::abs(p.place[i]) ? farthest : std::abs(p.place[i]);
   }
-  const float diagonal = 2.001F * (node.half[0][lane] + node.half[1][lane] + node.half[2][lane]);
   p.error = 0x1p-24F * 12.0F * diagonal + 2.0F * query.carry_error;
   const float* r = query.body_rotation;
   const V8 r0 = all3(r);
@@ -117,8 +129,7 @@ HWY_INLINE void prepare_b(const WideQuery& query, const WideNode& node, std::siz
   const V8 to = all3(p.place);
   const V8 low = minimum(corner[0], minimum(corner[1], corner[2]));
   const V8 high = maximum(corner[0], maximum(corner[1], corner[2]));
-  store3(low + to - widen, p.low[0]);
-  store3(high + to + widen, p.high[0]);
+  store_boxes(p, low + to - widen, high + to + widen);
   // The normal is made of the exact corners and turned as a whole: its error then follows the
   // triangle and not the cluster.
   const V8 e1 = load3(cluster.corner[3].data()) - load3(cluster.corner[0].data());
@@ -264,10 +275,35 @@ HWY_INLINE std::uint32_t test_pairs(const WideQuery& query, const Prepared& a, c
   return crossing & hits;
 }
 
+/// Pairs found, gathered before they go to the caller's vector: written without a branch for every
+/// single one.
+class HitBuffer {
+public:
+  explicit HitBuffer(const WideSink& sink) : out_(sink.pairs) {}
+
+  void add(const TriangleCluster& a, const std::int32_t* ia, const TriangleCluster& b,
+           const std::int32_t* ib, std::uint32_t hits) {
+    if (count_ > room - wide_lanes) flush();
+    write_pairs(a.index.data(), ia, b.index.data(), ib, hits, &pairs_[count_].a);
+    count_ += static_cast<std::size_t>(__builtin_popcount(hits));
+  }
+  void flush() {
+    out_->insert(out_->end(), pairs_, pairs_ + count_);
+    count_ = 0;
+  }
+
+private:
+  static constexpr std::size_t room = 128;
+  std::vector<Pair>* out_;
+  std::size_t count_ = 0;
+  Pair pairs_[room];
+};
+
 /// All pairs of two prepared clusters whose boxes overlap, eight at a time. `a_lanes` and `b_lanes`
-/// are the triangles that take part. Returns false to stop.
-inline bool collide_clusters(const WideQuery& query, const Prepared& a, std::uint32_t a_lanes,
-                             const Prepared& b, std::uint32_t b_lanes, WideSink& sink) {
+/// are the triangles that take part, at least one each. Returns false to stop.
+HWY_INLINE bool collide_clusters(const WideQuery& query, const Prepared& a, std::uint32_t a_lanes,
+                                 const Prepared& b, std::uint32_t b_lanes, HitBuffer& found_pairs,
+                                 CollideWork& work) {
   // At most 64 pairs; each append writes eight entries from the current end.
   alignas(32) std::int32_t ia[72];
   alignas(32) std::int32_t ib[72];
@@ -292,7 +328,7 @@ inline bool collide_clusters(const WideQuery& query, const Prepared& a, std::uin
     append_same(static_cast<std::int32_t>(i), ione + count);
     count += static_cast<std::size_t>(__builtin_popcount(found));
   }
-  sink.work.primitive_tests += count;
+  work.primitive_tests += count;
   if (count == 0) return true;
   append_same(0, ia + count);
   append_same(0, ib + count);
@@ -303,17 +339,13 @@ inline bool collide_clusters(const WideQuery& query, const Prepared& a, std::uin
     for (std::uint32_t left = unsure; left != 0; left &= left - 1) {
       const auto k = at + static_cast<std::size_t>(__builtin_ctz(left));
       if (decide(query, *a.source, static_cast<std::size_t>(ia[k]), *b.source,
-                 static_cast<std::size_t>(ib[k]), sink.work)) {
+                 static_cast<std::size_t>(ib[k]), work)) {
         hits |= left & (~left + 1U);
       }
     }
-    for (; hits != 0; hits &= hits - 1) {
-      const auto k = at + static_cast<std::size_t>(__builtin_ctz(hits));
-      sink.pairs->push_back(
-          {static_cast<std::int32_t>(a.source->index[static_cast<std::size_t>(ia[k])]),
-           static_cast<std::int32_t>(b.source->index[static_cast<std::size_t>(ib[k])])});
-      if (query.any) return false;
-    }
+    if (query.any) hits &= ~hits + 1U;
+    found_pairs.add(*a.source, ia + at, *b.source, ib + at, hits);
+    if (query.any && hits != 0) return false;
   }
   return true;
 }

@@ -27,8 +27,9 @@ struct ModelWorkspace {
   std::vector<WideTask> wide;
 
   /// Room for all queries between these two models. A step of the vector engine takes one task off
-  /// its stack and puts on at most eight for each lane of A; waiting tasks of different steps
-  /// differ in the level of one of the trees: at most 64 tasks a level.
+  /// its stack and puts on at most 64: with i of 8 lanes inner nodes in A and j in B, i·j pairs of
+  /// nodes, j nodes against clusters where i < 8, and i where j < 8. Waiting tasks of different
+  /// steps differ in the level of one of the trees: at most 64 tasks a level.
   void prepare(const Model& a, const Model& b) {
     scalar.prepare(a.tree.depth, b.tree.depth);
     const std::size_t needed = 64 * (std::size_t{a.wide.depth} + b.wide.depth + 1);
