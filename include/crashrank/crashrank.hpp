@@ -10,13 +10,16 @@
 #include "crashrank/base/version.hpp"
 #include "crashrank/base/view.hpp"
 
+#include "crashrank/mesh/mass_properties.hpp"
 #include "crashrank/mesh/quality.hpp"
 #include "crashrank/mesh/transform.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
+#include "crashrank/tree/model_file.hpp"
 #include "crashrank/tree/validate.hpp"
+#include "crashrank/tree/validate_wide.hpp"
 
 #include "crashrank/collide/broad_phase.hpp"
 #include "crashrank/collide/collide.hpp"

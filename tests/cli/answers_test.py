@@ -118,6 +118,12 @@ class Answers(unittest.TestCase):
         self.check("inspect", "box.obj", "box.obj")
         self.check("inspect", "missing.obj", "box.obj", codes=(3,))
 
+    def test_compile(self):
+        self.check("compile", "box.obj", "-o", "box.crm", "--mass-kg", "1400")
+        document = self.check("inspect", "box.crm", "box.obj")
+        self.assertIn("model", document["files"][0])
+        self.check("collide", "box.crm", "box.obj")
+
     def test_collide(self):
         self.check("collide", "box.obj", "box.obj", "--poses", "poses.txt")
         self.check("collide", "box.obj", "box.obj", "--any", "--split", "paper")
