@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
     if (model) stored.model = std::move(*model);
     return model.ok();
   });
-  stored.mass = mass_properties(stored.model.mesh);
+  stored.mass = shell_properties(stored.model.mesh);
   const std::string path =
       (std::filesystem::temp_directory_path() / ("load_bench." + std::to_string(::getpid())))
           .string();

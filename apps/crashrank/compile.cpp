@@ -45,7 +45,7 @@ int run(const Options& options) {
   StoredModel& stored = body->stored;
   // Compiling a model file writes it again, perhaps with another mass.
   const double known_mass = stored.mass.mass_kg;
-  stored.mass = mass_properties(stored.model.mesh);
+  stored.mass = shell_properties(stored.model.mesh);
   stored.mass.mass_kg = options.mass_kg > 0.0 ? options.mass_kg : known_mass;
   if (Status saved = save_model(stored, options.output, options.force); !saved) {
     Error error = saved.error();

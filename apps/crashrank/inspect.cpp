@@ -33,7 +33,7 @@ struct Compiled {
 
 Json to_json(const Compiled& compiled) {
   const Model& model = compiled.stored.model;
-  const MassProperties& mass = compiled.stored.mass;
+  const ShellProperties& mass = compiled.stored.mass;
   const ImportTransform& transform = compiled.stored.transform;
   return {{"version", compiled.facts.version},
           {"bytes", compiled.facts.bytes},

@@ -116,6 +116,7 @@ public:
     return source;
   }
 
+  bool received() const { return received_.has_value(); }
   const std::string& path() const { return received_ ? received_->path() : path_; }
   std::string shown() const { return received_ ? "standard input" : path_; }
 
@@ -134,15 +135,15 @@ Result<ImportedMesh> import_from(const Source& source, const MeshArguments& argu
   if (!imported) {
     Error error = imported.error();
     error.file = shown;
-    if (received) {
+    if (source.received()) {
       for (std::string* text : {&error.place, &error.reason, &error.remedy}) {
-        name_standard_input(*text, received->path());
+        name_standard_input(*text, source.path());
       }
     }
     return error;
   }
-  if (received) {
-    for (std::string& warning : imported->warnings) name_standard_input(warning, received->path());
+  if (source.received()) {
+    for (std::string& warning : imported->warnings) name_standard_input(warning, source.path());
   }
   if (tell) {
     for (const std::string& warning : imported->warnings) warn(shown, warning);

@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
   // The library's harm, everybody counting alike but for an ego that puts itself last.
   RankOptions options;
   options.measure = Measure::harm;
-  options.harm.weights.ego_occupant = 0.5;
+  options.harm = scenario->harm;
+  options.harm->weights.ego_occupant = 0.5;
   const Result<RankResult> ranked = rank(*scenario, models, options);
   if (!ranked) return fail(ranked.error());
 

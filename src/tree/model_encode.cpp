@@ -75,7 +75,7 @@ Status check_vertices(const TriangleMesh& mesh) {
 }
 
 Status check_properties(const StoredModel& stored) {
-  const MassProperties& mass = stored.mass;
+  const ShellProperties& mass = stored.mass;
   bool finite = mass.center_m.allFinite() && std::isfinite(mass.volume_m3);
   for (const double value : mass.inertia_per_kg_m2) finite = finite && std::isfinite(value);
   if (!finite || !(mass.mass_kg >= 0.0) || !std::isfinite(mass.mass_kg) || !(mass.area_m2 >= 0.0) ||

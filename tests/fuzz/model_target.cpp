@@ -39,7 +39,7 @@ TriangleMesh soup(std::size_t count, std::uint64_t seed) {
 
 Bytes encoded(std::size_t count, const BuildOptions& options) {
   StoredModel stored;
-  stored.mass = mass_properties(soup(count, count));
+  stored.mass = shell_properties(soup(count, count));
   Result<Model> model = make_model(soup(count, count), options);
   require(model.ok(), "a seed cannot be built");
   stored.model = std::move(*model);

@@ -136,7 +136,7 @@ protected:
   AllocationFailureOfFiles()
       : path_(testing::TempDir() + "allocation_failure." + std::to_string(::getpid())) {
     stored.model = *make_model(sample_mesh(4));
-    stored.mass = mass_properties(stored.model.mesh);
+    stored.mass = shell_properties(stored.model.mesh);
   }
   ~AllocationFailureOfFiles() override { std::filesystem::remove(path_); }
 

@@ -59,7 +59,7 @@ StoredModel sample(std::size_t triangles, const BuildOptions& options = {}) {
   TriangleMesh mesh = test::triangle_soup(triangles, 0.2F, 31);
   mesh.parts = {{"front \"bumper\"", 0, 1},
                 {"T\xc3\xbcr", 1, static_cast<std::uint32_t>(triangles) - 1}};
-  stored.mass = mass_properties(mesh);
+  stored.mass = shell_properties(mesh);
   stored.mass.mass_kg = 1400.0;
   stored.transform.scale = 0.001;
   stored.transform.up = Axis::plus_y;
@@ -389,7 +389,7 @@ TEST_F(ModelFile, IsTheSameFileEverywhere) {
   const TriangleMesh mesh = test::triangle_soup(6000, 0.05F, 77);
   for (const std::uint32_t threads : {1U, 3U}) {
     StoredModel stored;
-    stored.mass = mass_properties(mesh);
+    stored.mass = shell_properties(mesh);
     BuildOptions options;
     options.threads = threads;
     stored.model = *make_model(mesh, options);

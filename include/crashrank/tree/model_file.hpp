@@ -3,7 +3,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
-#include "crashrank/mesh/mass_properties.hpp"
+#include "crashrank/mesh/shell_properties.hpp"
 #include "crashrank/mesh/transform.hpp"
 #include "crashrank/tree/model.hpp"
 
@@ -24,7 +24,7 @@ struct StoredModel {
   Model model;
   /// How the file that the mesh came from was turned into body coordinates; done already.
   ImportTransform transform;
-  MassProperties mass;
+  ShellProperties mass;
 };
 
 /// What a model file was, beside what is in it.

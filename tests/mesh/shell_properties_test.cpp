@@ -1,4 +1,4 @@
-#include "crashrank/mesh/mass_properties.hpp"
+#include "crashrank/mesh/shell_properties.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ TriangleMesh box(const Eigen::Vector3f& at, const Eigen::Vector3f& size) {
   return mesh;
 }
 
-TEST(MassProperties, AreThoseOfAHollowCube) {
-  const MassProperties told = mass_properties(box({1, 2, 3}, {2, 2, 2}));
+TEST(ShellProperties, AreThoseOfAHollowCube) {
+  const ShellProperties told = shell_properties(box({1, 2, 3}, {2, 2, 2}));
   EXPECT_NEAR(told.area_m2, 24.0, 1e-12);
   EXPECT_NEAR(told.volume_m3, 8.0, 1e-12);
   EXPECT_NEAR((told.center_m - Eigen::Vector3d(2, 3, 4)).norm(), 0.0, 1e-12);
@@ -31,11 +31,11 @@ TEST(MassProperties, AreThoseOfAHollowCube) {
   EXPECT_EQ(told.mass_kg, 0.0);
 }
 
-TEST(MassProperties, OfOneTriangleMatchTheClosedForm) {
+TEST(ShellProperties, OfOneTriangleMatchTheClosedForm) {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}};
   mesh.triangles = {{0, 1, 2}};
-  const MassProperties told = mass_properties(mesh);
+  const ShellProperties told = shell_properties(mesh);
   EXPECT_NEAR(told.area_m2, 4.5, 1e-12);
   EXPECT_NEAR((told.center_m - Eigen::Vector3d(1, 1, 0)).norm(), 0.0, 1e-12);
   // A right triangle of legs a about its middle: ∫x² dm / m = a²/18, ∫xy dm / m = −a²/36.
@@ -45,12 +45,12 @@ TEST(MassProperties, OfOneTriangleMatchTheClosedForm) {
   EXPECT_NEAR(told.inertia_per_kg_m2[3], 0.25, 1e-12);
 }
 
-TEST(MassProperties, OfNothingAreZero) {
-  EXPECT_EQ(mass_properties(TriangleMesh{}).area_m2, 0.0);
+TEST(ShellProperties, OfNothingAreZero) {
+  EXPECT_EQ(shell_properties(TriangleMesh{}).area_m2, 0.0);
   TriangleMesh flat;
   flat.vertices = {{1, 1, 1}};
   flat.triangles = {{0, 0, 0}};
-  const MassProperties told = mass_properties(flat);
+  const ShellProperties told = shell_properties(flat);
   EXPECT_EQ(told.area_m2, 0.0);
   EXPECT_EQ(told.inertia_per_kg_m2[0], 0.0);
 }

@@ -10,7 +10,7 @@
 namespace crashrank {
 
 /// How heavy a body is, as far as that is known, and how its surface is spread.
-struct MassProperties {
+struct ShellProperties {
   double mass_kg = 0.0;    ///< as somebody stated it; 0: nobody did
   double area_m2 = 0.0;    ///< of the surface, every triangle counted
   double volume_m3 = 0.0;  ///< enclosed; means something for closed, evenly turned meshes only
@@ -23,6 +23,6 @@ struct MassProperties {
 
 /// Area, volume, middle and inertia of a mesh. The same bits everywhere. O(n); vertex indices have
 /// to be in range. Not finite for coordinates whose fourth powers are none in double.
-CRASHRANK_API MassProperties mass_properties(const TriangleMesh& mesh);
+CRASHRANK_API ShellProperties shell_properties(const TriangleMesh& mesh);
 
 }  // namespace crashrank

@@ -1,4 +1,4 @@
-#include "crashrank/mesh/mass_properties.hpp"
+#include "crashrank/mesh/shell_properties.hpp"
 
 #include <Eigen/Geometry>
 
@@ -35,8 +35,8 @@ double area(const Corners& t) {
 
 }  // namespace
 
-MassProperties mass_properties(const TriangleMesh& mesh) {
-  MassProperties told;
+ShellProperties shell_properties(const TriangleMesh& mesh) {
+  ShellProperties told;
   Vector moment = Vector::Zero();
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const Corners t = corners(mesh.triangle(i), Vector::Zero());
