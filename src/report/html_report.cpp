@@ -132,12 +132,14 @@ private:
     if (!scenario_.description.empty()) {
       out_ += "<p>" + escape_xml(scenario_.description) + "</p>\n";
     }
-    const auto free = std::count_if(result_.ranking.begin(), result_.ranking.end(),
-                                    [](const CandidateResult& r) { return !r.collides; });
+    const auto free =
+        std::count_if(result_.ranking.begin(), result_.ranking.end(),
+                      [](const CandidateResult& r) { return r.score && !r.collides; });
     out_ += fmt::format(
-        "<p class='facts'>{} candidates, {} others on the road, {} touch nothing. Ranked by {} "
+        "<p class='facts'>{} candidates, {} others on the road, {} {}touch nothing. Ranked by {} "
         "[{}], lower is better, in {:.1f} ms{}.</p></header>\n",
-        result_.ranking.size(), scenario_.actors.size(), free, measure_name(result_.measure),
+        result_.ranking.size(), scenario_.actors.size(), free,
+        result_.complete ? "" : "are known to ", measure_name(result_.measure),
         escape_xml(measure_unit(result_.measure)), result_.elapsed_s * 1e3,
         result_.complete ? "" : "; the answer is partial");
   }
@@ -231,7 +233,9 @@ private:
     }
     if (ranked.contacts.empty()) {
       out_ += fmt::format("<td colspan='{}' class='free'>", simulated() ? 12 : 7);
-      out_ += ranked.grazes.empty() ? "nothing" : "nothing, but grazes";
+      out_ += !ranked.score           ? "not known yet"
+              : ranked.grazes.empty() ? "nothing"
+                                      : "nothing, but grazes";
       out_ += "</td></tr>\n";
       return;
     }

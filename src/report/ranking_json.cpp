@@ -162,7 +162,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
              {"places", Json::array({ranked.best_place + 1, ranked.worst_place + 1})},
              {"separable_from_next", ranked.separable},
              {"overtaken_share", ranked.overtaken},
-             {"collides", ranked.collides},
+             {"collides", ranked.score || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
              {"contacts", std::move(contacts)},
              {"other", nullptr},
              {"time_of_impact_s", nullptr},

@@ -36,7 +36,11 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
     row.push_back(detail::places_text(ranked));
   }
   if (ranked.contacts.empty()) {
-    row.emplace_back(ranked.grazes.empty() ? "nothing" : "nothing (grazes)");
+    if (!ranked.score) {
+      row.emplace_back("not known yet");
+    } else {
+      row.emplace_back(ranked.grazes.empty() ? "nothing" : "nothing (grazes)");
+    }
     return row;
   }
   const Contact& first = ranked.contacts.front();
@@ -98,13 +102,14 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
     text += fmt::format("... and {} more, up to {} {}\n", all - shown,
                         score_text(result.ranking.back()), measure_unit(result.measure));
   }
-  const auto free = static_cast<std::size_t>(
-      std::count_if(result.ranking.begin(), result.ranking.end(),
-                    [](const CandidateResult& ranked) { return !ranked.collides; }));
+  const auto free = static_cast<std::size_t>(std::count_if(
+      result.ranking.begin(), result.ranking.end(),
+      [](const CandidateResult& ranked) { return ranked.score && !ranked.collides; }));
   for (const std::string& words : detail::not_separable_words(result, shown)) {
     text += words + "\n";
   }
-  text += fmt::format("\n{} of {} touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
+  text += fmt::format("\n{} of {} {}touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
+                      result.complete ? "" : "are known to ",
                       simulated ? " Delta-v (over all contacts) and crush are the ego's."
                                 : " Damage is ego + others.",
                       result.elapsed_s * 1e3, result.complete ? "" : "; the answer is partial");

@@ -86,6 +86,7 @@ std::string score_words(const CandidateResult& ranked, Measure measure) {
 }
 
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
+  if (ranked.contacts.empty() && !ranked.score) return "has not been looked at to the end";
   if (ranked.contacts.empty()) {
     return fmt::format("touches nothing within {:.1f} s{}", scenario.horizon_s,
                        ranked.grazes.empty() ? "" : ", but grazes");
