@@ -10,8 +10,8 @@
 #include "crashrank/base/version.hpp"
 #include "crashrank/base/view.hpp"
 
-#include "crashrank/mesh/shell_properties.hpp"
 #include "crashrank/mesh/quality.hpp"
+#include "crashrank/mesh/shell_properties.hpp"
 #include "crashrank/mesh/transform.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 

@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -147,6 +149,18 @@ Result<FileBytes> file_bytes(const std::string& path, const LoadModelOptions& op
   return options.storage == ModelStorage::mapped ? map(path, file, size) : copy(path, file, size);
 }
 
+bool begins_with(const std::string& path, View<const unsigned char> head) noexcept {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat facts {};
+  if (file.number() < 0 || ::fstat(file.number(), &facts) != 0 || !S_ISREG(facts.st_mode)) {
+    return false;
+  }
+  std::array<unsigned char, 64> found{};
+  const std::size_t size = std::min(head.size(), found.size());
+  return ::read(file.number(), found.data(), size) == static_cast<ssize_t>(size) &&
+         std::equal(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size), head.begin());
+}
+
 Status write_whole(const std::string& path, View<const unsigned char> bytes, bool overwrite) {
   std::string name;
   int number = -1;
@@ -160,7 +174,7 @@ Status write_whole(const std::string& path, View<const unsigned char> bytes, boo
     return file_error(ErrorCode::not_found, path, "cannot write: " + why(),
                       "name a file in a folder that can be written to");
   }
-  const Draft draft(name);
+  const Draft draft(std::move(name));  // allocates nothing: from here on the file goes with it
   if (!put(file, bytes) || !file.close()) {
     return file_error(ErrorCode::internal, path, "cannot write: " + why(), "make room on the disk");
   }

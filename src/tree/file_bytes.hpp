@@ -19,6 +19,9 @@ struct FileBytes {
 /// limit_exceeded, internal. Throws std::bad_alloc.
 Result<FileBytes> file_bytes(const std::string& path, const LoadModelOptions& options);
 
+/// Whether a regular file begins with these bytes, 64 at most. Never waits for a pipe.
+bool begins_with(const std::string& path, View<const unsigned char> head) noexcept;
+
 /// Writes a file beside its place, brings it to the disk and gives it its name.
 /// Errors: usage when something has that name and `overwrite` is not set; not_found, internal.
 Status write_whole(const std::string& path, View<const unsigned char> bytes, bool overwrite);

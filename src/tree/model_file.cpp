@@ -4,8 +4,6 @@
 #include "tree/file_bytes.hpp"
 #include "tree/model_layout.hpp"
 
-#include <algorithm>
-#include <cstdio>
 #include <utility>
 
 namespace crashrank {
@@ -45,12 +43,7 @@ Status save_model(const StoredModel& stored, const std::string& path, bool overw
 }
 
 bool is_model_file(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"),
-                                                             &std::fclose);
-  if (!file) return false;
-  std::array<unsigned char, detail::model_magic.size()> head{};
-  return std::fread(head.data(), 1, head.size(), file.get()) == head.size() &&
-         head == detail::model_magic;
+  return detail::begins_with(path, {detail::model_magic.data(), detail::model_magic.size()});
 }
 
 }  // namespace crashrank

@@ -350,6 +350,8 @@ TEST_F(ModelFile, TellsWhatIsNoModelFile) {
   EXPECT_FALSE(is_model_file(path("empty")));
   EXPECT_FALSE(is_model_file(path("text")));
   EXPECT_FALSE(is_model_file(path("nowhere")));
+  EXPECT_FALSE(is_model_file(path("pipe"))) << "it has to answer, too";
+  EXPECT_FALSE(is_model_file(path(".")));
   const std::vector<std::pair<std::string, ErrorCode>> wrong{
       {"empty", ErrorCode::bad_input},   {"text", ErrorCode::bad_input},
       {"pipe", ErrorCode::bad_input},    {".", ErrorCode::bad_input},

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,9 +29,10 @@ std::size_t lane(const WideTree& wide, bool leaf) {
 std::size_t inner(WideTree& wide) { return lane(wide, false); }
 
 WideNode& with_empty_lane(WideTree& wide) {
-  std::size_t i = 0;
-  while (wide.nodes[i].used_lanes == 0xff) ++i;
-  return wide.nodes[i];
+  for (WideNode& node : wide.nodes) {
+    if (node.used_lanes != 0xff) return node;
+  }
+  throw std::logic_error("every lane is used: take another sample");
 }
 
 std::size_t binary_with_lanes(const WideTree& wide, bool several) {
