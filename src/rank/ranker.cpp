@@ -120,6 +120,11 @@ struct Ranker::State {
       pool.post(static_cast<std::uint32_t>(i), task);
     }
     take_part(scratch.front());
+    // All steps are begun by now: whoever has not woken yet need not.
+    for (std::size_t i = 0; i < wanted; ++i) {
+      WorkerPool::Task unneeded;
+      pool.recall(static_cast<std::uint32_t>(i), unneeded);
+    }
     pool.wait_all();
   }
 
