@@ -129,9 +129,9 @@ void time_deadline(Ranker& ranker, const bench::Situations& s, double deadline_m
     auto start = Clock::now();
     const RankerAnswer answer = ranker.rank(s.candidates, budget);
     late.push_back(std::max(0.0, micros(Clock::now() - start - deadline)));
-    correct += answer.ranking[0].candidate == right[variant] ? 1 : 0;
-    proved += answer.proved ? 1 : 0;
-    complete += answer.complete ? 1 : 0;
+    if (answer.ranking[0].candidate == right[variant]) ++correct;
+    if (answer.proved) ++proved;
+    if (answer.complete) ++complete;
     start = Clock::now();
     while (Clock::now() - start < deadline) {
     }
