@@ -61,4 +61,39 @@ TEST(Layering, AnUpwardIncludeIsSeen) {
   fs::remove_all(root);
 }
 
+// Who includes a public header needs Eigen and the language's library, nothing else.
+std::vector<std::string> strangers(const fs::path& root) {
+  static const std::regex include(R"re(^\s*#\s*include\s*<([^>]+/[^>]+|[^>]+\.h(?:pp)?)>)re");
+  static const std::regex name(R"re(\b(?:Assimp|assimp|fmt|nlohmann|hwy)::)re");
+  static const std::regex known(R"re(^(?:Eigen/.*|std(?:def|int)\.h)$)re");
+  std::vector<std::string> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path());
+    std::string line;
+    while (std::getline(in, line)) {
+      std::smatch match;
+      const bool foreign =
+          std::regex_search(line, match, include) && !std::regex_match(match[1].str(), known);
+      if (foreign || std::regex_search(line, name)) {
+        found.push_back(entry.path().string() + ": " + line);
+      }
+    }
+  }
+  return found;
+}
+
+TEST(Layering, PublicHeadersNameNoOtherLibraryButEigen) {
+  EXPECT_EQ(strangers(fs::path(CRASHRANK_SOURCE_DIR) / "include"), std::vector<std::string>{});
+}
+
+TEST(Layering, AForeignIncludeIsSeen) {
+  const fs::path root = fs::path(testing::TempDir()) / "strangers";
+  fs::create_directories(root);
+  std::ofstream(root / "bad.hpp") << "#include <nlohmann/json.hpp>\n#include <png.h>\n"
+                                  << "std::string f(fmt::string_view);\n#include <vector>\n";
+  EXPECT_EQ(strangers(root).size(), 3U);
+  fs::remove_all(root);
+}
+
 }  // namespace
