@@ -68,12 +68,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/crashrank-config.cmake
 # pkg-config: one file a component, found relative to itself wherever the prefix is moved. What a
 # shared library links is its own affair; a static one passes it on.
 get_target_property(kind crashrank TYPE)
-set(pkgconfig_private "${pkgconfig_crashrank}")
 set(pkgconfig_public "")
 set(pkgconfig_system "")
 if(kind STREQUAL "STATIC_LIBRARY")
   set(pkgconfig_public "${pkgconfig_crashrank}")
-  set(pkgconfig_private "")
   set(pkgconfig_system " -pthread -lstdc++ -lm")
 endif()
 file(RELATIVE_PATH prefix_from_pkgconfig ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
