@@ -1,7 +1,13 @@
+// Ten decisions a second, each within 50 ms: everything is prepared before the loop; in it the
+// world moves on, the candidates are made anew, and the ranking ends at its deadline with what it
+// knows.
 #include <crashrank/crashrank.hpp>
 #include <crashrank/mesh/import.hpp>
 
+#include <chrono>
 #include <cstdio>
+#include <thread>
+#include <vector>
 
 using namespace crashrank;
 
@@ -24,21 +30,6 @@ static Result<std::vector<Model>> load(const Scenario& scenario) {
   return models;
 }
 
-// What perception would tell: here everybody goes on as the scenario says, from `time_s` on.
-static Result<std::vector<Motion>> perceive(const Scenario& scenario, double time_s) {
-  std::vector<Motion> motions;
-  for (ScenarioActor actor : scenario.actors) {
-    const Result<Motion> motion = make_motion(actor);
-    if (!motion) return motion.error();
-    actor.pose = motion->pose_at(time_s);
-    actor.speed_mps += actor.acceleration_mps2 * time_s;
-    const Result<Motion> from_now = make_motion(actor);
-    if (!from_now) return from_now.error();
-    motions.push_back(*from_now);
-  }
-  return motions;
-}
-
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   Result<Scenario> scenario = load_scenario_file(argv[1]);
@@ -51,15 +42,28 @@ int main(int argc, char** argv) {
   Result<Ranker> ranker = Ranker::prepare(*scenario, *models, options);
   if (!ranker) return fail(ranker.error());
 
-  const Motion planned = Motion(TurnMotion{scenario->ego.pose, scenario->ego.speed_mps});
+  // Perception's part is played by the scenario: whoever moves goes on as it says.
+  const Motion ego(TurnMotion{scenario->ego.pose, scenario->ego.speed_mps});
+  const double ego_length_m = (*models)[scenario->ego.model].mesh.bounds().extent().x();
+  std::vector<Motion> others;
+  for (const ScenarioActor& actor : scenario->actors) {
+    const Result<Motion> motion = make_motion(actor);
+    if (!motion) return fail(motion.error());
+    others.push_back(*motion);
+  }
+
+  auto next = std::chrono::steady_clock::now();
   for (int cycle = 0; cycle < 5; ++cycle) {
     const double time_s = 0.1 * cycle;
-    scenario->ego.pose = planned.pose_at(time_s);
-    const Result<std::vector<Candidate>> candidates = make_candidates(*scenario, 4.5);
-    const Result<std::vector<Motion>> motions = perceive(*scenario, time_s);
-    if (!candidates || !motions) return 1;
+    scenario->ego.pose = ego.pose_at(time_s);
+    std::vector<Motion> motions;
+    for (const Motion& other : others) {
+      motions.emplace_back(FreeMotion{other.pose_at(time_s), other.velocity_at(time_s)});
+    }
+    const Result<std::vector<Candidate>> candidates = make_candidates(*scenario, ego_length_m);
+    if (!candidates) return fail(candidates.error());
 
-    if (const Status moved = ranker->move_actors(scenario->ego.pose, *motions); !moved) return 1;
+    if (const Status moved = ranker->move_actors(scenario->ego.pose, motions); !moved) return 1;
     RankBudget budget;
     budget.deadline_s = 0.05;
     const RankerAnswer answer = ranker->rank(*candidates, budget);
@@ -67,5 +71,8 @@ int main(int argc, char** argv) {
     std::printf("%.1f s: %s, harm %.3f to %.3f%s\n", time_s,
                 (*candidates)[best.candidate].name.c_str(), best.interval.lowest,
                 best.interval.highest, answer.proved ? "" : ", others are in the race");
+
+    next += std::chrono::milliseconds(100);
+    std::this_thread::sleep_until(next);
   }
 }

@@ -41,13 +41,14 @@ CRASHRANK_API const char* crashrank_version(void);
 typedef int32_t crashrank_status;
 /// Values of crashrank_status.
 enum {
-  CRASHRANK_OK = 0,             ///< done
-  CRASHRANK_INTERNAL = 1,       ///< the library's or the machine's own failure; no memory
-  CRASHRANK_USAGE = 2,          ///< a call that has no meaning: NULL, an index out of range
-  CRASHRANK_BAD_INPUT = 3,      ///< a file, mesh, scenario or pose is not acceptable
-  CRASHRANK_OUT_OF_BUDGET = 4,  ///< a deadline, memory or work budget ended the work
-  CRASHRANK_NOT_FOUND = 5,      ///< a file or program is missing or unreadable
-  CRASHRANK_LIMIT_EXCEEDED = 6  ///< input larger than a stated limit
+  CRASHRANK_OK = 0,              ///< done
+  CRASHRANK_INTERNAL = 1,        ///< the library's or the machine's own failure
+  CRASHRANK_USAGE = 2,           ///< a call that has no meaning: NULL, an index out of range
+  CRASHRANK_BAD_INPUT = 3,       ///< a file, mesh, scenario or pose is not acceptable
+  CRASHRANK_OUT_OF_BUDGET = 4,   ///< a deadline, memory or work budget ended the work
+  CRASHRANK_NOT_FOUND = 5,       ///< a file or program is missing or unreadable
+  CRASHRANK_LIMIT_EXCEEDED = 6,  ///< input larger than a stated limit
+  CRASHRANK_OUT_OF_MEMORY = 7  ///< an allocation failed; nothing was kept, the call may be repeated
 };
 
 /// What went wrong, in the caller's memory. A call that succeeds leaves it alone.
@@ -69,7 +70,7 @@ typedef struct crashrank_ranking crashrank_ranking;
 
 // ---- Models -------------------------------------------------------------------------------------
 
-/// An empty list. Errors: internal without memory.
+/// An empty list. Errors: out_of_memory.
 CRASHRANK_API crashrank_status crashrank_models_create(crashrank_models** models,
                                                        crashrank_error* error);
 /// Ends it; NULL is left alone.
@@ -92,6 +93,10 @@ CRASHRANK_API crashrank_status crashrank_models_add(crashrank_models* models,
                                                     size_t triangle_count,
                                                     const crashrank_part* parts, size_t part_count,
                                                     crashrank_error* error);
+/// Adds a model file, as `crashrank compile` writes it: checked whole, and ready in about a
+/// millisecond for 100,000 triangles. Errors: not_found, bad_input, limit_exceeded.
+CRASHRANK_API crashrank_status crashrank_models_load(crashrank_models* models, const char* file,
+                                                     crashrank_error* error);
 /// Number of models, 0 for NULL.
 CRASHRANK_API size_t crashrank_models_size(const crashrank_models* models);
 /// Number of triangles of a model, 0 where there is none.
@@ -110,7 +115,7 @@ typedef struct crashrank_pair {
   int32_t b;  ///< triangle of the second
 } crashrank_pair;
 
-/// Working memory for one thread. Errors: internal without memory.
+/// Working memory for one thread. Errors: out_of_memory.
 CRASHRANK_API crashrank_status crashrank_query_create(crashrank_query** query,
                                                       crashrank_error* error);
 /// Ends it; NULL is left alone.
@@ -232,7 +237,7 @@ CRASHRANK_API const char* crashrank_scenario_model_path(const crashrank_scenario
 /// Begin with all zero: that is the default of everything.
 typedef struct crashrank_rank_options {
   const char* measure;  ///< polygons, area, closing-energy, delta-v, energy, intrusion or harm;
-                        ///< NULL: as the scenario says (a scenario made here: polygons)
+                        ///< NULL: as the scenario says (a scenario made here: harm)
   uint32_t workers;     ///< threads that share the work, 64 at most; the answer is the same
   int32_t json;         ///< other than 0: crashrank_ranking_json has an answer
 } crashrank_rank_options;
@@ -278,11 +283,82 @@ CRASHRANK_API const char* crashrank_ranking_unit(const crashrank_ranking* rankin
 /// a zero; the ranking's. NULL where the options did not ask for it.
 CRASHRANK_API const char* crashrank_ranking_json(const crashrank_ranking* ranking);
 
+// ---- Ranking against a deadline -----------------------------------------------------------------
+
+/// Ranks again and again in memory set aside once.
+typedef struct crashrank_ranker crashrank_ranker;
+
+/// Begin with all zero: that is the default of everything.
+typedef struct crashrank_ranker_options {
+  const char* measure;       ///< as in crashrank_rank_options
+  uint32_t workers;          ///< the calling thread and `workers` - 1 more, 64 at most
+  uint32_t most_candidates;  ///< memory is set aside for so many; 0: 1024
+  uint32_t most_actors;      ///< 0: 64
+} crashrank_ranker_options;
+
+/// Sets up workers, memory and the scenario's situation. `models`, which have to stay as they are
+/// for as long as the ranker lives, belong to the scenario's shapes as in crashrank_rank.
+/// Errors: as crashrank_rank; usage where the limits are exceeded. Allocates, starts threads.
+CRASHRANK_API crashrank_status crashrank_ranker_create(const crashrank_scenario* scenario,
+                                                       const crashrank_models* models,
+                                                       const crashrank_ranker_options* options,
+                                                       crashrank_ranker** ranker,
+                                                       crashrank_error* error);
+/// Ends it, and its workers; NULL is left alone.
+CRASHRANK_API void crashrank_ranker_free(crashrank_ranker* ranker);
+/// The situation has changed: takes the ego, the motions of the actors (the same, in the same
+/// order) and the candidates from a scenario over the same shapes. Allocates. Errors: usage,
+/// bad_input; the ranker then keeps its candidates.
+CRASHRANK_API crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
+                                                       const crashrank_scenario* scenario,
+                                                       crashrank_error* error);
+
+/// When a ranking ends at the latest.
+typedef struct crashrank_budget {
+  double deadline_s;         ///< counted from the call; 0: none
+  uint64_t work;             ///< in tests, deterministic; 0: none
+  int32_t first_place_only;  ///< other than 0: ends as soon as the first place is proved
+} crashrank_budget;
+
+/// A candidate of an answer. What is not known is NaN.
+typedef struct crashrank_ranked {
+  uint64_t candidate;        ///< index, see crashrank_ranker_candidate_name
+  double score;              ///< the final one
+  double lowest_score;       ///< the interval contains the final score, whatever was left undone
+  double highest_score;      ///< and its upper end
+  double time_of_impact_s;   ///< from now
+  double closing_speed_mps;  ///< of the points that meet
+  int32_t in_race;           ///< can still be first
+  int32_t collides;          ///< as far as it is known
+} crashrank_ranked;
+
+/// What was known in time. `ranking`, most promising first, is the ranker's until its next call.
+typedef struct crashrank_answer {
+  const crashrank_ranked* ranking;  ///< every candidate once
+  size_t size;                      ///< of the ranking
+  size_t in_race;                   ///< how many can still be first
+  uint64_t hash;     ///< of the ranking, the same on every machine whenever the answer is
+  double elapsed_s;  ///< from the call on
+  int32_t complete;  ///< every score is known
+  int32_t proved;    ///< no other candidate can still take the first place
+} crashrank_answer;
+
+/// Ranks within a budget; NULL: without end. Allocates nothing, and blocks for its own workers
+/// alone (crashrank/rank/ranker.hpp names the measures whose last stage allocates). One thread at
+/// a time for each ranker. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker,
+                                                     const crashrank_budget* budget,
+                                                     crashrank_answer* answer,
+                                                     crashrank_error* error);
+/// Name of a candidate, NULL where there is none. The ranker's, until its next update.
+CRASHRANK_API const char* crashrank_ranker_candidate_name(const crashrank_ranker* ranker,
+                                                          size_t candidate);
+
 // ---- Mesh files: in the library crashrank_import ------------------------------------------------
 
 /// Reads a mesh file (OBJ, STL, PLY, OFF, glTF, Collada, FBX, 3DS, AC3D) as it stands, in a process
-/// of its own, and adds its model. Blocks until that has ended. Errors: bad_input, not_found,
-/// limit_exceeded; internal where the importer cannot be started.
+/// of its own, or a model file here, and adds its model. Blocks until that has ended. Errors:
+/// bad_input, not_found, limit_exceeded; internal where the importer cannot be started.
 CRASHRANK_API crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
                                                        crashrank_error* error);
 /// Adds the models of all shapes of a loaded scenario, in their order, read as the scenario says;

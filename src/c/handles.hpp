@@ -55,6 +55,8 @@ inline crashrank_status status_of(ErrorCode code) {
       return CRASHRANK_LIMIT_EXCEEDED;
     case ErrorCode::out_of_budget:
       return CRASHRANK_OUT_OF_BUDGET;
+    case ErrorCode::out_of_memory:
+      return CRASHRANK_OUT_OF_MEMORY;
     default:
       return CRASHRANK_INTERNAL;
   }
@@ -91,7 +93,7 @@ crashrank_status guarded(crashrank_error* error, const Function& function) noexc
   try {
     return function();
   } catch (const std::bad_alloc&) {
-    return refuse(CRASHRANK_INTERNAL, "there is not enough memory", error);
+    return refuse(CRASHRANK_OUT_OF_MEMORY, "there is not enough memory", error);
   } catch (const std::exception& problem) {
     return refuse(CRASHRANK_INTERNAL, problem.what(), error);
   } catch (...) {

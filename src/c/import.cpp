@@ -1,5 +1,6 @@
 #include "crashrank/mesh/import.hpp"
 #include "c/handles.hpp"
+#include "crashrank/tree/model_file.hpp"
 
 #include <iterator>
 #include <utility>
@@ -12,6 +13,11 @@ using c::refuse;
 using c::refuse_null;
 
 Result<Model> import_model(const std::string& path, const ImportTransform& transform) {
+  if (is_model_file(path)) {
+    Result<LoadedModel> loaded = load_model(path);
+    if (!loaded) return loaded.error();
+    return std::move(loaded->stored.model);
+  }
   ImportOptions options;
   options.transform = transform;
   Result<ImportedMesh> imported = import_mesh(path, options);

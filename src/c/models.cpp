@@ -1,6 +1,7 @@
 #include "c/handles.hpp"
 
 #include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/tree/model_file.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -97,6 +98,17 @@ crashrank_status crashrank_models_add(crashrank_models* models, const float* ver
     Result<Model> model = make_model(std::move(mesh));
     if (!model) return refuse(model.error(), error);
     models->list.push_back(std::move(*model));
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_models_load(crashrank_models* models, const char* file,
+                                       crashrank_error* error) {
+  if (models == nullptr || file == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    Result<LoadedModel> loaded = load_model(file);
+    if (!loaded) return refuse(loaded.error(), error);
+    models->list.push_back(std::move(loaded->stored.model));
     return CRASHRANK_OK;
   });
 }

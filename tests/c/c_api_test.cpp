@@ -1,10 +1,12 @@
 #include "crashrank/crashrank.h"
 #include "crashrank/crashrank.hpp"
 #include "crashrank/mesh/import.hpp"
+#include "crashrank/tree/model_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -19,6 +21,7 @@ template <auto Free> struct With {
 using Models = std::unique_ptr<crashrank_models, With<crashrank_models_free>>;
 using Query = std::unique_ptr<crashrank_query, With<crashrank_query_free>>;
 using Scenario = std::unique_ptr<crashrank_scenario, With<crashrank_scenario_free>>;
+using Ranker = std::unique_ptr<crashrank_ranker, With<crashrank_ranker_free>>;
 using Ranking = std::unique_ptr<crashrank_ranking, With<crashrank_ranking_free>>;
 
 /// Two crossing triangles and one apart.
@@ -254,6 +257,88 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
   };
   EXPECT_EQ(without_time(crashrank_ranking_json(ranking.get())),
             without_time(ranking_json(*read, bodies, *expected)));
+}
+
+TEST(CApi, ARankerAnswersAsRankDoesAndWithinABudgetSoundly) {
+  const std::string file = CRASHRANK_SCENARIOS "/crossing_traffic.json";
+  crashrank_error error{};
+  crashrank_scenario* made = nullptr;
+  ASSERT_EQ(crashrank_scenario_load(file.c_str(), &made, &error), CRASHRANK_OK) << error.message;
+  const Scenario scenario(made);
+  const Models models = make_models();
+  ASSERT_EQ(crashrank_models_import_scenario(models.get(), scenario.get(), &error), CRASHRANK_OK)
+      << error.message;
+  crashrank_ranker_options options{};
+  options.measure = "closing-energy";
+  crashrank_ranker* prepared = nullptr;
+  ASSERT_EQ(crashrank_ranker_create(scenario.get(), models.get(), &options, &prepared, &error),
+            CRASHRANK_OK)
+      << error.message;
+  const Ranker ranker(prepared);
+  crashrank_answer full{};
+  ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &full, &error), CRASHRANK_OK);
+  EXPECT_EQ(full.complete, 1);
+  EXPECT_EQ(full.proved, 1);
+
+  crashrank_rank_options same{};
+  same.measure = "closing-energy";
+  crashrank_ranking* answer = nullptr;
+  ASSERT_EQ(crashrank_rank(scenario.get(), models.get(), &same, &answer, &error), CRASHRANK_OK);
+  const Ranking ranking(answer);
+  ASSERT_EQ(full.size, crashrank_ranking_size(ranking.get()));
+  std::vector<double> scores(full.size);
+  for (size_t place = 0; place < full.size; ++place) {
+    crashrank_choice choice{};
+    ASSERT_EQ(crashrank_ranking_get(ranking.get(), place, &choice, &error), CRASHRANK_OK);
+    const crashrank_ranked& ranked = full.ranking[place];
+    EXPECT_STREQ(crashrank_ranker_candidate_name(ranker.get(), ranked.candidate), choice.candidate);
+    EXPECT_EQ(ranked.score, choice.score);
+    scores.at(ranked.candidate) = ranked.score;
+  }
+
+  const uint64_t hash = full.hash;
+  crashrank_budget budget{};
+  budget.work = 1;
+  crashrank_answer cut{};
+  ASSERT_EQ(crashrank_ranker_rank(ranker.get(), &budget, &cut, &error), CRASHRANK_OK);
+  EXPECT_EQ(cut.complete, 0);
+  ASSERT_EQ(cut.size, scores.size());
+  for (size_t place = 0; place < cut.size; ++place) {
+    const crashrank_ranked& ranked = cut.ranking[place];
+    EXPECT_LE(ranked.lowest_score, scores.at(ranked.candidate));
+    EXPECT_GE(ranked.highest_score, scores.at(ranked.candidate));
+  }
+
+  ASSERT_EQ(crashrank_ranker_update(ranker.get(), scenario.get(), &error), CRASHRANK_OK);
+  crashrank_answer again{};
+  ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &again, &error), CRASHRANK_OK);
+  EXPECT_EQ(again.hash, hash);
+  EXPECT_EQ(crashrank_ranker_rank(nullptr, nullptr, &again, &error), CRASHRANK_USAGE);
+  EXPECT_EQ(crashrank_ranker_candidate_name(ranker.get(), 1000), nullptr);
+}
+
+TEST(CApi, AModelFileLoadsAsTheModelItWasSavedFrom) {
+  const crashrank::Result<crashrank::ImportedMesh> imported =
+      crashrank::import_mesh(CRASHRANK_SCENARIOS "/../models/pole.obj");
+  ASSERT_TRUE(imported.ok());
+  crashrank::Result<crashrank::Model> model = crashrank::make_model(imported->mesh);
+  ASSERT_TRUE(model.ok());
+  crashrank::StoredModel stored;
+  stored.model = *model;
+  stored.mass = crashrank::shell_properties(model->mesh);
+  const std::string file = testing::TempDir() + "/c_api_pole.crm";
+  ASSERT_TRUE(crashrank::save_model(stored, file, true).ok());
+  const Models models = make_models();
+  crashrank_error error{};
+  ASSERT_EQ(crashrank_models_load(models.get(), file.c_str(), &error), CRASHRANK_OK)
+      << error.message;
+  EXPECT_EQ(crashrank_models_import(models.get(), file.c_str(), &error), CRASHRANK_OK)
+      << error.message;
+  ASSERT_EQ(crashrank_models_size(models.get()), 2U);
+  EXPECT_EQ(crashrank_models_triangles(models.get(), 0), model->mesh.size());
+  EXPECT_EQ(crashrank_models_triangles(models.get(), 1), model->mesh.size());
+  EXPECT_EQ(crashrank_models_load(models.get(), "no/such/model.crm", &error), CRASHRANK_NOT_FOUND);
+  std::remove(file.c_str());
 }
 
 }  // namespace

@@ -1,0 +1,131 @@
+#include "crashrank/rank/ranker.hpp"
+#include "c/handles.hpp"
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+struct crashrank_ranker {
+  crashrank::Ranker ranker;
+  std::vector<double> ego_lengths_m;  ///< by model
+  std::vector<crashrank::Candidate> candidates;
+  std::vector<crashrank_ranked> told;
+};
+
+namespace {
+
+using namespace crashrank;
+using c::guarded;
+using c::refuse;
+using c::refuse_null;
+
+/// The candidates and motions of a scenario. Errors: bad_input.
+Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
+  if (scenario.ego.model >= ranker.ego_lengths_m.size()) {
+    return make_error(ErrorCode::usage, "the ego's model is not there");
+  }
+  Result<std::vector<Candidate>> candidates =
+      make_candidates(scenario, ranker.ego_lengths_m[scenario.ego.model]);
+  if (!candidates) return candidates.error();
+  std::vector<Motion> motions;
+  for (const ScenarioActor& actor : scenario.actors) {
+    Result<Motion> motion = make_motion(actor);
+    if (!motion) return motion.error();
+    motions.push_back(std::move(*motion));
+  }
+  if (Status moved = ranker.ranker.move_actors(scenario.ego.pose, motions); !moved) return moved;
+  ranker.candidates = std::move(*candidates);
+  ranker.told.reserve(ranker.candidates.size());
+  return Success{};
+}
+
+}  // namespace
+
+crashrank_status crashrank_ranker_create(const crashrank_scenario* scenario,
+                                         const crashrank_models* models,
+                                         const crashrank_ranker_options* options,
+                                         crashrank_ranker** ranker, crashrank_error* error) {
+  if (scenario == nullptr || models == nullptr || ranker == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    RankerOptions how;
+    if (options != nullptr) {
+      how.rank.workers = options->workers;
+      if (options->measure != nullptr) {
+        const Result<Measure> measure = measure_from_name(options->measure);
+        if (!measure) return refuse(measure.error(), error);
+        how.rank.measure = *measure;
+      }
+      if (options->most_candidates > 0) how.limits.candidates = options->most_candidates;
+      if (options->most_actors > 0) how.limits.actors = options->most_actors;
+    }
+    Result<Ranker> made = Ranker::prepare(scenario->scenario, models->list, how);
+    if (!made) return refuse(made.error(), error);
+    auto handle =
+        std::make_unique<crashrank_ranker>(crashrank_ranker{std::move(*made), {}, {}, {}});
+    for (const Model& model : models->list) {
+      handle->ego_lengths_m.push_back(static_cast<double>(model.mesh.bounds().extent().x()));
+    }
+    if (const Status ready = situate(*handle, scenario->scenario); !ready) {
+      return refuse(ready.error(), error);
+    }
+    *ranker = handle.release();
+    return CRASHRANK_OK;
+  });
+}
+
+void crashrank_ranker_free(crashrank_ranker* ranker) { delete ranker; }
+
+crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
+                                         const crashrank_scenario* scenario,
+                                         crashrank_error* error) {
+  if (ranker == nullptr || scenario == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    const Status ready = situate(*ranker, scenario->scenario);
+    if (!ready) return refuse(ready.error(), error);
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank_budget* budget,
+                                       crashrank_answer* answer, crashrank_error* error) {
+  if (ranker == nullptr || answer == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    RankBudget within;
+    if (budget != nullptr) {
+      if (budget->deadline_s > 0.0) within.deadline_s = budget->deadline_s;
+      if (budget->work > 0) within.work = budget->work;
+      within.first_place_only = budget->first_place_only != 0;
+    }
+    const RankerAnswer ranked = ranker->ranker.rank(ranker->candidates, within);
+    if (!ranked.status) return refuse(ranked.status.error(), error);
+    ranker->told.clear();
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (const RankedCandidate& one : ranked.ranking) {
+      crashrank_ranked told{};
+      told.candidate = one.candidate;
+      told.score = one.known ? one.score : unknown;
+      told.lowest_score = one.interval.lowest;
+      told.highest_score = one.interval.highest;
+      told.time_of_impact_s = one.collides ? one.time_of_impact_s : unknown;
+      told.closing_speed_mps = one.collides ? one.closing_speed_mps : unknown;
+      told.in_race = one.in_race ? 1 : 0;
+      told.collides = one.collides ? 1 : 0;
+      ranker->told.push_back(told);
+    }
+    crashrank_answer made{};
+    made.ranking = ranker->told.data();
+    made.size = ranker->told.size();
+    made.in_race = ranked.in_race;
+    made.hash = ranked.hash;
+    made.elapsed_s = ranked.elapsed_s;
+    made.complete = ranked.complete ? 1 : 0;
+    made.proved = ranked.proved ? 1 : 0;
+    *answer = made;
+    return CRASHRANK_OK;
+  });
+}
+
+const char* crashrank_ranker_candidate_name(const crashrank_ranker* ranker, size_t candidate) {
+  if (ranker == nullptr || candidate >= ranker->candidates.size()) return nullptr;
+  return ranker->candidates[candidate].name.c_str();
+}
