@@ -85,7 +85,7 @@ TEST(RankingText, TellsNoDigitThatTheIntervalLeavesOpen) {
   const std::string text = ranking_text(told.scenario, told.models, told.result);
   for (const char* word :
        {"0.2 ", "0.1 to 0.4", "4300", "4000 to 5000", "2-3", "not separable", "38 %", "129 samples",
-        "cyclist 0.75", "31 in a bus", "MAIS3+", "choice", "friction", "restitution"}) {
+        "cyclist 0.75", "31 in a bus", "MAIS3+", "choice", "Friction", "restitution"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
   }
   EXPECT_NE(text.find("rank 2 and 3 not separable"), std::string::npos) << text;
