@@ -96,10 +96,11 @@ inline void center_half(float min, float max, float& center, float& half) {
   half = round_up(reach * (1.0 + 0x1p-50));
 }
 
-/// Collapses a binary tree so that the surfaces of the wide nodes, which stand for the chance that
-/// one is visited, sum up to the least. Found by dynamic programming, as Ylitie, Karras and Laine
+/// Collapses a binary tree. Near the root the largest boxes are opened first. Below, the surfaces
+/// of the wide nodes, which stand for the chance that one is visited, sum up to the least: found by
+/// dynamic programming, as Ylitie, Karras and Laine
 /// 2017 do ("Efficient incoherent ray traversal on GPUs through compressed wide BVHs"). Opening the
-/// largest boxes from the top down instead leaves the nodes near the clusters half empty.
+/// largest boxes all the way down leaves the nodes near the clusters half empty.
 class WideBuilder {
 public:
   explicit WideBuilder(const AabbTree& tree)
@@ -145,6 +146,9 @@ private:
     std::uint8_t left_of_all = 0;  ///< as left[7], where the node has to be opened
   };
 
+  /// Nodes of more triangles than this count as near the root.
+  static constexpr std::uint32_t top_triangles = 4096;
+
   bool is_cluster(std::size_t binary) const { return slots_[binary].count <= wide_lanes; }
 
   void plan(const Node& node, Plan& plan) const {
@@ -186,12 +190,43 @@ private:
     choose_lanes(child + 1, right, plans_[child + 1].left[right - 1], lane, used);
   }
 
+  /// The lanes of a node near the root, in slot order: the largest boxes are opened first. Queries
+  /// between bodies that hardly meet end up here, and mind that more than how well the nodes below
+  /// are filled.
+  void open_largest(std::uint32_t binary, Lanes8& lane, std::size_t& used) {
+    lane[0] = binary;
+    used = 1;
+    while (used < wide_lanes) {
+      std::size_t largest = wide_lanes;
+      float size = -1.0F;
+      for (std::size_t i = 0; i < used; ++i) {
+        if (is_cluster(lane[i])) continue;
+        const float own = half_area(tree_.nodes[lane[i]].box);
+        if (!(own <= size)) {  // NaN, from boxes too large for a float, is opened as well
+          size = own;
+          largest = i;
+        }
+      }
+      if (largest == wide_lanes) break;
+      opened_.push_back(lane[largest]);
+      const std::uint32_t left = tree_.nodes[lane[largest]].first;
+      for (std::size_t i = used; i > largest + 1; --i) lane[i] = lane[i - 1];
+      lane[largest] = left;
+      lane[largest + 1] = left + 1;
+      ++used;
+    }
+  }
+
   void fill(const Open& open) {
     wide_.depth = std::max(wide_.depth, open.level);
     Lanes8 lane{};
     std::size_t used = 0;
     opened_.clear();
-    choose_lanes(open.binary, wide_lanes, plans_[open.binary].left_of_all, lane, used);
+    if (slots_[open.binary].count > top_triangles) {
+      open_largest(open.binary, lane, used);
+    } else {
+      choose_lanes(open.binary, wide_lanes, plans_[open.binary].left_of_all, lane, used);
+    }
     place(open, lane, used);
     for (const std::uint32_t binary : opened_) record_lanes(open.wide, binary, lane, used);
   }
