@@ -258,9 +258,11 @@ void add_rank(CLI::App& app, Action& action) {
                    "Answer within this time, in what is known by then; counted from the call, "
                    "meshes and trees being ready")
       ->check(CLI::Range(0.0, 1e9));
-  command->add_option("--work-budget", options->work_budget,
-                      "Answer in what is known after this many tests of boxes, triangles and "
-                      "facets; the same on every machine");
+  command
+      ->add_option("--work-budget", options->work_budget,
+                   "Answer in what is known after this many tests of boxes, triangles and "
+                   "facets; the same on every machine")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--first-place", options->first_place,
                     "Answer as soon as the first place is proved");
   command->add_option("--policy", options->policy, policy_help());
