@@ -1,7 +1,7 @@
 #include "crashrank/rank/ranker.hpp"
 
-#include "crashrank/dispatch/worker_pool.hpp"
 #include "crashrank/base/guarded.hpp"
+#include "crashrank/dispatch/worker_pool.hpp"
 #include "rank/race.hpp"
 #include "rank/refine.hpp"
 #include "rank/scenario_check.hpp"

@@ -69,7 +69,7 @@ def main():
                                text=True, timeout=120, check=True)
         assert "Uncaught" not in shown.stderr, shown.stderr
         assert 'data-view="ready"' in shown.stdout, shown.stderr
-        assert "Least destructive" in shown.stdout
+        assert "Least harmful" in shown.stdout
         picture = os.path.join(folder, "page.png")
         subprocess.run(arguments + ["--screenshot=" + picture, "file://" + page],
                        capture_output=True, timeout=120, check=True)

@@ -28,8 +28,8 @@ struct ImpactOptions {
   /// The caller knows that the bodies are apart at the start (it asked `initial_state` before, for
   /// instance once for all candidates of one scene): the start is not tested again.
   bool start_is_apart = false;
-  /// Asked every few hundred steps, some 20 µs, with `stop_context`; once it says true the answer is
-  /// `undecided`. May be null.
+  /// Asked every few hundred steps, some 20 µs, with `stop_context`; once it says true the answer
+  /// is `undecided`. May be null.
   bool (*stop)(void* stop_context) = nullptr;
   void* stop_context = nullptr;
 };
