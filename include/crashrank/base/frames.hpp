@@ -60,12 +60,12 @@ inline Pose flip_left_handed(const Pose& pose) {
 /// right, nose up and right side down are positive. CARLA's vehicles have their origin elsewhere
 /// than the rear axle: move the model (ImportTransform::origin_m) or the pose.
 struct CarlaTransform {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double z_m = 0.0;
-  double pitch_deg = 0.0;
-  double yaw_deg = 0.0;
-  double roll_deg = 0.0;
+  double x_m = 0.0;        ///< forward
+  double y_m = 0.0;        ///< to the right
+  double z_m = 0.0;        ///< up
+  double pitch_deg = 0.0;  ///< nose up
+  double yaw_deg = 0.0;    ///< to the right
+  double roll_deg = 0.0;   ///< right side down
 };
 
 /// CARLA's yaw rates are degrees to the right; this library's radians to the left.

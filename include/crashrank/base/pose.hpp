@@ -14,8 +14,8 @@ namespace crashrank {
 /// Rigid motion: x_world = rotation · x_body + translation. Metres. Frames follow ISO 8855 and
 /// REP-103: x forward, y left, z up, right-handed.
 struct Pose {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< body axes in the world, by column
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< the body's origin in the world, m
 };
 
 /// Carries a float32 vertex with the one operation order that every exact answer refers to:
@@ -53,6 +53,7 @@ inline Pose compose(const Pose& outer, const Pose& inner) {
           detail::rotate(outer.rotation, inner.translation) + outer.translation};
 }
 
+/// The pose that undoes this one: world to body.
 inline Pose inverse(const Pose& pose) {
   const Eigen::Matrix3d back = pose.rotation.transpose();
   return {back, -detail::rotate(back, pose.translation)};

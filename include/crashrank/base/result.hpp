@@ -20,8 +20,8 @@ enum class ErrorCode {
 
 /// A failure told so that a person can mend it: where, what, and what to do about it.
 struct Error {
-  ErrorCode code = ErrorCode::internal;
-  std::string file;    ///< file concerned, empty where none is
+  ErrorCode code = ErrorCode::internal;  ///< what kind of trouble
+  std::string file;                      ///< file concerned, empty where none is
   std::string place;   ///< element, line or key in the file, empty where the whole file is meant
   std::string reason;  ///< what is wrong, a clause without a full stop
   std::string remedy;  ///< what to do about it, empty where nothing is known
@@ -53,33 +53,46 @@ inline Error out_of_memory() noexcept {
 /// a broken invariant of the caller and asserts.
 template <class T> class [[nodiscard]] Result {
 public:
+  /// Success.
   Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+  /// Failure.
   Result(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
 
+  /// True where there is a value.
   bool ok() const noexcept { return state_.index() == 0; }
+  /// The same.
   explicit operator bool() const noexcept { return ok(); }
 
+  /// The value, which has to be there.
   T& value() & {
     assert(ok());
     return *std::get_if<0>(&state_);
   }
+  /// The value, which has to be there.
   const T& value() const& {
     assert(ok());
     return *std::get_if<0>(&state_);
   }
+  /// The value, moved out.
   T&& value() && {
     assert(ok());
     return std::move(*std::get_if<0>(&state_));
   }
+  /// The value, which has to be there.
   T& operator*() & { return value(); }
+  /// The value, which has to be there.
   const T& operator*() const& { return value(); }
+  /// The value, which has to be there.
   T* operator->() { return &value(); }
+  /// The value, which has to be there.
   const T* operator->() const { return &value(); }
 
+  /// The error, which has to be there.
   const Error& error() const& {
     assert(!ok());
     return *std::get_if<1>(&state_);
   }
+  /// The error, which has to be there.
   Error& error() & {
     assert(!ok());
     return *std::get_if<1>(&state_);

@@ -12,6 +12,7 @@ namespace crashrank {
 /// the same on every machine.
 class CRASHRANK_API Sha256 {
 public:
+  /// Adds bytes to the message.
   void update(const void* data, std::size_t bytes) noexcept;
   /// Ends the message and returns the digest; the object is spent afterwards.
   std::array<std::uint8_t, 32> digest() noexcept;

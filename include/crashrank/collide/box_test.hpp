@@ -16,9 +16,9 @@ namespace crashrank {
 struct BoxTransform {
   Eigen::Matrix3d rotation;      ///< B's box axes in A's box axes
   Eigen::Matrix3d abs_rotation;  ///< entrywise absolute values
-  Eigen::Vector3d translation;
-  double margin_a = 0.0;  ///< m, added along A's axes
-  double margin_b = 0.0;  ///< m, added along B's axes
+  Eigen::Vector3d translation;   ///< B's origin in A's axes, m
+  double margin_a = 0.0;         ///< m, added along A's axes
+  double margin_b = 0.0;         ///< m, added along B's axes
 };
 
 namespace detail {

@@ -33,6 +33,7 @@ public:
     split_below_root();
   }
 
+  /// How many boxes it holds.
   std::size_t size() const noexcept { return boxes_.size(); }
 
   /// Calls `found(index)` once for every box that overlaps this one, in an order that only depends

@@ -35,7 +35,7 @@ bool collide_leaves(const Tree& a, const Node& leaf_a, const Tree& b, const Node
 /// What a query writes to besides its answer, kept between queries so that a warm query allocates
 /// nothing. One per thread.
 struct CollideWorkspace {
-  std::vector<NodePair> stack;
+  std::vector<NodePair> stack;  ///< node pairs still to be tested
 
   /// Makes room for queries between trees of up to these depths.
   void prepare(std::uint32_t depth_a, std::uint32_t depth_b) {

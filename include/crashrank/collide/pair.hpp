@@ -7,10 +7,12 @@ namespace crashrank {
 
 /// Two triangles that share a point: indices into the meshes of A and of B, in file order.
 struct Pair {
-  std::int32_t a = 0;
-  std::int32_t b = 0;
+  std::int32_t a = 0;  ///< triangle of A, by its place in the mesh
+  std::int32_t b = 0;  ///< triangle of B
 
+  /// The same triangles.
   friend bool operator==(const Pair& p, const Pair& q) { return p.a == q.a && p.b == q.b; }
+  /// By a, then b.
   friend bool operator<(const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; }
 };
 
@@ -20,6 +22,7 @@ struct CollideWork {
   std::uint64_t primitive_tests = 0;  ///< Np: pairs of triangles tested
   std::uint64_t exact_tests = 0;      ///< of those, decided by exact arithmetic
 
+  /// Adds up.
   CollideWork& operator+=(const CollideWork& other) {
     bv_tests += other.bv_tests;
     primitive_tests += other.primitive_tests;
@@ -28,14 +31,16 @@ struct CollideWork {
   }
 };
 
+/// What a query is asked for.
 struct CollideOptions {
   bool any = false;  ///< stop at the first pair found
 };
 
+/// What a query found out.
 struct CollideResult {
-  bool intersecting = false;
-  std::size_t pairs = 0;  ///< pairs written to the caller's buffer
-  CollideWork work;
+  bool intersecting = false;  ///< at least one pair
+  std::size_t pairs = 0;      ///< pairs written to the caller's buffer
+  CollideWork work;           ///< tests done
 };
 
 }  // namespace crashrank

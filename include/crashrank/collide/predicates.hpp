@@ -75,6 +75,7 @@ inline constexpr double underflow_floor = 0x1p-1020;
 // NaN, for which both comparisons below are false.
 // Inlined always: how much else a translation unit holds should not decide what a triangle test
 // takes.
+/// Sign of (b − a)·((c − a) × (d − a)), exact: 1, 0 or -1. Counts what the filter left open.
 [[gnu::always_inline]] inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                            const Eigen::Vector3d& c, const Eigen::Vector3d& d,
                                            std::uint64_t& exact_calls) {
@@ -114,6 +115,7 @@ inline constexpr double underflow_floor = 0x1p-1020;
 }
 
 // As above with two differences, one product and one sum on every monomial: 4.1·u·P.
+/// Sign of the turn a, b, c seen along an axis, exact: 1, 0 or -1. Counts as `orient3d`.
 inline int orient2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                     int dropped, std::uint64_t& exact_calls) {
   const int i = (dropped + 1) % 3;

@@ -12,8 +12,8 @@ namespace crashrank {
 
 /// A node of A's tree with a node of B's.
 struct NodePair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
+  std::uint32_t a = 0;  ///< node of A
+  std::uint32_t b = 0;  ///< node of B
 };
 
 /// Stack entries that `traverse` needs below two nodes of trees of these depths. Every step takes

@@ -18,8 +18,8 @@ namespace crashrank {
 struct TriangleGap {
   double lower = 0.0;  ///< proved by a separating direction; 0 exactly when the triangles intersect
   double upper = 0.0;  ///< distance of the two points
-  Eigen::Vector3d point_a = Eigen::Vector3d::Zero();
-  Eigen::Vector3d point_b = Eigen::Vector3d::Zero();
+  Eigen::Vector3d point_a = Eigen::Vector3d::Zero();  ///< nearest point of the first, m
+  Eigen::Vector3d point_b = Eigen::Vector3d::Zero();  ///< nearest point of the second, m
   /// Unit vector along which `lower` was proved, from A to B; zero when the triangles intersect or
   /// are apart by too little for a proof in doubles (`lower` is then the smallest positive number).
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -268,6 +268,7 @@ inline TriangleGap triangle_distance(const TriangleD& a, const TriangleD& b,
   return detail::GapSearch(a, b).run(exact_calls);
 }
 
+/// The same, without counting.
 inline TriangleGap triangle_distance(const TriangleD& a, const TriangleD& b) {
   std::uint64_t exact_calls = 0;
   return triangle_distance(a, b, exact_calls);

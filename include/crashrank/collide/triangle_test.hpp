@@ -15,13 +15,15 @@ namespace crashrank {
 
 /// Three corners in double, m, in A's frame: A's own, or B's as `carry` brings them there.
 struct TriangleD {
-  std::array<Eigen::Vector3d, 3> corner;
+  std::array<Eigen::Vector3d, 3> corner;  ///< m
 };
 
+/// The same corners in double.
 inline TriangleD to_double(const Triangle& t) {
   return {{t.corner[0].cast<double>(), t.corner[1].cast<double>(), t.corner[2].cast<double>()}};
 }
 
+/// Its corners, each carried by the pose.
 inline TriangleD carry(const Pose& pose, const Triangle& t) {
   return {{carry(pose, t.corner[0]), carry(pose, t.corner[1]), carry(pose, t.corner[2])}};
 }
@@ -199,6 +201,7 @@ inline bool triangles_intersect(const TriangleD& a, const TriangleD& b,
   return orient3d(a0, a1, b0, b1, exact_calls) <= 0 && orient3d(a0, a2, b0, b2, exact_calls) >= 0;
 }
 
+/// The same, without counting.
 inline bool triangles_intersect(const TriangleD& a, const TriangleD& b) {
   std::uint64_t exact_calls = 0;
   return triangles_intersect(a, b, exact_calls);

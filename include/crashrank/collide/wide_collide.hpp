@@ -14,17 +14,17 @@ namespace crashrank {
 
 /// Lanes of a node of A's wide tree against lanes of a node of B's, still to be tested.
 struct WideTask {
-  std::uint32_t a_node = 0;
-  std::uint32_t b_node = 0;
-  std::uint32_t a_lanes = 0;
-  std::uint32_t b_lanes = 0;
+  std::uint32_t a_node = 0;   ///< node of A's wide tree
+  std::uint32_t b_node = 0;   ///< node of B's wide tree
+  std::uint32_t a_lanes = 0;  ///< bit i: child i of A's node
+  std::uint32_t b_lanes = 0;  ///< bit i: child i of B's node
 };
 
 /// What a query between models writes to besides its answer; one per thread. It grows with the
 /// deepest trees met and allocates nothing afterwards.
 struct ModelWorkspace {
-  CollideWorkspace scalar;
-  std::vector<WideTask> wide;
+  CollideWorkspace scalar;     ///< the scalar engine's
+  std::vector<WideTask> wide;  ///< tasks still to be done
 
   /// Room for all queries between these two models. A step of the vector engine takes one task off
   /// its stack and puts on at most 64: with i of 8 lanes inner nodes in A and j in B, i·j pairs of

@@ -15,6 +15,7 @@
 
 namespace crashrank {
 
+/// How a contact is measured.
 struct ContactOptions {
   /// How deep the bodies are moved into each other, along the closing velocity at first contact,
   /// before the region is looked at; doubled up to three times while no surfaces meet. m. The
@@ -38,7 +39,7 @@ struct ContactFacts {
   /// contact; of the inner body's root box where one lies inside the other.
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< unit, from A to B
-  NormalSource normal_source = NormalSource::motion;
+  NormalSource normal_source = NormalSource::motion;  ///< where the normal comes from
   Eigen::Vector3d relative_velocity_mps =
       Eigen::Vector3d::Zero();      ///< of A against B, at the point
   double normal_speed_mps = 0.0;    ///< its part along the normal, positive when approaching
@@ -48,10 +49,10 @@ struct ContactFacts {
   /// high across that, and the projected area within the curve (0 where faces do not all point
   /// outward). All 0 where no surfaces meet.
   double overlap_width_m = 0.0;
-  double overlap_height_m = 0.0;
-  double overlap_area_m2 = 0.0;
-  double lowest_m = 0.0;  ///< world z of the region: what is under and what over it
-  double highest_m = 0.0;
+  double overlap_height_m = 0.0;  ///< m
+  double overlap_area_m2 = 0.0;   ///< m²
+  double lowest_m = 0.0;          ///< world z of the region: what is under and what over it
+  double highest_m = 0.0;         ///< and its upper end
   Box region_a;           ///< bounds of the curve in A's body coordinates, empty without one
   Box region_b;           ///< in B's
   std::size_t pairs = 0;  ///< intersecting triangles at `time_s`
@@ -59,13 +60,14 @@ struct ContactFacts {
 
 /// Memory that `contact_facts` reuses, one for each thread.
 struct ContactWorkspace {
+  /// A piece of the curve along which the surfaces meet, m.
   struct Segment {
-    Eigen::Vector3d from;
-    Eigen::Vector3d to;
+    Eigen::Vector3d from;  ///< its beginning
+    Eigen::Vector3d to;    ///< its end
   };
-  CollideWorkspace collide;
-  std::vector<Pair> pairs;
-  std::vector<Segment> curve;
+  CollideWorkspace collide;    ///< for the pairs
+  std::vector<Pair> pairs;     ///< triangles that intersect
+  std::vector<Segment> curve;  ///< where they do
 };
 
 /// Looks at the contact that `impact` found (one that `hit()`s; for others the witness points

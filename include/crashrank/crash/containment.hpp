@@ -22,10 +22,11 @@ namespace crashrank {
 /// O(nodes), with a solid angle for each triangle where the rays disagree. Allocates nothing.
 CRASHRANK_API bool contains_point(const AabbTree& tree, const Eigen::Vector3d& point_m);
 
+/// Which body holds the other.
 enum class Containment {
   apart,   ///< neither has a part of its surface inside the other
   a_in_b,  ///< A, or a connected part of it, lies inside B
-  b_in_a,
+  b_in_a,  ///< B lies inside A
 };
 
 /// For two bodies whose surfaces do not meet: does one lie inside the other? Up to 16 triangles

@@ -11,6 +11,7 @@
 
 namespace crashrank {
 
+/// How finely crush is measured.
 struct CrushOptions {
   double cell_m = 0.05;     ///< width and height of the cells of the crush map
   double step_m = 0.02;     ///< by which the bodies are pressed together
@@ -28,9 +29,9 @@ struct PartIntrusion {
 struct BodyCrush {
   std::vector<double> depth_m;  ///< by cell of the map, along the view; 0 where untouched
   std::vector<double> end_m;    ///< by cell: where (u) its face ends up, once crushed
-  double deepest_m = 0.0;
-  double volume_m3 = 0.0;  ///< ∬ C dw dh
-  double energy_j = 0.0;
+  double deepest_m = 0.0;       ///< m
+  double volume_m3 = 0.0;       ///< ∬ C dw dh
+  double energy_j = 0.0;        ///< taken by it, J
   /// Speed at which the body would have to hit a rigid obstacle to take that energy (ISO 12353):
   /// E = m·EES²/2. 0 for a body that nothing moves.
   double ees_mps = 0.0;
@@ -39,13 +40,14 @@ struct BodyCrush {
   std::vector<PartIntrusion> parts;  ///< those moved, rising
 };
 
+/// Crush of both bodies.
 struct CrushResult {
-  ViewFrame frame;
+  ViewFrame frame;         ///< along what it was measured
   ViewGrid grid;           ///< of both maps, in the world as the bodies lay
   double pressed_m = 0.0;  ///< how far they were pressed together past first touch
   double energy_j = 0.0;   ///< of both; the energy asked for unless the depth ended first
-  BodyCrush a;
-  BodyCrush b;
+  BodyCrush a;             ///< of A
+  BodyCrush b;             ///< of B
 };
 
 /// Crush maps of two bodies at first contact. They are pressed together along `along` (horizontal,

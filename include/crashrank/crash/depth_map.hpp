@@ -17,9 +17,10 @@ namespace crashrank {
 /// up. Coordinates u (along), w (left), h (up) are metres from the origin; rows of `axes` are the
 /// three directions.
 struct ViewFrame {
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< rows: depth, width, height
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< m
 
+  /// A point in the frame, m.
   Eigen::Vector3d into(const Eigen::Vector3d& point_m) const { return axes * (point_m - origin_m); }
 };
 
@@ -29,21 +30,26 @@ CRASHRANK_API ViewFrame view_along(const Eigen::Vector3d& along, const Eigen::Ve
 
 /// Cells of a view: `columns` across w, `rows` across h.
 struct ViewGrid {
-  double low_w_m = 0.0;
-  double low_h_m = 0.0;
-  double cell_w_m = 0.05;
-  double cell_h_m = 0.05;
-  std::size_t columns = 0;
-  std::size_t rows = 0;
+  double low_w_m = 0.0;     ///< where the first column begins, m
+  double low_h_m = 0.0;     ///< where the first row begins, m
+  double cell_w_m = 0.05;   ///< width of a cell, m
+  double cell_h_m = 0.05;   ///< height of a cell, m
+  std::size_t columns = 0;  ///< cells along the width
+  std::size_t rows = 0;     ///< cells along the height
 
+  /// Number of cells.
   std::size_t size() const noexcept { return columns * rows; }
+  /// Middle of a column, m.
   double w_of(std::size_t column) const {
     return low_w_m + cell_w_m * (static_cast<double>(column) + 0.5);
   }
+  /// Middle of a row, m.
   double h_of(std::size_t row) const {
     return low_h_m + cell_h_m * (static_cast<double>(row) + 0.5);
   }
+  /// Area of a cell, m².
   double cell_area_m2() const noexcept { return cell_w_m * cell_h_m; }
+  /// Place of a cell in the lists.
   std::size_t index(std::size_t column, std::size_t row) const { return row * columns + column; }
 };
 
@@ -57,10 +63,11 @@ CRASHRANK_API ViewGrid grid_over(const Eigen::Vector2d& low, const Eigen::Vector
 /// The two outermost surfaces of a body seen along u, sampled at the middles of the cells: its
 /// least and greatest u. Cells that the body does not cover hold +infinity and -infinity.
 struct DepthMap {
-  ViewGrid grid;
-  std::vector<double> least_m;
-  std::vector<double> greatest_m;
+  ViewGrid grid;                   ///< its cells
+  std::vector<double> least_m;     ///< nearest depth in each cell, m
+  std::vector<double> greatest_m;  ///< furthest depth in each cell, m
 
+  /// True where the surface covers the cell.
   bool covered(std::size_t cell) const { return least_m[cell] <= greatest_m[cell]; }
 };
 

@@ -13,20 +13,21 @@ namespace crashrank {
 /// Mass of a body and how it is spread, in body coordinates. An infinite mass is a body that
 /// nothing moves (wall, pole); its inertia is not read.
 struct MassProperties {
-  double mass_kg = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  ///< centre of mass
+  double mass_kg = std::numeric_limits<double>::infinity();  ///< infinity: does not move
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();        ///< centre of mass
   /// About the centre of mass, symmetric, positive definite.
   Eigen::Matrix3d inertia_kgm2 = Eigen::Matrix3d::Identity();
 };
 
 /// A body at the instant of an impact, in world coordinates.
 struct RigidBody {
-  double mass_kg = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+  double mass_kg = std::numeric_limits<double>::infinity();    ///< infinity: does not move
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();          ///< centre of mass, world, m
   Eigen::Matrix3d inertia_kgm2 = Eigen::Matrix3d::Identity();  ///< about the centre of mass
   Velocity velocity;                                           ///< linear: of the centre of mass
   Eigen::Vector3d forward = Eigen::Vector3d::UnitX();          ///< the body's x axis
 
+  /// False for a body of infinite mass.
   bool movable() const noexcept { return mass_kg < std::numeric_limits<double>::infinity(); }
 };
 
@@ -40,19 +41,21 @@ enum class ImpulseSpace {
   spatial,  ///< all six
 };
 
+/// How bodies push each other.
 struct ImpulseOptions {
   /// Of the normal velocity at the contact. About 0.1 at medium and high speed, 0.2 to 0.4 where
   /// delta-v is 1 to 2 m/s (SAE 931842).
   double restitution = 0.1;
   /// Coulomb friction between the bodies; 0.3 is what openPASS uses.
   double friction = 0.3;
-  ImpulseSpace space = ImpulseSpace::planar;
+  ImpulseSpace space = ImpulseSpace::planar;  ///< in the plane or in space
 };
 
 /// What the impact does to one body. World axes.
 struct BodyImpulse {
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();   ///< on this body, at the contact point
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();  ///< of the centre of mass
+  /// Change of its rate of turn, world axes, rad/s.
   Eigen::Vector3d delta_omega_radps = Eigen::Vector3d::Zero();
   Velocity after;                ///< linear: of the centre of mass
   double energy_change_j = 0.0;  ///< kinetic energy after less before
@@ -62,6 +65,7 @@ struct BodyImpulse {
   int clock = 12;  ///< the same in steps of 30 degrees, 1 to 12; 12 is 345 to 15 degrees
 };
 
+/// What an impulse does to both bodies.
 struct ImpulseResult {
   /// The bodies part at the contact point, or both are immovable: nothing happens.
   bool acts = false;
@@ -77,8 +81,8 @@ struct ImpulseResult {
   /// The restitution used: the one asked for, or less where that would have made energy.
   double restitution = 0.0;
   double dissipated_j = 0.0;  ///< kinetic energy of both before less after, never negative
-  BodyImpulse a;
-  BodyImpulse b;
+  BodyImpulse a;              ///< to A
+  BodyImpulse b;              ///< to B
 };
 
 /// Rigid impulse of two bodies at one contact point (world, m) with a unit normal from A to B.

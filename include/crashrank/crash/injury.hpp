@@ -35,9 +35,9 @@ CRASHRANK_API Result<RiskModel> risk_model_from_name(const std::string& name);
 
 /// What the risk of one person depends on.
 struct Exposure {
-  Person person = Person::occupant;
-  double delta_v_mps = 0.0;  ///< of the occupant's vehicle, magnitude
-  double pdof_deg = 0.0;     ///< of the force on it: front is within 45 degrees of 0, rear of 180
+  Person person = Person::occupant;  ///< who
+  double delta_v_mps = 0.0;          ///< of the occupant's vehicle, magnitude
+  double pdof_deg = 0.0;  ///< of the force on it: front is within 45 degrees of 0, rear of 180
   double impact_speed_mps = 0.0;  ///< closing speed, for people outside cars
   /// Height of the leading edge of what hits a pedestrian; 0.75 m is a car's, 1.09 m a pickup's.
   double leading_edge_m = 0.75;

@@ -15,8 +15,8 @@ namespace crashrank {
 
 /// Rigid velocity of a body: of its origin, and about it. World axes; m/s and rad/s.
 struct Velocity {
-  Eigen::Vector3d linear_mps = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angular_radps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linear_mps = Eigen::Vector3d::Zero();     ///< of the origin, m/s
+  Eigen::Vector3d angular_radps = Eigen::Vector3d::Zero();  ///< about the origin, rad/s
 };
 
 /// Velocity of the body's point that is at `point_m` (world) while the body's origin is at
@@ -42,11 +42,11 @@ struct TurnMotion {
 /// steering, its origin at the rear axle (the default origin of a vehicle). The yaw rate is
 /// curvature x speed, so braking slows the turn as well. Standstill as in TurnMotion.
 struct ArcMotion {
-  Pose start;
-  double speed_mps = 0.0;
-  double curvature_per_m = 0.0;  ///< 1 / signed radius of the origin's path; positive: left
-  double acceleration_mps2 = 0.0;
-  double top_speed_mps = std::numeric_limits<double>::infinity();
+  Pose start;                      ///< pose at time 0, body to world
+  double speed_mps = 0.0;          ///< m/s
+  double curvature_per_m = 0.0;    ///< 1 / signed radius of the origin's path; positive: left
+  double acceleration_mps2 = 0.0;  ///< m/s²
+  double top_speed_mps = std::numeric_limits<double>::infinity();  ///< ends a rise of |speed|, m/s
 };
 
 /// Curvature of the rear axle's path, 1/m, for a steering angle at the front wheels (rad, positive
@@ -56,23 +56,23 @@ CRASHRANK_API double curvature_from_steering(double steering_rad, double wheelba
 /// A body in free motion: constant linear velocity of the origin, constant angular velocity about
 /// it, both in world axes.
 struct FreeMotion {
-  Pose start;
-  Velocity velocity;
+  Pose start;         ///< pose at time 0, body to world
+  Velocity velocity;  ///< constant
 };
 
 /// A pose that a body has at a time.
 struct TimedPose {
-  double time_s = 0.0;
-  Pose pose;
+  double time_s = 0.0;  ///< s
+  Pose pose;            ///< body to world
 };
 
 /// Upper bounds that hold at every instant of a stretch of time, kinks excluded: of the origin's
 /// speed and acceleration, and of the body's angular speed and acceleration.
 struct MotionBound {
-  double speed_mps = 0.0;
-  double angular_radps = 0.0;
-  double acceleration_mps2 = 0.0;
-  double angular_radps2 = 0.0;
+  double speed_mps = 0.0;          ///< m/s
+  double angular_radps = 0.0;      ///< rad/s
+  double acceleration_mps2 = 0.0;  ///< m/s²
+  double angular_radps2 = 0.0;     ///< rad/s²
 };
 
 /// How a body moves: its pose and velocity at every time t >= 0 (s). Before 0 it is where it is at
@@ -84,10 +84,14 @@ class CRASHRANK_API Motion {
 public:
   /// Rests at the world's origin.
   Motion() = default;
+  /// Turns at a constant rate.
   Motion(const TurnMotion& turn);
+  /// Drives along a circle or a line.
   Motion(const ArcMotion& arc);
+  /// Flies freely.
   Motion(const FreeMotion& free);
 
+  /// Stands there for good.
   static Motion at_rest(const Pose& pose);
 
   /// Poses at strictly increasing times, at least one. Between two of them the origin moves on a
@@ -132,7 +136,7 @@ private:
     bool stops = false;
   };
   struct Planar {
-    Pose start;
+    Pose start;  ///< pose at time 0, body to world
     Eigen::Vector2d heading{1.0, 0.0};
     Profile profile;
     double yaw_rate = 0.0;   ///< used by turns
@@ -141,8 +145,8 @@ private:
   };
   struct Segment {
     double time = 0.0;
-    Pose pose;
-    Velocity velocity;
+    Pose pose;          ///< body to world
+    Velocity velocity;  ///< constant
   };
   using Timed = std::vector<Segment>;
 

@@ -16,21 +16,22 @@ namespace crashrank {
 
 /// A body at first contact, as the pulse needs it. Mesh and tree have to outlive the call.
 struct PulseBody {
-  const TriangleMesh* mesh = nullptr;
+  const TriangleMesh* mesh = nullptr;  ///< its surface; has to outlive the call
   /// Over that mesh, or none: spares looking at every triangle and changes no bit of the answer.
   const AabbTree* tree = nullptr;
-  Pose pose;        ///< body to world
-  RigidBody rigid;  ///< in the world, at the same instant
-  CrushStrength strength;
+  Pose pose;               ///< body to world
+  RigidBody rigid;         ///< in the world, at the same instant
+  CrushStrength strength;  ///< what it takes to crush it
 };
 
+/// How the crush phase is simulated.
 struct PulseOptions {
   /// Coulomb friction between the surfaces; 0.3 is what openPASS uses for cars against each other.
   double friction = 0.3;
   double cell_w_m = 0.025;  ///< width and height of the cells in which the surfaces are sampled
-  double cell_h_m = 0.1;
-  double step_s = 0.0005;
-  double longest_s = 0.25;
+  double cell_h_m = 0.1;    ///< height of a cell, m
+  double step_s = 0.0005;   ///< of the simulation, s
+  double longest_s = 0.25;  ///< of the pulse, s
 };
 
 /// What a pulse does to two bodies. World coordinates.
@@ -39,14 +40,14 @@ struct PulseResult {
   /// The contact kept more than a fifth of its speed when the force ended: it slid off.
   bool slides = false;
   double duration_s = 0.0;  ///< from first contact until the force ends
-  BodyImpulse a;
-  BodyImpulse b;
+  BodyImpulse a;            ///< what it did to A
+  BodyImpulse b;            ///< what it did to B
   /// How far the centres of mass moved and the bodies turned (left positive) in that time.
   Eigen::Vector3d moved_a_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d moved_b_m = Eigen::Vector3d::Zero();
-  double turned_a_rad = 0.0;
-  double turned_b_rad = 0.0;
-  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< middle of the pressing, weighted by it
+  Eigen::Vector3d moved_b_m = Eigen::Vector3d::Zero();  ///< way of B's centre of mass, m
+  double turned_a_rad = 0.0;                            ///< rad
+  double turned_b_rad = 0.0;                            ///< rad
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();    ///< middle of the pressing, weighted by it
   double dissipated_j = 0.0;  ///< kinetic energy of both before less after, never negative
   double friction_j = 0.0;    ///< what sliding took of that, as integrated
   double deepest_m = 0.0;     ///< how far the undeformed surfaces came to lie in each other
@@ -76,7 +77,7 @@ CRASHRANK_API PulseResult simulate_pulse(const PulseBody& a, const PulseBody& b,
 
 /// What may be varied while bodies and their surfaces stay as they are.
 struct PulseVariant {
-  double friction = 0.3;
+  double friction = 0.3;  ///< between the bodies
   double strength = 1.0;  ///< times what both bodies' laws say
 };
 

@@ -17,12 +17,12 @@ struct BodySeverity {
   double delta_v_total_mps = 0.0;                         ///< its length
   double yaw_rate_change_radps = 0.0;                     ///< left positive
   double pdof_deg = 0.0;                                  ///< see BodyImpulse
-  int clock = 12;
+  int clock = 12;               ///< the same as an hour of the clock, 12 ahead
   double crush_energy_j = 0.0;  ///< taken by the body's own deformation
-  double ees_mps = 0.0;
-  double crush_m = 0.0;      ///< deepest
-  double intrusion_m = 0.0;  ///< of the part of the passengers' cage that was pushed in furthest
-  std::string cdc;           ///< collision deformation classification; empty without damage
+  double ees_mps = 0.0;         ///< energy-equivalent speed, m/s
+  double crush_m = 0.0;         ///< deepest
+  double intrusion_m = 0.0;     ///< of the part of the passengers' cage that was pushed in furthest
+  std::string cdc;              ///< collision deformation classification; empty without damage
 };
 
 /// What is worst inside: how far the crush reaches into the cage of `strength`; 0 for bodies
@@ -32,15 +32,16 @@ CRASHRANK_API double cage_intrusion_m(const PulseBody& body, const CrushResult& 
 
 /// Both bodies' severity from the pulse, and the crush of what it dissipated less friction.
 struct Severity {
-  PulseResult pulse;
-  CrushResult crush;
-  BodySeverity a;
-  BodySeverity b;
+  PulseResult pulse;  ///< the crush phase
+  CrushResult crush;  ///< how deep both went
+  BodySeverity a;     ///< of A
+  BodySeverity b;     ///< of B
 };
 
+/// How a crash is simulated and measured.
 struct SeverityOptions {
-  PulseOptions pulse;
-  CrushOptions crush;
+  PulseOptions pulse;  ///< of the crush phase
+  CrushOptions crush;  ///< of its measurement
 };
 
 /// From first contact to severity: the pulse along the closing direction, then crush maps along the
@@ -51,11 +52,11 @@ CRASHRANK_API Severity crash_severity(const PulseBody& a, const PulseBody& b,
 
 /// Where and how a body is deformed, for `cdc_code`; body coordinates, m.
 struct Deformation {
-  double pdof_deg = 0.0;
-  Box region;  ///< of the moved surface
-  Box body;    ///< bounds of the body
-  double depth_m = 0.0;
-  bool sideswipe = false;
+  double pdof_deg = 0.0;   ///< degrees clockwise from ahead
+  Box region;              ///< of the moved surface
+  Box body;                ///< bounds of the body
+  double depth_m = 0.0;    ///< m
+  bool sideswipe = false;  ///< along the side rather than into it
 };
 
 /// Seven characters after SAE J224: clock direction (01 to 12), area (F, B, L, R, T), place across

@@ -21,6 +21,7 @@ enum class ImpactState {
   undecided,    ///< the step limit was reached first; nothing happens before `time_s`
 };
 
+/// How first contact is looked for.
 struct ImpactOptions {
   double tolerance_m = 1e-4;  ///< surfaces at most this far apart count as met
   /// Most box pairs and triangle pairs looked at before the answer is `undecided`.
@@ -31,7 +32,7 @@ struct ImpactOptions {
   /// Asked every few hundred steps, some 20 µs, with `stop_context`; once it says true the answer
   /// is `undecided`. May be null.
   bool (*stop)(void* stop_context) = nullptr;
-  void* stop_context = nullptr;
+  void* stop_context = nullptr;  ///< handed to `stop`
 };
 
 /// Work done by a query.
@@ -40,6 +41,7 @@ struct ImpactWork {
   std::uint64_t primitive_tests = 0;  ///< pairs of triangles brought together in time
   std::uint64_t poses = 0;            ///< times at which both motions were evaluated
 
+  /// Adds up.
   ImpactWork& operator+=(const ImpactWork& other) {
     bv_tests += other.bv_tests;
     primitive_tests += other.primitive_tests;
@@ -50,7 +52,7 @@ struct ImpactWork {
 
 /// The answer. Points and normal in world coordinates at `time_s`.
 struct Impact {
-  ImpactState state = ImpactState::none;
+  ImpactState state = ImpactState::none;  ///< how the bodies meet
 
   /// contact: the first time at which the surfaces are within the tolerance, touching follows while
   ///   they stay so (when they came that close and parted once or more before, see `grazed`, it is
@@ -60,7 +62,7 @@ struct Impact {
   double gap_m = 0.0;  ///< distance of the two points below, 0 when the surfaces intersect
 
   std::int32_t triangle_a = -1;  ///< in mesh order, -1 when no pair was found
-  std::int32_t triangle_b = -1;
+  std::int32_t triangle_b = -1;  ///< its partner on B
   Eigen::Vector3d point_a_m = Eigen::Vector3d::Zero();  ///< on the surface of A
   Eigen::Vector3d point_b_m = Eigen::Vector3d::Zero();  ///< on the surface of B
   /// Unit, from A towards B; zero when no pair was found.
@@ -69,7 +71,7 @@ struct Impact {
   bool grazed = false;        ///< contact that followed an earlier pass within the tolerance
   double graze_time_s = 0.0;  ///< when that pass began
 
-  ImpactWork work;
+  ImpactWork work;  ///< done for it
 
   /// The bodies touch or overlap: something to be ranked. A grazing pass is left to the caller.
   bool hit() const noexcept {
@@ -83,17 +85,21 @@ struct Impact {
 /// times); after that no query allocates.
 class CRASHRANK_API ImpactWorkspace {
 public:
+  /// Empty; grows with its first uses.
   ImpactWorkspace();
+  /// Gives its memory back.
   ~ImpactWorkspace();
+  /// Moves.
   ImpactWorkspace(ImpactWorkspace&&) noexcept;
-  ImpactWorkspace& operator=(ImpactWorkspace&&) noexcept;
-  ImpactWorkspace(const ImpactWorkspace&) = delete;
-  ImpactWorkspace& operator=(const ImpactWorkspace&) = delete;
+  ImpactWorkspace& operator=(ImpactWorkspace&&) noexcept;       ///< Moves.
+  ImpactWorkspace(const ImpactWorkspace&) = delete;             ///< One per thread: not copied.
+  ImpactWorkspace& operator=(const ImpactWorkspace&) = delete;  ///< One per thread: not copied.
 
   /// Room for all queries between two trees of such depths.
   void prepare(std::uint32_t depth_a, std::uint32_t depth_b);
 
-  struct State;
+  struct State;  ///< Its contents, for the library.
+  /// Its contents, for the library.
   State& state() noexcept { return *state_; }
 
 private:

@@ -33,12 +33,13 @@ enum class Kernel {
 /// `depth` that lets the dispatcher choose, also that the calling thread does all.
 inline constexpr std::uint32_t auto_depth = 0;
 
+/// How work is shared out.
 struct DispatchOptions {
-  Policy policy = Policy::late_match;
-  std::uint32_t depth = auto_depth;  ///< distribution depth, 1 to `max_distribution_depth`
-  StoreMode store = StoreMode::shared;
-  Kernel kernel = Kernel::scalar;
-  std::uint32_t buffer = 8;     ///< K: jobs sent to a core en masse, 1 to 65536
+  Policy policy = Policy::late_match;   ///< which job goes where
+  std::uint32_t depth = auto_depth;     ///< distribution depth, 1 to `max_distribution_depth`
+  StoreMode store = StoreMode::shared;  ///< where cores read parts
+  Kernel kernel = Kernel::scalar;       ///< what tests boxes and triangles
+  std::uint32_t buffer = 8;             ///< K: jobs sent to a core en masse, 1 to 65536
   std::size_t store_bytes = 0;  ///< per core, parts held and on their way (private); 0: no limit
   std::size_t queue_bytes = 0;  ///< per core, batches not yet worked off: jobs, and parts that
                                 ///< travel with them; 0: no limit
@@ -60,22 +61,24 @@ struct DispatchOptions {
 
 /// One question: which triangles of A and B share a point, B standing at `b_in_a`.
 struct DispatchQuery {
-  const PartIndex* a = nullptr;
-  const PartIndex* b = nullptr;
-  Pose b_in_a;
+  const PartIndex* a = nullptr;  ///< body A
+  const PartIndex* b = nullptr;  ///< body B
+  Pose b_in_a;                   ///< B's pose in A's frame
 };
 
+/// How a dispatch ended.
 enum class DispatchEnd {
-  ok,
+  ok,             ///< all pairs were found
   out_of_memory,  ///< a store or queue would have exceeded its budget; the pairs are incomplete
   cancelled,      ///< as asked; the pairs are incomplete
 };
 
+/// What a dispatch did.
 struct DispatchReport {
-  DispatchEnd end = DispatchEnd::ok;
-  std::uint32_t depth = 0;  ///< used; `auto_depth` where the calling thread did all
-  std::uint64_t jobs = 0;
-  std::uint64_t batches = 0;
+  DispatchEnd end = DispatchEnd::ok;  ///< how it ended
+  std::uint32_t depth = 0;            ///< used; `auto_depth` where the calling thread did all
+  std::uint64_t jobs = 0;             ///< pairs of parts
+  std::uint64_t batches = 0;          ///< sent en masse
   double seconds = 0.0;       ///< wall time from the call to all pairs in the lists, unsorted
   double sort_seconds = 0.0;  ///< on top of it, where sorted pairs were asked for
   std::uint64_t transferred_bytes = 0;  ///< of parts sent to cores
@@ -103,8 +106,10 @@ public:
   /// Starts the threads. Errors as `WorkerPool::start`.
   static Result<Dispatcher> start(const PoolOptions& options = {});
 
+  /// Moves; the workers go along.
   Dispatcher(Dispatcher&& other) noexcept;
-  Dispatcher& operator=(Dispatcher&& other) noexcept;
+  Dispatcher& operator=(Dispatcher&& other) noexcept;  ///< Moves; the workers go along.
+  /// Ends the workers.
   ~Dispatcher();
 
   /// Answers all queries in one dispatch: parts stay where they are from query to query. With no

@@ -33,9 +33,11 @@ struct alignas(64) FoundPairs {
 /// written by one worker; `for_each_run` reads them without copying.
 class CRASHRANK_API PairLists {
 public:
+  /// Number of queries.
   std::size_t queries() const noexcept { return counts_.size(); }
   /// Pairs of one query.
   std::size_t count(std::size_t query) const noexcept { return counts_[query]; }
+  /// Pairs of all queries.
   std::size_t total() const noexcept;
 
   /// Calls `use(View<const Pair>)` for each run of a query's pairs, in no particular order.

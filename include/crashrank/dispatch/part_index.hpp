@@ -19,11 +19,11 @@ inline constexpr std::uint32_t max_distribution_depth = 16;
 /// A node of the tree's top and what lies below it: a part, when it stands at the distribution
 /// depth or is a leaf above it.
 struct IndexedNode {
-  Box box;
-  float half_area_m2 = 0.0F;
-  std::uint32_t left = 0;    ///< index here of the left child, the right one follows; 0: none here
-  std::uint32_t parent = 0;  ///< index here; the root's is 0
-  std::uint32_t depth = 0;
+  Box box;                    ///< m
+  float half_area_m2 = 0.0F;  ///< of the box, m²
+  std::uint32_t left = 0;     ///< index here of the left child, the right one follows; 0: none here
+  std::uint32_t parent = 0;   ///< index here; the root's is 0
+  std::uint32_t depth = 0;    ///< below the root
   std::uint32_t tree_node = 0;  ///< index in the tree
   Range below;                  ///< its descendants in the tree
   Range slots;                  ///< its triangles
@@ -49,10 +49,13 @@ public:
   /// nodes are not cut below those. The model has to stay where it is.
   static Result<PartIndex> make(const Model& model, std::uint32_t deepest = max_distribution_depth);
 
+  /// Level by level, the root first.
   View<const IndexedNode> nodes() const noexcept { return nodes_; }
+  /// The tree it is about.
   const AabbTree& tree() const noexcept { return *tree_; }
   /// The model it was made from, null where it was made from a tree.
   const Model* model() const noexcept { return model_; }
+  /// The depth that it reaches down to.
   std::uint32_t deepest() const noexcept { return deepest_; }
   /// Number of nodes at depths 0 to `depth`.
   std::uint32_t nodes_down_to(std::uint32_t depth) const noexcept;

@@ -34,11 +34,13 @@ CRASHRANK_API Result<Policy> policy_from_name(const std::string& name);
 struct WaitingJob {
   const std::uint64_t* holders_a = nullptr;  ///< cores that hold A's part, or will with their batch
   const std::uint64_t* holders_b = nullptr;  ///< the same for B
-  std::uint32_t bytes_a = 0;
-  std::uint32_t bytes_b = 0;
-  float work = 0.0F;  ///< estimated, in triangles to look at
+  std::uint32_t bytes_a = 0;                 ///< of A's part
+  std::uint32_t bytes_b = 0;                 ///< of B's part
+  float work = 0.0F;                         ///< estimated, in triangles to look at
 
+  /// True where the core has A's part.
   bool holds_a(std::uint32_t core) const noexcept { return ((*holders_a >> core) & 1U) != 0; }
+  /// True where the core has B's part.
   bool holds_b(std::uint32_t core) const noexcept { return ((*holders_b >> core) & 1U) != 0; }
   /// Parts of the job that the core holds: 0, 1 or 2.
   std::uint32_t similarity(std::uint32_t core) const noexcept {
@@ -48,7 +50,7 @@ struct WaitingJob {
 
 /// What a policy knows when it places a job.
 struct Placement {
-  std::uint32_t cores = 0;
+  std::uint32_t cores = 0;               ///< number of them
   std::uint32_t buffer = 0;              ///< K: jobs a batch can take
   std::uint64_t unclaimed = 0;           ///< cores that can take a job; never 0 in `choose`
   const std::uint32_t* batch = nullptr;  ///< by core: jobs in the batch that is being filled
@@ -61,6 +63,7 @@ struct Placement {
   bool caller_works = false;             ///< the calling thread works off jobs, too
   bool all_found = false;                ///< no more will come
 
+  /// True where the core may be given a job.
   bool is_unclaimed(std::uint32_t core) const noexcept { return ((unclaimed >> core) & 1U) != 0; }
 };
 
@@ -68,12 +71,13 @@ struct Placement {
 /// against the rest; keep the members below a microsecond and free of allocation.
 class CRASHRANK_API PlacementPolicy {
 public:
+  /// A job and its core.
   struct Choice {
-    std::uint32_t job = 0;  ///< index in `Placement::jobs`
-    std::uint32_t core = 0;
+    std::uint32_t job = 0;   ///< index in `Placement::jobs`
+    std::uint32_t core = 0;  ///< who does it
   };
 
-  virtual ~PlacementPolicy() = default;
+  virtual ~PlacementPolicy() = default;  ///< Ends it.
   /// Before the first job of a dispatch.
   virtual void begin(std::uint32_t cores, std::uint64_t seed) {
     static_cast<void>(cores);
@@ -111,9 +115,9 @@ public:
   }
 
 protected:
-  PlacementPolicy() = default;
-  PlacementPolicy(const PlacementPolicy&) = default;
-  PlacementPolicy& operator=(const PlacementPolicy&) = default;
+  PlacementPolicy() = default;                                   ///< For those who derive from it.
+  PlacementPolicy(const PlacementPolicy&) = default;             ///< For those who derive from it.
+  PlacementPolicy& operator=(const PlacementPolicy&) = default;  ///< For those who derive from it.
 };
 
 /// Makes one of the policies above.

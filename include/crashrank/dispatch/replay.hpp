@@ -30,20 +30,20 @@ namespace crashrank {
 /// later. Not modelled: caches and memory that cores share, beyond what the recorded times hold,
 /// and what else the machine does.
 struct VirtualMachine {
-  std::uint32_t processors = 4;
-  std::uint32_t workers = 4;
-  double spin_s = 0.0;
-  double post_s = 0.1e-6;
-  double send_s = 2e-6;
-  double wake_s = 8e-6;
-  double main_wake_s = 10e-6;
-  double batch_s = 0.3e-6;
-  double slice_s = 3e-3;
-  bool awake_at_start = false;  ///< workers still spin when the dispatch begins
-  double copy_part_s = 50e-9;
-  double copy_bytes_per_s = 8e9;
+  std::uint32_t processors = 4;   ///< virtual ones
+  std::uint32_t workers = 4;      ///< threads beside the main one
+  double spin_s = 0.0;            ///< idle before sleep, s
+  double post_s = 0.1e-6;         ///< to post a batch, s
+  double send_s = 2e-6;           ///< to hand a batch over, s
+  double wake_s = 8e-6;           ///< to wake a worker, s
+  double main_wake_s = 10e-6;     ///< to wake the main thread, s
+  double batch_s = 0.3e-6;        ///< for each batch on its core, s
+  double slice_s = 3e-3;          ///< of processor time when others wait, s
+  bool awake_at_start = false;    ///< workers still spin when the dispatch begins
+  double copy_part_s = 50e-9;     ///< for each part copied, s
+  double copy_bytes_per_s = 8e9;  ///< bytes copied in a second
   double link_bytes_per_s = 0.0;  ///< 0: cores copy from shared memory themselves
-  double link_latency_s = 0.0;
+  double link_latency_s = 0.0;    ///< one way, s
 };
 
 /// Measures what waking threads costs on this machine, on an idle pool of at least one worker:
@@ -55,27 +55,29 @@ CRASHRANK_API Status measure_waking(WorkerPool& pool, VirtualMachine& machine);
 /// (least squares); leaves them alone where nothing was copied.
 CRASHRANK_API void fit_copying(View<const DispatchRecording> recordings, VirtualMachine& machine);
 
+/// What is replayed, and how.
 struct ReplayOptions {
-  Policy policy = Policy::best_match;
-  StoreMode store = StoreMode::shared;
-  std::uint32_t buffer = 8;
-  std::size_t store_bytes = 0;
-  std::size_t queue_bytes = 0;
-  std::uint64_t seed = 1;
-  bool caller_works = true;  ///< as DispatchOptions has it
-  VirtualMachine machine;
+  Policy policy = Policy::best_match;   ///< which job goes where
+  StoreMode store = StoreMode::shared;  ///< where cores read parts
+  std::uint32_t buffer = 8;             ///< most jobs in a batch
+  std::size_t store_bytes = 0;          ///< budget of a store; 0: none
+  std::size_t queue_bytes = 0;          ///< budget of what waits; 0: none
+  std::uint64_t seed = 1;               ///< of random choices
+  bool caller_works = true;             ///< as DispatchOptions has it
+  VirtualMachine machine;               ///< on what
 };
 
+/// What a replay came to.
 struct ReplayReport {
-  DispatchEnd end = DispatchEnd::ok;
-  double seconds = 0.0;  ///< from the call to all pairs there
-  std::uint64_t jobs = 0;
-  std::uint64_t batches = 0;
-  std::uint64_t transferred_bytes = 0;
-  std::uint64_t peak_part_bytes = 0;
-  double main_seconds = 0.0;  ///< main thread at work
-  double idle_seconds = 0.0;  ///< workers without a batch, summed over them
-  double relative_transfer = 0.0;
+  DispatchEnd end = DispatchEnd::ok;    ///< how it ended
+  double seconds = 0.0;                 ///< from the call to all pairs there
+  std::uint64_t jobs = 0;               ///< pairs of parts
+  std::uint64_t batches = 0;            ///< sent en masse
+  std::uint64_t transferred_bytes = 0;  ///< of parts sent
+  std::uint64_t peak_part_bytes = 0;    ///< most that a store held
+  double main_seconds = 0.0;            ///< main thread at work
+  double idle_seconds = 0.0;            ///< workers without a batch, summed over them
+  double relative_transfer = 0.0;       ///< bytes sent / bytes of both models
 };
 
 /// Replays a recording on a virtual machine, under any policy. The part indices that the recording

@@ -13,6 +13,7 @@ namespace crashrank {
 /// One bit per worker in the words that say who holds what.
 inline constexpr std::uint32_t max_workers = 64;
 
+/// How many threads, and how they wait.
 struct PoolOptions {
   std::uint32_t workers = 4;  ///< threads beside the caller's, 0 to `max_workers`
   bool pinned = false;        ///< worker i stays on processor i modulo their number
@@ -28,18 +29,21 @@ class CRASHRANK_API WorkerPool {
 public:
   /// What a worker runs. A task that throws ends the thread's task, not the thread: see `failure`.
   struct Task {
+    /// Called with `context` and the number of the worker.
     void (*run)(void* context, std::uint32_t worker) = nullptr;
-    void* context = nullptr;
+    void* context = nullptr;  ///< the task's own
   };
 
   /// Errors: usage for numbers out of range, internal when a thread cannot be started.
   static Result<WorkerPool> start(const PoolOptions& options);
 
+  /// Moves; the threads go along.
   WorkerPool(WorkerPool&& other) noexcept;
-  WorkerPool& operator=(WorkerPool&& other) noexcept;
+  WorkerPool& operator=(WorkerPool&& other) noexcept;  ///< Moves; ends the threads it had.
   /// Ends the threads after the task each has in hand; tasks that wait are dropped.
   ~WorkerPool();
 
+  /// Number of workers.
   std::uint32_t size() const noexcept;
   /// How long idle threads spin before they sleep, s.
   double spin_seconds() const noexcept;

@@ -21,25 +21,26 @@ namespace crashrank {
 struct ImportLimits {
   std::size_t file_bytes = std::size_t{512} << 20;    ///< of the mesh, and of each file it names
   std::size_t memory_bytes = std::size_t{900} << 20;  ///< address space of the importing process
-  double seconds = 4.0;               ///< processor time; wall time may be three times as long
-  double seconds_per_mebibyte = 0.5;  ///< added to `seconds` for the size of the file
-  std::size_t triangles = 20'000'000;
-  std::size_t vertices = 60'000'000;
-  std::size_t parts = 100'000;
+  double seconds = 4.0;                  ///< processor time; wall time may be three times as long
+  double seconds_per_mebibyte = 0.5;     ///< added to `seconds` for the size of the file
+  std::size_t triangles = 20'000'000;    ///< of the whole file
+  std::size_t vertices = 60'000'000;     ///< of the whole file
+  std::size_t parts = 100'000;           ///< of the whole file
   std::size_t polygon_corners = 10'000;  ///< of one polygon: cutting it up is quadratic
 };
 
+/// How a file is read.
 struct ImportOptions {
-  ImportTransform transform;
-  ImportLimits limits;
-  std::string importer;  ///< path of the crashrank-import program; empty: found as told below
+  ImportTransform transform;  ///< from file to body coordinates
+  ImportLimits limits;        ///< what is refused
+  std::string importer;       ///< path of the crashrank-import program; empty: found as told below
   std::string package_importer = CRASHRANK_PACKAGE_IMPORTER;  ///< one more place to look
 };
 
 /// A mesh with what had to be said about its file.
 struct ImportedMesh {
-  TriangleMesh mesh;
-  MeshQuality quality;
+  TriangleMesh mesh;                  ///< the surface
+  MeshQuality quality;                ///< what is wrong with it
   std::size_t dropped_triangles = 0;  ///< faces that named a vertex that is not there
   std::vector<std::string> warnings;  ///< the file's and the mesh's, one sentence each
 };

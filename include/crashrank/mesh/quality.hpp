@@ -13,13 +13,13 @@ namespace crashrank {
 struct MeshQuality {
   std::size_t degenerate_triangles = 0;  ///< exactly collinear or coinciding corners
   std::size_t duplicate_triangles = 0;   ///< same three corners as an earlier one, any order
-  std::size_t non_finite_vertices = 0;
+  std::size_t non_finite_vertices = 0;   ///< with a NaN or an infinity
   std::size_t open_edges = 0;      ///< edges (vertices welded by position) of one triangle only
   std::size_t crowded_edges = 0;   ///< of three or more
   std::size_t reversed_edges = 0;  ///< of two that disagree about which side is out
   Eigen::Vector3d extent_m = Eigen::Vector3d::Zero();  ///< of the finite vertices triangles use
   bool watertight = false;  ///< every edge has exactly two triangles; winding is not asked
-  double area_m2 = 0.0;
+  double area_m2 = 0.0;     ///< of all triangles
   std::vector<std::string> warnings;  ///< one sentence each, for a person
 };
 
@@ -30,11 +30,12 @@ CRASHRANK_API MeshQuality assess(const TriangleMesh& mesh);
 
 /// Meshes with a largest extent outside these are refused on import, m.
 inline constexpr double min_extent_m = 1e-6;
-inline constexpr double max_extent_m = 1e6;
+inline constexpr double max_extent_m = 1e6;  ///< A mesh larger than this is refused, m.
 
 /// A largest extent outside these is no road user's and warned about, m: a pedestrian's hand to a
 /// road train.
 inline constexpr double min_plausible_extent_m = 0.3;
+/// A mesh larger than this is warned about, m.
 inline constexpr double max_plausible_extent_m = 30.0;
 
 }  // namespace crashrank

@@ -17,10 +17,10 @@ enum class Axis : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus
 /// How file coordinates become body coordinates: rotate so that `forward` is +x and `up` is +z,
 /// scale, then subtract `origin_m` (in body axes, after scaling).
 struct ImportTransform {
-  double scale = 1.0;  ///< metres per file unit
-  Axis up = Axis::plus_z;
-  Axis forward = Axis::plus_x;
-  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  double scale = 1.0;                                  ///< metres per file unit
+  Axis up = Axis::plus_z;                              ///< the file's axis that points up
+  Axis forward = Axis::plus_x;                         ///< the file's axis that points forward
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< what becomes 0, m
 };
 
 /// Unit vector of an axis, in file coordinates.

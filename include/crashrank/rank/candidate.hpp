@@ -24,11 +24,11 @@ enum class CandidateOrigin {
 /// A manoeuvre that the ego can still choose.
 struct Candidate {
   std::string name;  ///< unique within its scenario, the same in every run
-  CandidateOrigin origin = CandidateOrigin::listed;
-  Motion motion;
+  CandidateOrigin origin = CandidateOrigin::listed;  ///< where it comes from
+  Motion motion;                                     ///< the ego's, if it is chosen
   /// What it asks for at time 0; 0 for timed poses. Left positive.
   double acceleration_mps2 = 0.0;
-  double curvature_per_m = 0.0;
+  double curvature_per_m = 0.0;  ///< of the path, 1/m
 };
 
 /// All candidates of a scenario in their order: listed, straight braking where it is missing, the

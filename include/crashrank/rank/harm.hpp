@@ -35,34 +35,34 @@ namespace crashrank {
 /// somebody has to answer for, not a finding: everybody counts alike, one person in each vehicle,
 /// and property counts nothing. All >= 0 and at most `harm_limits::weight`.
 struct HarmWeights {
-  double ego_occupant = 1.0;
-  double other_occupant = 1.0;
-  double pedestrian = 1.0;
-  double cyclist = 1.0;
-  double motorcyclist = 1.0;
+  double ego_occupant = 1.0;     ///< a person in the ego
+  double other_occupant = 1.0;   ///< a person in another vehicle
+  double pedestrian = 1.0;       ///< somebody on foot
+  double cyclist = 1.0;          ///< somebody on a bicycle
+  double motorcyclist = 1.0;     ///< somebody on a motorcycle
   double property_per_mj = 0.0;  ///< for every MJ of deformation
 
-  double people_in_ego = 1.0;
-  double people_in_car = 1.0;
-  double people_in_truck = 1.0;
-  double people_in_bus = 10.0;
+  double people_in_ego = 1.0;    ///< persons
+  double people_in_car = 1.0;    ///< persons, in each
+  double people_in_truck = 1.0;  ///< persons, in each
+  double people_in_bus = 10.0;   ///< persons, in each
 };
 
 /// Ranges of what is not known well. Their corners together are the samples by which a ranking says
 /// how stable it is.
 struct HarmRanges {
   double least_friction = 0.1;  ///< between the bodies
-  double most_friction = 0.6;
+  double most_friction = 0.6;   ///< between the bodies
   double least_strength = 0.7;  ///< stiffness, times the default strength of all bodies
-  double most_strength = 1.4;
+  double most_strength = 1.4;   ///< times the default
   /// Restitution: delta-v times 1 + e, for a rebound that the pulse leaves out.
   double least_restitution = 0.0;
-  double most_restitution = 0.15;
+  double most_restitution = 0.15;  ///< share of delta-v
   /// Times the speed at which the risk curves are read, for the width of the curves themselves; of
   /// occupants and of people outside cars each by itself, since their curves come from different
   /// data.
   double least_risk_speed = 0.9;
-  double most_risk_speed = 1.1;
+  double most_risk_speed = 1.1;  ///< times the speed
   /// The order is looked at under every risk model, not the chosen one alone.
   bool all_models = true;
 };
@@ -76,12 +76,13 @@ struct AfterImpact {
   std::size_t most_contacts = 4;  ///< of one candidate, the first included; 1 follows nobody
 };
 
+/// How harm is counted.
 struct HarmOptions {
-  RiskModel model = RiskModel::tum;
-  HarmWeights weights;
-  HarmRanges ranges;
-  double friction = 0.3;
-  AfterImpact after;
+  RiskModel model = RiskModel::tum;  ///< whose curves
+  HarmWeights weights;               ///< what people count for
+  HarmRanges ranges;                 ///< what is not known
+  double friction = 0.3;             ///< between the bodies
+  AfterImpact after;                 ///< how the ego goes on
   /// Somebody outside a car who is brushed takes at least this share of the closing speed, whatever
   /// the pulse says that the touch gave him: falls and wheels are not simulated. A choice.
   double least_struck_share = 0.3;
@@ -90,28 +91,28 @@ struct HarmOptions {
 
 /// Bounds on what a profile may ask for; the published schema states the same numbers.
 namespace harm_limits {
-inline constexpr std::size_t file_bytes = std::size_t{1} << 20;
-inline constexpr double weight = 1e6;
-inline constexpr double people = 1000.0;
-inline constexpr double friction = 10.0;
-inline constexpr double min_strength = 0.01;
-inline constexpr double max_strength = 100.0;
-inline constexpr double min_risk_speed = 0.1;
-inline constexpr double max_risk_speed = 10.0;
-inline constexpr double deceleration_mps2 = 50.0;
-inline constexpr double after_s = 60.0;
-inline constexpr std::size_t contacts = 16;
+inline constexpr std::size_t file_bytes = std::size_t{1} << 20;  ///< of a profile
+inline constexpr double weight = 1e6;                            ///< most
+inline constexpr double people = 1000.0;                         ///< most in a vehicle
+inline constexpr double friction = 10.0;                         ///< most
+inline constexpr double min_strength = 0.01;                     ///< least factor
+inline constexpr double max_strength = 100.0;                    ///< most
+inline constexpr double min_risk_speed = 0.1;                    ///< least factor
+inline constexpr double max_risk_speed = 10.0;                   ///< most
+inline constexpr double deceleration_mps2 = 50.0;                ///< most, m/s²
+inline constexpr double after_s = 60.0;                          ///< longest, s
+inline constexpr std::size_t contacts = 16;                      ///< most of a candidate
 }  // namespace harm_limits
 
 /// What a crash does to one body, as harm sees it.
 struct HarmExposure {
-  BodyKind kind = BodyKind::car;
-  bool ego = false;
-  double delta_v_mps = 0.0;
-  double pdof_deg = 0.0;
+  BodyKind kind = BodyKind::car;   ///< what is hit
+  bool ego = false;                ///< it is the ego
+  double delta_v_mps = 0.0;        ///< change of its velocity, m/s
+  double pdof_deg = 0.0;           ///< where the force comes from, degrees clockwise from ahead
   double closing_speed_mps = 0.0;  ///< as `struck_speed_mps` has it, for people outside cars
   double leading_edge_m = 0.75;    ///< of what hit it
-  double crush_energy_j = 0.0;
+  double crush_energy_j = 0.0;     ///< turned into its damage, J
 };
 
 /// Harm to the people in or on one body: their number times the risk times their weight, and the
@@ -125,12 +126,12 @@ CRASHRANK_API double most_harm(const HarmExposure& exposure, const HarmOptions& 
 /// One way in which all that is not known may lie. The same sample holds for every candidate and
 /// every contact: what is wrong in the same way for all of them does not disturb their order.
 struct HarmSample {
-  double friction = 0.3;
-  double strength = 1.0;
-  double restitution = 0.0;
-  RiskModel model = RiskModel::tum;
-  double occupant_speed = 1.0;  ///< times the speed at which an occupant's curve is read
-  double outside_speed = 1.0;   ///< and that of people outside cars
+  double friction = 0.3;             ///< between the bodies
+  double strength = 1.0;             ///< times the default
+  double restitution = 0.0;          ///< share of delta-v
+  RiskModel model = RiskModel::tum;  ///< whose curves
+  double occupant_speed = 1.0;       ///< times the speed at which an occupant's curve is read
+  double outside_speed = 1.0;        ///< and that of people outside cars
 };
 
 /// The samples of a set of options: first what is taken when nothing varies, then every corner of

@@ -25,6 +25,7 @@
 
 namespace crashrank {
 
+/// How candidates are ranked.
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
   /// Threads that share the work, 64 at most; 0 or 1: the calling thread does all. They share the
@@ -51,24 +52,24 @@ struct BodyDamage {
 /// Bounds on a score. Where the score is known: what the ranges of HarmOptions leave open of it
 /// under the chosen risk model (harm, delta-v, energy), equal for the other measures.
 struct ScoreInterval {
-  double lowest = 0.0;
-  double highest = 0.0;
+  double lowest = 0.0;   ///< the score is not below
+  double highest = 0.0;  ///< nor above
 };
 
 /// What a crash does to one body. Velocities in its own axes before the crash.
 struct BodyOutcome {
-  double delta_v_mps = 0.0;  ///< magnitude
-  double delta_v_x_mps = 0.0;
-  double delta_v_y_mps = 0.0;
-  double yaw_rate_change_radps = 0.0;
-  double pdof_deg = 0.0;  ///< where the force comes from, clockwise from ahead, [0, 360)
-  int clock = 12;
+  double delta_v_mps = 0.0;            ///< magnitude
+  double delta_v_x_mps = 0.0;          ///< forward, m/s
+  double delta_v_y_mps = 0.0;          ///< to the left, m/s
+  double yaw_rate_change_radps = 0.0;  ///< to the left, rad/s
+  double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
+  int clock = 12;               ///< the PDOF as an hour, 12 ahead
   double crush_energy_j = 0.0;  ///< from here on 0 unless the crash was simulated
-  double ees_mps = 0.0;
-  double crush_m = 0.0;
-  double intrusion_m = 0.0;
-  double harm = 0.0;
-  std::string cdc;
+  double ees_mps = 0.0;         ///< energy-equivalent speed, m/s
+  double crush_m = 0.0;         ///< deepest, m
+  double intrusion_m = 0.0;     ///< into the passengers' cage, m
+  double harm = 0.0;            ///< persons, as weighted
+  std::string cdc;              ///< collision deformation classification, SAE J224
 };
 
 /// The crash with one body: it as it moves when met, the ego as the contacts before left it.
@@ -76,23 +77,23 @@ struct ContactSeverity {
   /// Crush and harm were told (measures that need them). The changes of velocity are the pulse's in
   /// any case: the same numbers under every measure.
   bool simulated = false;
-  bool slides = false;
-  double duration_s = 0.0;
-  double dissipated_j = 0.0;
-  BodyOutcome ego;
-  BodyOutcome other;
-  double harm = 0.0;
+  bool slides = false;        ///< past each other rather than into
+  double duration_s = 0.0;    ///< of the crush phase, s
+  double dissipated_j = 0.0;  ///< turned into damage and heat, J
+  BodyOutcome ego;            ///< what it does to the ego
+  BodyOutcome other;          ///< and to the other
+  double harm = 0.0;          ///< persons, as weighted
   /// What the contact adds to the score in each of RankResult::samples; empty where there are none.
   std::vector<double> sample_scores;
 };
 
 /// One body hit by a candidate. Points and directions in world coordinates.
 struct Contact {
-  std::size_t actor = 0;  ///< index into Scenario::actors
-  ImpactState state = ImpactState::contact;
-  double time_of_impact_s = 0.0;
-  double gap_m = 0.0;  ///< between the surfaces then, at most the tolerance
-  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
+  std::size_t actor = 0;                     ///< index into Scenario::actors
+  ImpactState state = ImpactState::contact;  ///< how the bodies meet
+  double time_of_impact_s = 0.0;             ///< from the decision, s
+  double gap_m = 0.0;                        ///< between the surfaces then, at most the tolerance
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< where they meet, world, m
   /// Unit, from the ego towards the other; zero for a body that lies inside another.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d closing = Eigen::Vector3d::Zero();  ///< ego's velocity less the other's there
@@ -105,23 +106,23 @@ struct Contact {
   double closing_energy_j = 0.0;
   double crush_s = 0.0;  ///< time along the motions for which the damage was read; 0 for a depth
   double crush_m = 0.0;  ///< way of the contact point relative to the other body in that
-  BodyDamage ego;
-  BodyDamage other;
-  ContactSeverity severity;
+  BodyDamage ego;        ///< what it damages of the ego
+  BodyDamage other;      ///< and of the other
+  ContactSeverity severity;  ///< the crash that begins with it
 };
 
 /// A pass closer than the tolerance that touches nothing.
 struct Graze {
-  std::size_t actor = 0;
-  double time_s = 0.0;
+  std::size_t actor = 0;  ///< index into Scenario::actors
+  double time_s = 0.0;    ///< s
 };
 
 /// What choosing a candidate leads to.
 struct CandidateResult {
-  std::size_t candidate = 0;    ///< index into RankResult::candidates
-  std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
-  ScoreInterval score_interval;
-  bool collides = false;
+  std::size_t candidate = 0;     ///< index into RankResult::candidates
+  std::optional<double> score;   ///< in the measure's unit; absent where only the interval is known
+  ScoreInterval score_interval;  ///< what the score is within
+  bool collides = false;         ///< it touches somebody
   /// In time order (then by actor). Measures that simulate the crash: the first contact, then what
   /// the ego meets as the crash leaves it (AfterImpact). The others: the first contact and all that
   /// begin within the crush of it along the planned motion.
@@ -132,7 +133,7 @@ struct CandidateResult {
   std::vector<double> sample_scores;  ///< by RankResult::samples; empty where there are none
   /// Best and worst place over the samples, from 0; the place it has where there are none.
   std::size_t best_place = 0;
-  std::size_t worst_place = 0;
+  std::size_t worst_place = 0;  ///< and the worst
   /// Share of the samples in which the next in the ranking scores lower than this one.
   double overtaken = 0.0;
   /// `overtaken` is at most `separable_share`: this place and the next can be told apart.
@@ -146,9 +147,9 @@ inline constexpr double separable_share = 0.05;
 
 /// A body as it was ranked with.
 struct RankedBody {
-  std::size_t model = 0;  ///< index into Scenario::models
-  double mass_kg = 0.0;   ///< infinity: does not move
-  bool mass_guessed = false;
+  std::size_t model = 0;      ///< index into Scenario::models
+  double mass_kg = 0.0;       ///< infinity: does not move
+  bool mass_guessed = false;  ///< from kind and size
 };
 
 /// Work done, the same for every number of workers but for `damage`, which also counts the box
@@ -158,9 +159,10 @@ struct RankWork {
   std::uint64_t body_pairs = 0;      ///< bodies that came near enough for a closer look
   ImpactWork impact;                 ///< looking for first contacts
   std::uint64_t damage_queries = 0;  ///< poses at which intersecting triangles were listed
-  CollideWork damage;
-  std::uint64_t paths = 0;  ///< corners whose way through the other body was followed
+  CollideWork damage;                ///< done by those
+  std::uint64_t paths = 0;           ///< corners whose way through the other body was followed
 
+  /// Adds up.
   RankWork& operator+=(const RankWork& other) {
     box_tests += other.box_tests;
     body_pairs += other.body_pairs;
@@ -174,10 +176,10 @@ struct RankWork {
 
 /// What a Ranker's call did and how long it took.
 struct RankerEffort {
-  std::uint64_t work = 0;          ///< tests of boxes, triangles and facets: what a budget cuts
-  std::size_t without_search = 0;  ///< scores known from the swept boxes alone
-  std::size_t without_crash = 0;   ///< and from the search for contacts, no crash simulated
-  std::size_t fully_evaluated = 0;
+  std::uint64_t work = 0;           ///< tests of boxes, triangles and facets: what a budget cuts
+  std::size_t without_search = 0;   ///< scores known from the swept boxes alone
+  std::size_t without_crash = 0;    ///< and from the search for contacts, no crash simulated
+  std::size_t fully_evaluated = 0;  ///< scores known from simulated crashes
   std::size_t left_early = 0;  ///< bounds showed that they cannot be first; not evaluated fully
   double prepare_s = 0.0;      ///< of Ranker::prepare, wall time, before the call
   double bounds_s = 0.0;       ///< in the swept boxes' round
@@ -186,8 +188,8 @@ struct RankerEffort {
 
 /// The answer, least harmful first.
 struct RankResult {
-  Measure measure = Measure::polygons;
-  HarmOptions harm;  ///< as it was counted with
+  Measure measure = Measure::polygons;  ///< what was compared
+  HarmOptions harm;                     ///< as it was counted with
   /// In which harm, delta-v and energy were evaluated, the first where nothing varies; empty for
   /// other measures and without HarmOptions::intervals.
   std::vector<HarmSample> samples;
@@ -196,11 +198,11 @@ struct RankResult {
   bool complete = true;                  ///< every score is known
   bool proved = true;                    ///< no other candidate can still take the first place
   std::vector<std::size_t> in_race;      ///< candidates that can be first, best guess first
-  RankedBody ego;
-  std::vector<RankedBody> actors;
-  RankWork work;
-  double elapsed_s = 0.0;              ///< wall time of the call
-  std::optional<RankerEffort> effort;  ///< where a Ranker told it
+  RankedBody ego;                        ///< the ego
+  std::vector<RankedBody> actors;        ///< in the scenario's order
+  RankWork work;                         ///< done for all
+  double elapsed_s = 0.0;                ///< wall time of the call
+  std::optional<RankerEffort> effort;    ///< where a Ranker told it
 };
 
 /// Ranks the candidates of a scenario by what they would destroy. `models` belong to

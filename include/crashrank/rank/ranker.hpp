@@ -18,16 +18,17 @@ namespace crashrank {
 
 /// What a Ranker sets memory aside for; more is refused.
 struct RankerLimits {
-  std::size_t candidates = 1024;
-  std::size_t actors = 64;
+  std::size_t candidates = 1024;      ///< most
+  std::size_t actors = 64;            ///< most
   std::size_t triangles = 4'000'000;  ///< of any one model
 };
 
+/// How a Ranker ranks, and what it sets aside.
 struct RankerOptions {
   /// Measure, harm, impact, and workers: the calling thread and `workers` - 1 more share the work.
   /// Samples of the harm's ranges are not evaluated, whatever HarmOptions::intervals says.
   RankOptions rank;
-  RankerLimits limits;
+  RankerLimits limits;        ///< what memory is set aside for
   bool pinned = false;        ///< see PoolOptions
   std::int32_t spin_us = -1;  ///< see PoolOptions
 };
@@ -54,29 +55,29 @@ enum class RankStage : std::uint8_t {
 
 /// One candidate of an answer.
 struct RankedCandidate {
-  std::size_t candidate = 0;  ///< index into the candidates asked about
-  RankStage stage = RankStage::unseen;
-  bool known = false;      ///< `score` is the final one
-  bool in_race = true;     ///< can still be first
-  double score = 0.0;      ///< where it is known
-  ScoreInterval interval;  ///< holds the final score, whatever was left undone
+  std::size_t candidate = 0;            ///< index into the candidates asked about
+  RankStage stage = RankStage::unseen;  ///< how far it was followed
+  bool known = false;                   ///< `score` is the final one
+  bool in_race = true;                  ///< can still be first
+  double score = 0.0;                   ///< where it is known
+  ScoreInterval interval;               ///< holds the final score, whatever was left undone
   /// From the stage `searched` on: its first contact.
   bool collides = false;
-  bool grazes = false;  ///< passes something within the tolerance before that
-  std::size_t actor = 0;
-  double time_of_impact_s = 0.0;
-  double closing_speed_mps = 0.0;
+  bool grazes = false;             ///< passes something within the tolerance before that
+  std::size_t actor = 0;           ///< index into Scenario::actors
+  double time_of_impact_s = 0.0;   ///< from the decision
+  double closing_speed_mps = 0.0;  ///< of the points that meet
 };
 
 /// An answer, most promising first; it looks into the Ranker and stands until its next call.
 struct RankerAnswer {
   Status status = Success{};  ///< usage where the call was refused; nothing is ranked then
-  View<const RankedCandidate> ranking;
-  bool complete = false;    ///< every score is known
-  bool proved = false;      ///< no other candidate can still take the first place
-  std::size_t in_race = 0;  ///< how many can
-  double elapsed_s = 0.0;   ///< from the call until it returns, as far as it can be told within it
-  RankerEffort effort;
+  View<const RankedCandidate> ranking;  ///< every candidate once
+  bool complete = false;                ///< every score is known
+  bool proved = false;                  ///< no other candidate can still take the first place
+  std::size_t in_race = 0;              ///< how many can
+  double elapsed_s = 0.0;  ///< from the call until it returns, as far as it can be told within it
+  RankerEffort effort;     ///< what it took
   /// Of the ranking: order, stages and the bits of scores and intervals. The same on every machine
   /// whenever the answer is.
   std::uint64_t hash = 0;
@@ -105,8 +106,10 @@ public:
   static Result<Ranker> prepare(const Scenario& scenario, View<const Model> models,
                                 const RankerOptions& options = {});
 
+  /// Moves; the workers go along.
   Ranker(Ranker&&) noexcept;
-  Ranker& operator=(Ranker&&) noexcept;
+  Ranker& operator=(Ranker&&) noexcept;  ///< Moves; ends the workers it had.
+  /// Ends the workers.
   ~Ranker();
 
   /// The situation has changed: where the ego starts, and how each actor moves from now on, in the

@@ -20,106 +20,106 @@ namespace crashrank {
 
 /// A shape of a scenario, before anybody has read its mesh.
 struct ScenarioModel {
-  std::string name;
+  std::string name;  ///< unique
   std::string mesh;  ///< as the scenario writes it
   std::string path;  ///< where it is; what `load_scenario` found to be allowed, else empty
-  BodyKind kind = BodyKind::car;
+  BodyKind kind = BodyKind::car;  ///< what it is
   std::optional<double> mass_kg;  ///< absent: guessed from kind and size
-  ImportTransform transform;
+  ImportTransform transform;      ///< how its mesh is read
 };
 
 /// The ego vehicle at time 0.
 struct ScenarioEgo {
-  std::size_t model = 0;  ///< index into Scenario::models
-  Pose pose;
-  double speed_mps = 0.0;             ///< along its forward axis; negative when reversing
-  double yaw_rate_radps = 0.0;        ///< left positive
-  std::optional<double> wheelbase_m;  ///< absent: 0.6 of the mesh's length
-  double max_acceleration_mps2 = 3.0;
+  std::size_t model = 0;               ///< index into Scenario::models
+  Pose pose;                           ///< body to world at time 0
+  double speed_mps = 0.0;              ///< along its forward axis; negative when reversing
+  double yaw_rate_radps = 0.0;         ///< left positive
+  std::optional<double> wheelbase_m;   ///< absent: 0.6 of the mesh's length
+  double max_acceleration_mps2 = 3.0;  ///< of the engine, m/s²
   double max_steering_rad = 0.6108652381980153;  ///< 35 degrees
 };
 
 /// Something that can be hit, and how it moves: from its pose with speed, acceleration and yaw
 /// rate, or through timed poses when there are any.
 struct ScenarioActor {
-  std::string name;
-  std::size_t model = 0;  ///< index into Scenario::models
-  Pose pose;
+  std::string name;                ///< unique
+  std::size_t model = 0;           ///< index into Scenario::models
+  Pose pose;                       ///< body to world at time 0
   double speed_mps = 0.0;          ///< along its forward axis
   double acceleration_mps2 = 0.0;  ///< along its forward axis; against the speed it brakes
   double yaw_rate_radps = 0.0;     ///< held while it moves
-  std::vector<TimedPose> poses;
+  std::vector<TimedPose> poses;    ///< where there are any, they say all
 };
 
 /// A manoeuvre written out: acceleration with steering or yaw rate, or timed poses when there are
 /// any. With neither steering nor yaw rate the ego's path keeps its curvature.
 struct ListedCandidate {
-  std::string name;
+  std::string name;                      ///< unique
   double acceleration_mps2 = 0.0;        ///< along the forward axis; against the speed it brakes
   std::optional<double> steering_rad;    ///< of the road wheels, left positive
   std::optional<double> yaw_rate_radps;  ///< held while it moves
-  std::vector<TimedPose> poses;
+  std::vector<TimedPose> poses;          ///< where there are any, they say all
 };
 
 /// Size of a generated grid of manoeuvres.
 struct CandidateGrid {
-  std::size_t accelerations = 15;
-  std::size_t steerings = 15;
+  std::size_t accelerations = 15;  ///< levels between braking and speeding up
+  std::size_t steerings = 15;      ///< levels between right and left
 };
 
 /// How far bodies move on past first contact before the damage is read: for a time along their
 /// motions, or, when `depth_m` is there, along their relative velocity at contact. The default
 /// 0.05 s is as deep as bodies get that are stopped evenly within a crash pulse of 0.1 s.
 struct Crush {
-  double time_s = 0.05;
-  std::optional<double> depth_m;
+  double time_s = 0.05;           ///< s
+  std::optional<double> depth_m;  ///< m; in place of the time
 };
 
 /// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json.
 struct Scenario {
-  std::string name;
-  std::string description;
-  std::vector<ScenarioModel> models;  ///< sorted by name
-  ScenarioEgo ego;
-  std::vector<ListedCandidate> listed;
-  std::optional<CandidateGrid> grid = CandidateGrid{};
-  bool add_straight_braking = true;
-  std::vector<ScenarioActor> actors;
-  double horizon_s = 4.0;
-  Crush crush;
-  Measure measure = Measure::harm;
+  std::string name;                                     ///< unique
+  std::string description;                              ///< for people
+  std::vector<ScenarioModel> models;                    ///< sorted by name
+  ScenarioEgo ego;                                      ///< who decides
+  std::vector<ListedCandidate> listed;                  ///< manoeuvres written out
+  std::optional<CandidateGrid> grid = CandidateGrid{};  ///< absent: none is generated
+  bool add_straight_braking = true;                     ///< where nobody listed it
+  std::vector<ScenarioActor> actors;                    ///< who can be hit
+  double horizon_s = 4.0;                               ///< how far motions are followed, s
+  Crush crush;                                          ///< how far past first contact
+  Measure measure = Measure::harm;                      ///< what is compared
   HarmOptions harm;   ///< weights and ranges; the defaults where the file is silent
   double grip = 0.8;  ///< friction between tyre and road
 };
 
 /// Bounds on what a scenario may ask for; the published schema states the same numbers.
 namespace scenario_limits {
-inline constexpr std::size_t file_bytes = std::size_t{16} << 20;
-inline constexpr std::size_t models = 256;
-inline constexpr std::size_t actors = 1000;
-inline constexpr std::size_t listed_candidates = 10'000;
-inline constexpr std::size_t grid_side = 101;
-inline constexpr std::size_t poses = 10'000;
-inline constexpr std::size_t name_characters = 128;
-inline constexpr std::size_t description_characters = 4000;
-inline constexpr std::size_t path_characters = 4096;
-inline constexpr double horizon_s = 60.0;
-inline constexpr double position_m = 1e5;
-inline constexpr double angle_deg = 360.0;
-inline constexpr double speed_mps = 150.0;
-inline constexpr double acceleration_mps2 = 50.0;
-inline constexpr double yaw_rate_dps = 720.0;
-inline constexpr double steering_deg = 80.0;
-inline constexpr double min_wheelbase_m = 0.1;
-inline constexpr double max_wheelbase_m = 30.0;
-inline constexpr double min_mass_kg = 0.1;
-inline constexpr double max_mass_kg = 1e6;
-inline constexpr double min_scale = 1e-6;
-inline constexpr double max_scale = 1e6;
-inline constexpr double min_grip = 0.01;
-inline constexpr double max_grip = 3.0;
-inline constexpr double crush_time_s = 1.0;
-inline constexpr double crush_depth_m = 5.0;
+inline constexpr std::size_t file_bytes = std::size_t{16} << 20;  ///< of the text
+inline constexpr std::size_t models = 256;                        ///< most
+inline constexpr std::size_t actors = 1000;                       ///< most
+inline constexpr std::size_t listed_candidates = 10'000;          ///< most
+inline constexpr std::size_t grid_side = 101;                     ///< most levels of each
+inline constexpr std::size_t poses = 10'000;                      ///< most of one motion
+inline constexpr std::size_t name_characters = 128;               ///< most
+inline constexpr std::size_t description_characters = 4000;       ///< most
+inline constexpr std::size_t path_characters = 4096;              ///< most
+inline constexpr double horizon_s = 60.0;                         ///< most, s
+inline constexpr double position_m = 1e5;                         ///< most, each way, m
+inline constexpr double angle_deg = 360.0;                        ///< most, each way
+inline constexpr double speed_mps = 150.0;                        ///< most, each way, m/s
+inline constexpr double acceleration_mps2 = 50.0;                 ///< most, each way, m/s²
+inline constexpr double yaw_rate_dps = 720.0;                     ///< most, each way
+inline constexpr double steering_deg = 80.0;                      ///< most, each way
+inline constexpr double min_wheelbase_m = 0.1;                    ///< m
+inline constexpr double max_wheelbase_m = 30.0;                   ///< m
+inline constexpr double min_mass_kg = 0.1;                        ///< kg
+inline constexpr double max_mass_kg = 1e6;                        ///< kg
+inline constexpr double min_scale = 1e-6;                         ///< metres per file unit
+inline constexpr double max_scale = 1e6;                          ///< metres per file unit
+inline constexpr double min_grip = 0.01;                          ///< least friction
+inline constexpr double max_grip = 3.0;                           ///< most friction
+inline constexpr double crush_time_s = 1.0;                       ///< most, s
+inline constexpr double crush_depth_m = 5.0;                      ///< most, m
 }  // namespace scenario_limits
 
 /// Reads a scenario from its text; `file` only names it in errors and lends it its name when the
@@ -130,7 +130,7 @@ CRASHRANK_API Result<Scenario> parse_scenario(const std::string& text, const std
 
 /// Where a scenario's meshes may lie besides the places it has a right to.
 struct ScenarioPaths {
-  std::vector<std::string> allowed_folders;
+  std::vector<std::string> allowed_folders;  ///< meshes may lie there, too
 };
 
 /// Finds where a mesh named by a scenario is, symbolic links followed. It has to lie in the

@@ -11,6 +11,7 @@
 
 namespace crashrank {
 
+/// What the page shows.
 struct HtmlReportOptions {
   /// Candidates drawn in plan and in 3-D, best first, and the worst one; 0 for all. Every candidate
   /// is in the table.

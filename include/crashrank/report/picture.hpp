@@ -15,9 +15,9 @@ namespace crashrank {
 
 /// Rows from the top, pixels from the left, three bytes sRGB each.
 struct Image {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> rgb;
+  int width = 0;                  ///< pixels
+  int height = 0;                 ///< pixels
+  std::vector<std::uint8_t> rgb;  ///< three bytes a pixel, rows from the top
 };
 
 /// A body in a picture.
@@ -27,13 +27,14 @@ struct PictureBody {
   View<const std::uint32_t> damaged;   ///< triangles drawn in the colour of damage
 };
 
+/// How large a picture is, and from where.
 struct PictureOptions {
-  int width_px = 1200;
-  int height_px = 750;
+  int width_px = 1200;  ///< pixels
+  int height_px = 750;  ///< pixels
   /// Where the camera stands, seen from the middle of the scene, in world axes: degrees
   /// counter-clockwise from +x, and degrees above the ground.
   double azimuth_deg = 40.0;
-  double elevation_deg = 22.0;
+  double elevation_deg = 22.0;      ///< of the camera above the ground
   double field_of_view_deg = 28.0;  ///< across the picture's width
   bool edges = true;                ///< draw the triangles' edges where they are large enough
 };

@@ -21,6 +21,7 @@ namespace crashrank {
 CRASHRANK_API std::string ranking_json(const Scenario& scenario, View<const Model> models,
                                        const RankResult& result);
 
+/// What the table shows.
 struct RankingTextOptions {
   std::size_t top = 0;   ///< most candidates shown, 0 for all
   bool colours = false;  ///< ANSI codes for the titles

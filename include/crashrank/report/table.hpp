@@ -11,11 +11,13 @@ namespace crashrank {
 /// numbers right. Cells are escaped for a terminal as they are added.
 class CRASHRANK_API Table {
 public:
+  /// A column of a table.
   struct Column {
-    std::string title;
+    std::string title;   ///< its head
     bool right = false;  ///< numbers
   };
 
+  /// An empty table with these columns.
   explicit Table(std::vector<Column> columns);
 
   /// Cells beyond the columns are dropped, missing ones stay empty.

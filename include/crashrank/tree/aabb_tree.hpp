@@ -34,6 +34,7 @@ struct Node {
   std::uint32_t first = 0;  ///< inner node: index of its left child; leaf: first slot
   std::uint32_t count = 0;  ///< leaf: number of triangles, at least 1; inner node: 0
 
+  /// True for a node that holds triangles itself.
   bool is_leaf() const noexcept { return count != 0; }
 };
 
@@ -49,7 +50,9 @@ struct AabbTree {
   Column<Triangle> triangles;  ///< corners by slot, body coordinates
   std::uint32_t depth = 0;     ///< see `measure_depth`; bounds every traversal's stack
 
+  /// True without any node.
   bool empty() const noexcept { return nodes.empty(); }
+  /// Memory that it holds, but for slack.
   std::size_t bytes() const noexcept {
     return nodes.size() * sizeof(Node) + order.size() * sizeof(std::uint32_t) +
            triangles.size() * sizeof(Triangle);
@@ -72,8 +75,8 @@ inline std::uint32_t measure_depth(View<const Node> nodes) {
 
 /// A run of consecutive elements.
 struct Range {
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
+  std::uint32_t first = 0;  ///< the first of them
+  std::uint32_t count = 0;  ///< how many
 };
 
 /// Slots of all triangles below a node. O(depth).

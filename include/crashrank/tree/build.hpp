@@ -20,9 +20,10 @@
 
 namespace crashrank {
 
+/// How a tree is built.
 struct BuildOptions {
-  SplitRule rule = SplitRule::min_relative_segment;
-  BoxFrame frame = BoxFrame::world;
+  SplitRule rule = SplitRule::min_relative_segment;  ///< where sets are split
+  BoxFrame frame = BoxFrame::world;                  ///< axes of the boxes
   std::uint32_t leaf_size = 4;  ///< most triangles a leaf may hold, 1 to 255; `paper` means 1
   /// Split no set that fits into a leaf. Otherwise min_relative_segment and sah make smaller leaves
   /// where that is expected to save tests: fewer triangle pairs tested for more nodes.

@@ -12,8 +12,8 @@ namespace crashrank {
 /// A body ready for collision: its surface and the trees over it. Prepared once, read by any number
 /// of threads.
 struct Model {
-  TriangleMesh mesh;
-  AabbTree tree;
+  TriangleMesh mesh;   ///< its surface
+  AabbTree tree;       ///< the binary tree over it
   WideTree wide = {};  ///< what the vector engine reads; empty where only the scalar one can serve
 };
 

@@ -21,22 +21,23 @@ inline constexpr std::uint32_t model_file_version = 1;
 /// A body as a model file keeps it: ready for queries, with what else is known of it.
 /// docs/model-file.md has the file byte by byte.
 struct StoredModel {
-  Model model;
+  Model model;  ///< ready for queries
   /// How the file that the mesh came from was turned into body coordinates; done already.
   ImportTransform transform;
-  ShellProperties mass;
+  ShellProperties mass;  ///< of the body
 };
 
 /// What a model file was, beside what is in it.
 struct ModelFileFacts {
-  std::uint32_t version = 0;
+  std::uint32_t version = 0;   ///< of the format
   std::uint32_t checksum = 0;  ///< CRC-32C
-  std::size_t bytes = 0;
+  std::size_t bytes = 0;       ///< of the file
 };
 
+/// A model file, loaded.
 struct LoadedModel {
-  StoredModel stored;
-  ModelFileFacts facts;
+  StoredModel stored;    ///< what is in it
+  ModelFileFacts facts;  ///< what it was
 };
 
 /// Where the bytes of a loaded model lie.
@@ -53,8 +54,9 @@ enum class ModelStorage {
   mapped,
 };
 
+/// How a model file is loaded.
 struct LoadModelOptions {
-  ModelStorage storage = ModelStorage::copied;
+  ModelStorage storage = ModelStorage::copied;   ///< where its bytes lie
   std::size_t max_bytes = std::size_t{4} << 30;  ///< of a file, limit_exceeded above
 };
 

@@ -9,9 +9,9 @@ namespace crashrank {
 
 /// What a tree is worth, without a query. For inspection and for comparing builds.
 struct TreeQuality {
-  std::uint32_t depth = 0;  ///< edges on the longest way from the root to a leaf
-  std::size_t nodes = 0;    ///< inner nodes and leaves
-  std::size_t leaves = 0;
+  std::uint32_t depth = 0;          ///< edges on the longest way from the root to a leaf
+  std::size_t nodes = 0;            ///< inner nodes and leaves
+  std::size_t leaves = 0;           ///< nodes that hold triangles
   double triangles_per_leaf = 0.0;  ///< mean
   /// Surface-area cost with both kinds of test at 1: the sum over inner nodes of their surface, and
   /// over leaves of surface times triangles, over the root's surface. 0 for a root without surface.
