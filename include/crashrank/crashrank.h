@@ -358,7 +358,9 @@ CRASHRANK_API const char* crashrank_ranker_candidate_name(const crashrank_ranker
 
 /// Reads a mesh file (OBJ, STL, PLY, OFF, glTF, Collada, FBX, 3DS, AC3D) as it stands, in a process
 /// of its own, or a model file here, and adds its model. Blocks until that has ended. Errors:
-/// bad_input, not_found, limit_exceeded; internal where the importer cannot be started.
+/// bad_input, not_found, limit_exceeded; internal where the importer cannot be started. The program
+/// crashrank-import is looked for where the environment variable CRASHRANK_IMPORTER says, beside
+/// this program, and where the library was configured to be installed.
 CRASHRANK_API crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
                                                        crashrank_error* error);
 /// Adds the models of all shapes of a loaded scenario, in their order, read as the scenario says;

@@ -21,8 +21,12 @@ if(KIND STREQUAL "installed")
   set(ENV{PKG_CONFIG_PATH} ${pc_dir}:$ENV{PKG_CONFIG_PATH})
   set(ENV{LD_LIBRARY_PATH} ${lib_dir}:$ENV{LD_LIBRARY_PATH})
 endif()
+# A whole library is compiled to be run once.
+if(KIND STREQUAL "subdirectory")
+  set(optimisation "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG")
+endif()
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer/${KIND} -B ${WORK}/build -G Ninja
-  -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${COMPILER}
+  -DCMAKE_BUILD_TYPE=Release ${optimisation} -DCMAKE_CXX_COMPILER=${COMPILER}
   -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_CXX_FLAGS=${FLAGS}
   -DCMAKE_C_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_C_FLAGS=${FLAGS} -DCMAKE_PREFIX_PATH=${PREFIX} -DCRASHRANK_SOURCE=${SOURCE})
 run(${CMAKE_COMMAND} --build ${WORK}/build -j 2)
@@ -96,6 +100,12 @@ if(KIND STREQUAL "installed")
   string(JSON first_choice GET "${ranking}" ranking 0 candidate)
   file(GLOB programs ${WORK}/build/bin/example_first_choice*)
   foreach(program ${programs})
+    # The package tells C++ where the importer is; a C program of a moved package is told so.
+    set(ENV{CRASHRANK_IMPORTER} "")
+    if(program MATCHES "_c$")
+      file(GLOB_RECURSE importer ${PREFIX}/*/crashrank-import)
+      set(ENV{CRASHRANK_IMPORTER} ${importer})
+    endif()
     execute_process(COMMAND ${program} ${scenario}
       RESULT_VARIABLE status OUTPUT_VARIABLE choice ERROR_VARIABLE trouble)
     if(NOT status EQUAL 0)
