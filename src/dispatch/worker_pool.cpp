@@ -26,11 +26,30 @@ namespace crashrank {
 
 namespace {
 
+/// A place for a task. The worker may look at it while the owner, who has taken the task back, puts
+/// the next one there: what it saw then counts for nothing.
+class Place {
+public:
+  void put(const WorkerPool::Task& task) noexcept {
+    run_.store(task.run, std::memory_order_relaxed);
+    context_.store(task.context, std::memory_order_relaxed);
+  }
+  WorkerPool::Task look() const noexcept {
+    return {run_.load(std::memory_order_relaxed), context_.load(std::memory_order_relaxed)};
+  }
+
+private:
+  std::atomic<decltype(WorkerPool::Task::run)> run_{};
+  std::atomic<void*> context_{nullptr};
+};
+
 /// A ring of two tasks with one writer, the owner, and one reader, the worker. The counters grow
 /// without end; a task's place is its number's last bit. A task belongs to whoever moves `claimed`
-/// past it: the worker, or the owner who wants it back. A sleeping worker waits for the bell.
+/// past it: the worker, or the owner who wants it back. The place of task n is written again, for
+/// n + 2, only once n is claimed, and claims go in order: who looks first and claims then has seen
+/// task n. A sleeping worker waits for the bell.
 struct alignas(64) Mailbox {
-  std::array<WorkerPool::Task, 2> ring{};
+  std::array<Place, 2> ring{};
   alignas(64) std::atomic<std::uint32_t> posted{0};
   std::atomic<std::uint32_t> bell{0};
   std::uint32_t recalled = 0;  ///< the owner's
@@ -108,11 +127,12 @@ struct WorkerPool::State {
       detail::wait_until(mail.bell, spin_ns,
                          [&] { return mail.posted.load(std::memory_order_acquire) != taken; });
       if (stop.load(std::memory_order_acquire)) return;
+      const Task task = mail.ring[taken & 1U].look();
       std::uint32_t next = taken;
       if (!mail.claimed.compare_exchange_strong(next, taken + 1, std::memory_order_acq_rel)) {
         continue;  // taken back
       }
-      run(mail.ring[taken & 1U], worker);
+      run(task, worker);
       mail.finished.fetch_add(1, std::memory_order_release);
       finished.fetch_add(1, std::memory_order_release);
       finished.notify_one();
@@ -190,7 +210,7 @@ std::uint32_t WorkerPool::outstanding(std::uint32_t worker) const noexcept {
 void WorkerPool::post(std::uint32_t worker, Task task) noexcept {
   assert(outstanding(worker) < 2);
   Mailbox& mail = state_->mailboxes[worker];
-  mail.ring[mail.posted.load(std::memory_order_relaxed) & 1U] = task;
+  mail.ring[mail.posted.load(std::memory_order_relaxed) & 1U].put(task);
   mail.posted.fetch_add(1, std::memory_order_release);
   mail.ring_bell();
 }
@@ -202,7 +222,7 @@ bool WorkerPool::recall(std::uint32_t worker, Task& task) noexcept {
   while (next != posted) {
     if (mail.claimed.compare_exchange_weak(next, next + 1, std::memory_order_acq_rel)) {
       ++mail.recalled;
-      task = mail.ring[next & 1U];
+      task = mail.ring[next & 1U].look();
       return true;
     }
   }
