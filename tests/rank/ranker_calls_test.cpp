@@ -1,5 +1,6 @@
 #include "crashrank/rank/ranker.hpp"
 
+#include "counted_allocations.hpp"
 #include "rank/random_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -27,41 +28,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #endif
-
-namespace {
-
-std::atomic<long> allocations{0};
-
-void* allocate(std::size_t bytes, std::size_t alignment) {
-  allocations.fetch_add(1, std::memory_order_relaxed);
-  const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-  void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
-
-// Not inlined: a compiler that sees one of a pair alone takes them for mismatched.
-[[gnu::noinline]] void* operator new(std::size_t bytes) {
-  return allocate(bytes, alignof(std::max_align_t));
-}
-[[gnu::noinline]] void* operator new[](std::size_t bytes) {
-  return allocate(bytes, alignof(std::max_align_t));
-}
-[[gnu::noinline]] void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return allocate(bytes, static_cast<std::size_t>(alignment));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
 
 namespace crashrank {
 namespace {
@@ -99,13 +65,13 @@ TEST(RankerCalls, NothingIsAllocatedFromTheFirstCallOn) {
         ASSERT_TRUE(ranker.ok());
         std::vector<Motion> moved = ready.motions;
         const Pose start = ready.scene.scenario.ego.pose;
-        const long before = allocations.load();
+        const long before = test::allocations.load();
         const RankerAnswer answer = ranker->rank(ready.candidates);
         RankBudget budget;
         budget.deadline_s = 1e-3;
         const RankerAnswer cut = ranker->rank(ready.candidates, budget);
         const Status status = ranker->move_actors(start, moved);
-        EXPECT_EQ(allocations.load(), before) << measure_name(measure) << ", seed " << seed;
+        EXPECT_EQ(test::allocations.load(), before) << measure_name(measure) << ", seed " << seed;
         EXPECT_TRUE(answer.complete);
         EXPECT_TRUE(cut.status);
         EXPECT_TRUE(status);

@@ -177,6 +177,8 @@ TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
         static_cast<unsigned long long>(Widths::percent[k]), widths.median(k),
         widths.shares[k].size(), static_cast<unsigned long long>(scenes));
   }
+  // Wanted is a fifth at a tenth of the work; as run it is 0.85 there. These bounds keep what is
+  // reached, they are not the goal.
   EXPECT_LT(widths.median(0), 0.95);
   EXPECT_LT(widths.median(4), 0.2);
 }
