@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
 
   StoredModel stored;
-  const double build = median_s(3, [&] {
+  const double build = median_s(1, [&] {
     Result<Model> model = make_model(bench::shipped_model("hatch", triangles));
     if (model) stored.model = std::move(*model);
     return model.ok();

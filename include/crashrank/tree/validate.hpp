@@ -55,20 +55,27 @@ inline IntLanes encloses(const LaneBox& box, Lanes point) {
 }
 inline bool all_three(IntLanes answer) { return (answer[0] & answer[1] & answer[2]) != 0; }
 
+/// A tree's box around the corners of one triangle, along the axes of the body.
+inline IntLanes encloses(const LaneBox& box, const Triangle& triangle) {
+  const std::array<Eigen::Vector3f, 3>& corner = triangle.corner;
+  // The last corner is read with what lies before it: nothing may lie behind.
+  const Lanes last = load_lanes(&corner[1][2]);
+  return encloses(box, load_lanes(corner[0].data())) & encloses(box, load_lanes(corner[1].data())) &
+         encloses(box, __builtin_shufflevector(last, last, 1, 2, 3, 3));
+}
+
 /// Whether a leaf's box encloses its triangles, in the frame of the tree.
 inline IntLanes leaf_encloses(const AabbTree& tree, const Node& leaf, const LaneBox& box) {
-  IntLanes inside = {-1, -1, -1, -1};
   const Triangle* const triangles = tree.triangles.data() + leaf.first;
+  if (tree.axes_are_world) {
+    // Most leaves hold one triangle or two: asked without a branch.
+    IntLanes inside = encloses(box, triangles[0]) & encloses(box, triangles[leaf.count - 1]);
+    for (std::uint32_t i = 1; i + 1 < leaf.count; ++i) inside &= encloses(box, triangles[i]);
+    return inside;
+  }
+  IntLanes inside = {-1, -1, -1, -1};
   for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    const std::array<Eigen::Vector3f, 3>& corner = triangles[i].corner;
-    if (tree.axes_are_world) {
-      // The last corner is not read together with what lies behind it: nothing may.
-      const Lanes last{corner[2][0], corner[2][1], corner[2][2], 0.0F};
-      inside &= encloses(box, load_lanes(corner[0].data())) &
-                encloses(box, load_lanes(corner[1].data())) & encloses(box, last);
-      continue;
-    }
-    for (const Eigen::Vector3f& point : corner) {
+    for (const Eigen::Vector3f& point : triangles[i].corner) {
       for (int axis = 0; axis < 3; ++axis) {
         const FloatInterval p = project(tree.axes, axis, point);
         if (!(leaf.box.min[axis] <= p.low && p.high <= leaf.box.max[axis])) inside[axis] = 0;
@@ -103,7 +110,8 @@ inline bool same_bytes(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return std::memcmp(a.data(), b.data(), 3 * sizeof(float)) == 0;
 }
 
-inline Status validate_slots(const AabbTree& tree, const TriangleMesh& mesh) {
+/// Which slot it is that breaks a rule, once it is known that one does.
+inline Error find_broken_slot(const AabbTree& tree, const TriangleMesh& mesh) {
   const auto broken = [](std::size_t slot, const char* reason) {
     return broken_tree("slot " + std::to_string(slot), reason);
   };
@@ -125,6 +133,54 @@ inline Status validate_slots(const AabbTree& tree, const TriangleMesh& mesh) {
       return broken(slot, "its corners are not those of its triangle");
     }
   }
+  return broken_tree("slots", "one of them is wrong");
+}
+
+/// Not zero where two points differ in a bit.
+inline std::uint64_t difference(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  std::uint64_t xy_a = 0;
+  std::uint64_t xy_b = 0;
+  std::uint32_t z_a = 0;
+  std::uint32_t z_b = 0;
+  std::memcpy(&xy_a, a.data(), sizeof xy_a);
+  std::memcpy(&xy_b, b.data(), sizeof xy_b);
+  std::memcpy(&z_a, a.data() + 2, sizeof z_a);
+  std::memcpy(&z_b, b.data() + 2, sizeof z_b);
+  return (xy_a ^ xy_b) | (z_a ^ z_b);
+}
+
+/// What is wrong is gathered without a branch and looked for afterwards. As many triangles seen as
+/// there are slots: none was seen twice.
+inline Status validate_slots(const AabbTree& tree, const TriangleMesh& mesh) {
+  const View<const std::array<std::uint32_t, 3>> triangles = mesh.triangles;
+  const View<const Eigen::Vector3f> vertices = mesh.vertices;
+  const View<const std::uint32_t> order = tree.order;
+  const View<const Triangle> corners = tree.triangles;
+  std::uint32_t last_triangle = 0;
+  std::uint32_t last_vertex = 0;
+  for (const std::uint32_t triangle : order) last_triangle = std::max(last_triangle, triangle);
+  for (const auto& [a, b, c] : triangles) {
+    last_vertex = std::max(last_vertex, std::max(std::max(a, b), c));
+  }
+  if (last_triangle >= triangles.size() || last_vertex >= vertices.size()) {
+    return find_broken_slot(tree, mesh);
+  }
+  std::vector<std::uint64_t> seen((triangles.size() + 63) / 64, 0);
+  std::uint64_t wrong = 0;
+  for (std::size_t slot = 0; slot < order.size(); ++slot) {
+    const std::uint32_t triangle = order[slot];
+    seen[triangle / 64] |= std::uint64_t{1} << triangle % 64;
+    const std::array<std::uint32_t, 3>& vertex = triangles[triangle];
+    const std::array<Eigen::Vector3f, 3>& corner = corners[slot].corner;
+    wrong |= difference(corner[0], vertices[vertex[0]]) |
+             difference(corner[1], vertices[vertex[1]]) |
+             difference(corner[2], vertices[vertex[2]]);
+  }
+  std::size_t different = 0;
+  for (const std::uint64_t word : seen) {
+    different += static_cast<std::size_t>(__builtin_popcountll(word));
+  }
+  if (wrong != 0 || different != order.size()) return find_broken_slot(tree, mesh);
   return Success{};
 }
 
@@ -157,25 +213,17 @@ inline Error find_broken_box(const AabbTree& tree) {
   return broken_tree("nodes", "a box is wrong");
 }
 
-/// Checks the nodes from the last to the first, children before parents, and notes what lies below
-/// each. Let the descendants of both children of a node lie where the layout puts them: the left
-/// one's from first + 2 on, the right one's right behind. Then those of the node are the run that
-/// begins at its left child, which ends within the array because theirs do, and no sum overflows.
-/// So when the root's run holds all other nodes, each of them is reached once. Slots alike.
-inline Status validate_nodes(const AabbTree& tree, Below* below) {
+/// Which node is not where the layout puts it, once it is known that one is not.
+inline Error find_misplaced_node(const AabbTree& tree, Below* below) {
   const View<const Node> nodes = tree.nodes;
   const std::size_t slots = tree.order.size();
-  IntLanes fine = {-1, -1, -1, -1};
   for (std::size_t i = nodes.size(); i-- > 0;) {
     const Node& node = nodes[i];
-    const LaneBox box = lanes(node);
-    fine &= box.min <= box.max;
     const std::uint32_t first = node.first;
     if (node.is_leaf()) {
       if (first >= slots || node.count > slots - first) {
         return broken_node(i, "its triangles are not where the layout puts them");
       }
-      fine &= leaf_encloses(tree, node, box);
       below[i] = {0, first, first + node.count, 0};
       continue;
     }
@@ -191,15 +239,71 @@ inline Status validate_nodes(const AabbTree& tree, Below* below) {
     if (left.end_slot != right.first_slot) {
       return broken_node(i, "its triangles are not where the layout puts them");
     }
-    fine &= encloses(box, lanes(nodes[first])) & encloses(box, lanes(nodes[first + 1]));
-    below[i] = {2 + left.nodes + right.nodes, left.first_slot, right.end_slot,
-                1 + std::max(left.depth, right.depth)};
+    below[i] = {2 + left.nodes + right.nodes, left.first_slot, right.end_slot, 0};
+  }
+  return broken_tree("nodes", "one of them is not where the layout puts it");
+}
+
+/// Whether every node is where the layout puts it, and notes what lies below each: from the last to
+/// the first, children before parents. Leaves and inner nodes take the same steps, since no
+/// processor can foresee which comes next: a leaf takes itself for its children, as does a node
+/// whose children do not exist. `leaves` receives the leaves, `fine` what is to be said of boxes.
+inline bool nodes_are_placed(const AabbTree& tree, Below* below, std::uint32_t* leaves,
+                             std::size_t& leaf_count, IntLanes& fine) {
+  const Node* const nodes = tree.nodes.data();
+  const std::size_t count = tree.nodes.size();
+  const std::size_t slots = tree.order.size();
+  bool placed = true;
+  leaf_count = 0;
+  for (std::size_t i = count; i-- > 0;) {
+    const Node& node = nodes[i];
+    const std::uint32_t first = node.first;
+    const bool leaf = node.count != 0;
+    const bool has_children = !leaf && first > i && first < count - 1;
+    const bool has_triangles = leaf && std::uint64_t{first} + node.count <= slots;
+    below[i] = {0, first, first + node.count, 0};
+    const std::size_t a = has_children ? first : i;
+    const std::size_t b = a + (has_children ? 1 : 0);
+    const Below left = below[a];
+    const Below right = below[b];
+    const bool in_order = (left.nodes == 0 || nodes[a].first == first + 2) &
+                          (right.nodes == 0 || nodes[b].first == first + 2 + left.nodes) &
+                          (left.end_slot == right.first_slot);
+    placed &= leaf ? has_triangles : has_children & in_order;
+    below[i].nodes = has_children ? 2 + left.nodes + right.nodes : 0;
+    below[i].first_slot = left.first_slot;
+    below[i].end_slot = right.end_slot;
+    below[i].depth = has_children ? 1 + std::max(left.depth, right.depth) : 0;
+    const LaneBox box = lanes(node);
+    fine &= (box.min <= box.max) & encloses(box, lanes(nodes[a])) & encloses(box, lanes(nodes[b]));
+    leaves[leaf_count] = static_cast<std::uint32_t>(i);
+    leaf_count += leaf ? 1 : 0;
+  }
+  return placed;
+}
+
+/// Checks the nodes. Let the descendants of both children of a node lie where the layout puts them:
+/// the left one's from first + 2 on, the right one's right behind. Then those of the node are the
+/// run that begins at its left child, which ends within the array because theirs do, and no sum
+/// overflows. So when the root's run holds all other nodes, each of them is reached once. Slots
+/// alike.
+inline Status validate_nodes(const AabbTree& tree, Below* below) {
+  const View<const Node> nodes = tree.nodes;
+  const std::unique_ptr<std::uint32_t[]> leaves(new std::uint32_t[nodes.size()]);
+  std::size_t leaf_count = 0;
+  IntLanes fine = {-1, -1, -1, -1};
+  if (!nodes_are_placed(tree, below, leaves.get(), leaf_count, fine)) {
+    return find_misplaced_node(tree, below);
+  }
+  for (std::size_t k = leaf_count; k-- > 0;) {
+    const Node& leaf = nodes[leaves[k]];
+    fine &= leaf_encloses(tree, leaf, lanes(leaf));
   }
   const Node& root = nodes[0];
   if (below[0].nodes != nodes.size() - 1 || (!root.is_leaf() && root.first != 1)) {
     return broken_tree("nodes", "some of them are below no other");
   }
-  if (below[0].first_slot != 0 || below[0].end_slot != slots) {
+  if (below[0].first_slot != 0 || below[0].end_slot != tree.order.size()) {
     return broken_tree("slots", "some of them are in no leaf");
   }
   if (tree.depth != below[0].depth) {

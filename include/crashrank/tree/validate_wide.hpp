@@ -145,13 +145,25 @@ private:
     if (used == 0 || used > 0xffU || (used & (used + 1)) != 0 || (node.leaf_lanes & ~used) != 0) {
       return broken(index, "its lanes are not marked as the layout has it");
     }
-    for (std::size_t i = 0; i < wide_lanes; ++i) {
-      if ((used >> i & 1U) != 0) continue;
-      bool idle = node.child[i] == 0;
+    // All lanes are looked at, those that count among the unused by a mask.
+    static constexpr std::array<int, 2 * wide_lanes> unused_from{0,  0,  0,  0,  0,  0,  0,  0,
+                                                                 -1, -1, -1, -1, -1, -1, -1, -1};
+    const int* const mask = &unused_from[wide_lanes - highest_bit(used) - 1];
+    const IntLanes idle_half = bits(all_lanes(unused_half));
+    IntLanes wrong = {0, 0, 0, 0};
+    for (std::size_t i = 0; i < wide_lanes; i += 4) {
+      IntLanes counts;
+      IntLanes child;
+      std::memcpy(&counts, mask + i, sizeof counts);
+      std::memcpy(&child, &node.child[i], sizeof child);
+      IntLanes found = child;
       for (std::size_t d = 0; d < 3; ++d) {
-        idle = idle && node.center[d][i] == 0.0F && node.half[d][i] == unused_half;
+        found |= load_bits(&node.center[d][i]) | (load_bits(&node.half[d][i]) ^ idle_half);
       }
-      if (!idle) return broken(index, "a lane without a child is not empty");
+      wrong |= counts & found;
+    }
+    if ((wrong[0] | wrong[1] | wrong[2] | wrong[3]) != 0) {
+      return broken(index, "a lane without a child is not empty");
     }
     return Success{};
   }
@@ -216,8 +228,7 @@ private:
       }
       const WideNode& node = nodes_[at.node];
       const std::uint32_t lowest = lowest_bit(at.lanes);
-      std::uint32_t highest = lowest;
-      while ((at.lanes >> (highest + 1) & 1U) != 0) ++highest;
+      const std::uint32_t highest = highest_bit(at.lanes);
       if (at.lanes >> lowest != (1U << (highest - lowest + 1)) - 1 ||
           lane(at.node, lowest).first != below_[i].first_slot ||
           lane(at.node, highest).end != below_[i].end_slot) {
@@ -244,14 +255,16 @@ private:
   bool encloses(float center, float half, float min, float max) const {
     const double c = center;
     const double h = half;
-    const double reach = std::max(static_cast<double>(max) - c, c - static_cast<double>(min));
-    return h >= reach * (1.0 + 0x1p-50) && std::abs(c) + h <= limit_;
+    const double above = static_cast<double>(max) - c;
+    const double below = c - static_cast<double>(min);
+    const double reach = above > below ? above : below;
+    return (h >= reach * (1.0 + 0x1p-50)) & (std::abs(c) + h <= limit_);
   }
   bool encloses_lane(const WideNode& node, std::size_t lane, const Box& box) const {
     bool all = true;
     for (std::size_t d = 0; d < 3; ++d) {
       const int axis = static_cast<int>(d);
-      all = all && encloses(node.center[d][lane], node.half[d][lane], box.min[axis], box.max[axis]);
+      all &= encloses(node.center[d][lane], node.half[d][lane], box.min[axis], box.max[axis]);
     }
     return all;
   }
@@ -259,15 +272,17 @@ private:
     bool all = true;
     for (std::size_t d = 0; d < 3; ++d) {
       const int axis = static_cast<int>(d);
-      all = all && encloses(node.own_center[d], node.own_half[d], box.min[axis], box.max[axis]);
+      all &= encloses(node.own_center[d], node.own_half[d], box.min[axis], box.max[axis]);
     }
     return all;
   }
 
+  // Of words that are not zero.
   static std::uint32_t lowest_bit(std::uint32_t bits) {
-    std::uint32_t bit = 0;
-    while ((bits >> bit & 1U) == 0) ++bit;
-    return bit;
+    return static_cast<std::uint32_t>(__builtin_ctz(bits));
+  }
+  static std::uint32_t highest_bit(std::uint32_t bits) {
+    return 31U - static_cast<std::uint32_t>(__builtin_clz(bits));
   }
   Lane& lane(std::uint32_t node, std::uint32_t index) { return lane_[node * wide_lanes + index]; }
 
