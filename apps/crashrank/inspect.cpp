@@ -113,21 +113,15 @@ std::string to_text(const std::string& file, const ImportedMesh& imported, bool 
 /// A mesh file, or the mesh of a model file.
 Result<ImportedMesh> look_at(const std::string& file, const MeshArguments& arguments,
                              std::optional<Compiled>& compiled) {
-  if (!is_model_file(file)) return load_mesh(file, arguments, false);
-  if (arguments.given()) {
-    return Error{ErrorCode::usage,
-                 file,
-                 {},
-                 "a model file is in body coordinates already",
-                 "give --scale, --up, --forward and --origin to crashrank compile"};
-  }
-  Result<LoadedModel> loaded = load_model(file);
-  if (!loaded) return loaded.error();
+  Result<MeshOrModel> read = load_mesh_or_model(file, arguments);
+  if (!read) return read.error();
+  if (!read->model) return std::move(read->mesh);
+  LoadedModel& loaded = *read->model;
   ImportedMesh mesh;
-  mesh.mesh = loaded->stored.model.mesh;
+  mesh.mesh = loaded.stored.model.mesh;
   mesh.quality = assess(mesh.mesh);
   mesh.warnings = mesh.quality.warnings;
-  compiled = Compiled{loaded->facts, std::move(loaded->stored)};
+  compiled = Compiled{loaded.facts, std::move(loaded.stored)};
   return mesh;
 }
 

@@ -101,18 +101,21 @@ namespace {
 /// Where a mesh's bytes are: its file, or one that standard input was written to.
 class Source {
 public:
-  static Result<Source> of(const std::string& path, const MeshArguments& arguments) {
+  /// Where `models` says that model files are welcome, one on standard input needs no --format.
+  static Result<Source> of(const std::string& path, const MeshArguments& arguments, bool models) {
     Source source;
     source.path_ = path;
     if (!is_standard(path)) return source;
-    if (arguments.format.empty()) {
-      return make_error(ErrorCode::usage, "standard input has no name to tell its format from",
-                        "give --format, such as --format obj");
-    }
-    Result<StandardInputFile> file =
-        StandardInputFile::receive(ImportLimits{}.file_bytes, escape_file_name(arguments.format));
+    const Error unknown =
+        make_error(ErrorCode::usage, "standard input has no name to tell its format from",
+                   "give --format, such as --format obj");
+    const bool named = !arguments.format.empty();
+    if (!named && !models) return unknown;
+    Result<StandardInputFile> file = StandardInputFile::receive(
+        ImportLimits{}.file_bytes, named ? escape_file_name(arguments.format) : "crm");
     if (!file) return file.error();
     source.received_ = std::move(*file);
+    if (!named && !is_model_file(source.path())) return unknown;
     return source;
   }
 
@@ -159,14 +162,35 @@ Error of_file(Error error, const std::string& file) {
 }  // namespace
 
 Result<ImportedMesh> load_mesh(const std::string& path, const MeshArguments& arguments, bool tell) {
-  const Result<Source> source = Source::of(path, arguments);
+  const Result<Source> source = Source::of(path, arguments, false);
   if (!source) return source.error();
   return import_from(*source, arguments, tell);
 }
 
+Result<MeshOrModel> load_mesh_or_model(const std::string& path, const MeshArguments& arguments) {
+  const Result<Source> source = Source::of(path, arguments, true);
+  if (!source) return source.error();
+  MeshOrModel read;
+  if (!is_model_file(source->path())) {
+    Result<ImportedMesh> imported = import_from(*source, arguments, false);
+    if (!imported) return imported.error();
+    read.mesh = std::move(*imported);
+    return read;
+  }
+  if (arguments.given()) {
+    return of_file(make_error(ErrorCode::usage, "a model file is in body coordinates already",
+                              "give --scale, --up, --forward and --origin to crashrank compile"),
+                   source->shown());
+  }
+  Result<LoadedModel> loaded = load_model(source->path());
+  if (!loaded) return of_file(loaded.error(), source->shown());
+  read.model = std::move(*loaded);
+  return read;
+}
+
 Result<LoadedBody> load_body(const std::string& path, const MeshArguments& arguments,
                              const TreeArguments& trees, bool tell) {
-  const Result<Source> source = Source::of(path, arguments);
+  const Result<Source> source = Source::of(path, arguments, true);
   if (!source) return source.error();
   LoadedBody body;
   if (is_model_file(source->path())) {

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,17 @@ struct MeshArguments {
 /// Reads one mesh, standard input for "-". Says every warning on stderr when `tell` is set.
 /// Errors: usage for options that make no sense together; else as `import_mesh`.
 Result<ImportedMesh> load_mesh(const std::string& path, const MeshArguments& arguments, bool tell);
+
+/// What a file turned out to be.
+struct MeshOrModel {
+  ImportedMesh mesh;                 ///< where it is no model
+  std::optional<LoadedModel> model;  ///< with memory of its own
+};
+
+/// Reads a mesh, or loads a model file, told by how it begins; either may come on standard input.
+/// Errors: usage for a model file together with options that would change its coordinates; else as
+/// `import_mesh` and `load_model`.
+Result<MeshOrModel> load_mesh_or_model(const std::string& path, const MeshArguments& arguments);
 
 /// "+x", "-x" and so on.
 const char* axis_name(Axis axis);

@@ -68,6 +68,18 @@ TEST(Compile, AModelFileStandsWhereAMeshDoes) {
       CRASHRANK_PROGRAM " collide - b.crm --format crm --json --pose 3.5,0.2,0,10,0,0 < a.crm");
   ASSERT_EQ(piped.code, 0) << piped.err;
   EXPECT_EQ(pairs_of(piped), pairs_of(expected));
+
+  // A model says by itself what it is.
+  const Outcome named = place.crashrank({"inspect", "a.crm", "--json"});
+  const Outcome unnamed = place.shell(CRASHRANK_PROGRAM " inspect - --json < a.crm");
+  ASSERT_EQ(unnamed.code, 0) << unnamed.err;
+  cli_test::Json from_input = unnamed.json();
+  EXPECT_EQ(from_input["files"][0]["file"], "-");
+  from_input["files"][0]["file"] = "a.crm";
+  EXPECT_EQ(from_input["files"], named.json()["files"]);
+  const Outcome mesh = place.shell(CRASHRANK_PROGRAM " inspect - < a.obj");
+  EXPECT_EQ(mesh.code, 2) << mesh.out;
+  EXPECT_NE(mesh.err.find("--format"), std::string::npos) << mesh.err;
 }
 
 TEST(Compile, RanksFromModelFilesWithoutTheImporter) {
