@@ -156,7 +156,7 @@ const Knot& ImpactSearch::knot(std::size_t index) {
 double ImpactSearch::limit() const noexcept { return std::min(best_.time, until_); }
 
 bool ImpactSearch::spend(std::uint64_t& counter) {
-  constexpr std::uint64_t between_looks = 256;
+  constexpr std::uint64_t between_looks = 64;
   ++counter;
   const bool look = stop_ != nullptr && steps_left_ % between_looks == 0;
   if (steps_left_ == 0 || (look && stop_(stop_context_))) {

@@ -29,14 +29,14 @@ struct ViewOfBody {
 /// Memory of the looks at a body's tree, and who may end them early.
 struct LookMemory {
   std::vector<std::uint32_t> stack;
-  /// Asked every few hundred boxes; once it says true what is looked at stays incomplete.
+  /// Asked every few dozen boxes; once it says true what is looked at stays incomplete.
   bool (*stop)(void* stop_context) = nullptr;
   void* stop_context = nullptr;
   bool stopped = false;
   std::uint32_t boxes = 0;
 
   bool goes_on() {
-    constexpr std::uint32_t between_looks = 256;
+    constexpr std::uint32_t between_looks = 64;
     if (stop != nullptr && ++boxes % between_looks == 0 && stop(stop_context)) stopped = true;
     return !stopped;
   }

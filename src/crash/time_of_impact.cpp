@@ -198,9 +198,16 @@ private:
       return;
     }
     const bool touches = touch.time < until_;
+    const bool apart_between =
+        touches && same.time >= until_ && parted(search, near.time, touch.time, impact.work);
+    if (stopped_) {
+      impact.state = ImpactState::undecided;
+      impact.time_s = near.time;
+      return;
+    }
     impact.state = touches ? ImpactState::contact : ImpactState::grazing;
     detail::Meeting told = near;
-    if (touches && same.time >= until_ && parted(search, near.time, touch.time, impact.work)) {
+    if (apart_between) {
       told = touch;
       impact.grazed = true;
       impact.graze_time_s = near.time;
@@ -219,6 +226,8 @@ private:
   bool parted(detail::ImpactSearch& search, double from, double until, ImpactWork& work) {
     constexpr int instants = 16;
     for (int i = 1; i < instants; ++i) {
+      stopped_ = options_.stop != nullptr && options_.stop(options_.stop_context);
+      if (stopped_) return false;
       const detail::RelativeState s = search.state_at(from + (until - from) * i / instants);
       DistanceOptions cutoff;
       cutoff.cutoff_m = options_.tolerance_m;
@@ -237,6 +246,7 @@ private:
   double until_;
   ImpactWorkspace::State& memory_;
   const ImpactOptions& options_;
+  bool stopped_ = false;
 };
 
 }  // namespace

@@ -66,8 +66,18 @@ CrashScore score_crash(const Scene& scene, const EgoAtContact& ego, const Contac
       return score;
     }
     PulseRun run(crash.a, crash.b, frame, {how.pulse.friction, 1.0}, how.pulse, memory);
-    while (run.advance(steps_at_a_time)) {
-      const bool late = watch.expired();
+    // The clock is looked at after every step, the bounds after as many whether there is one or
+    // not.
+    bool late = false;
+    const auto goes_on = [&] {
+      bool more = true;
+      for (int step = 0; step < steps_at_a_time && more && !late; ++step) {
+        more = run.advance(1);
+        late = watch.expired();
+      }
+      return more;
+    };
+    while (goes_on()) {
       const TermBounds now = bounds_in_pulse(scene, crash, contact, run);
       score.term.least = std::max(score.term.least, now.least);
       score.term.most = std::min(score.term.most, now.most);

@@ -29,7 +29,7 @@ struct ImpactOptions {
   /// The caller knows that the bodies are apart at the start (it asked `initial_state` before, for
   /// instance once for all candidates of one scene): the start is not tested again.
   bool start_is_apart = false;
-  /// Asked every few hundred steps, some 20 µs, with `stop_context`; once it says true the answer
+  /// Asked every few dozen steps, some 10 µs, with `stop_context`; once it says true the answer
   /// is `undecided`. May be null.
   bool (*stop)(void* stop_context) = nullptr;
   void* stop_context = nullptr;  ///< handed to `stop`
