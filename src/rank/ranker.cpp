@@ -2,6 +2,7 @@
 
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
+#include "rank/near.hpp"
 #include "rank/race.hpp"
 #include "rank/refine.hpp"
 #include "rank/scenario_check.hpp"
@@ -149,7 +150,17 @@ struct Ranker::State {
     const auto start = Watch::Clock::now();
     const auto all = static_cast<std::uint32_t>(candidates.size());
     bool going = budget.work > 0;
-    for (std::uint32_t begin = 0; begin < all && going;) {
+    std::uint32_t begin = 0;
+    if (going && all > 1) {
+      if (detail::all_are_clear(scene, candidates, *watch, effort.work)) {
+        for (; begin < all; ++begin) {
+          detail::settle_as_clear(states[begin]);
+          race.put_back(begin, states);
+        }
+      }
+      going = effort.work < budget.work && !watch->expired();
+    }
+    while (begin < all && going) {
       const std::size_t steps = std::min<std::size_t>(most_slots, all - begin);
       for (std::size_t i = 0; i < steps; ++i) {
         chosen[i] = begin + static_cast<std::uint32_t>(i);
@@ -233,6 +244,7 @@ void prepare_scratch(const detail::Scene& scene, RefineScratch& scratch) {
   scratch.evaluate.place.reserve(scene.actors.size());
   scratch.evaluate.hits.reserve(scene.actors.size());
   scratch.near.reserve(scene.actors.size());
+  scratch.reach.prepare(scene.actors.size());
   // Poses at which surfaces meet list their pairs; twice as many as crash poses of dense meshes
   // have been seen to have.
   constexpr std::size_t pairs = std::size_t{1} << 17U;

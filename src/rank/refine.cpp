@@ -50,15 +50,19 @@ void look_near(const RefineQuery& q, Refined& state, RefineScratch& scratch, Ran
 }
 
 /// The contact whose crash is to be simulated next.
-void expect(const RefineQuery& q, Refined& state, const EgoAtContact& ego, Contact&& contact) {
+void expect(const RefineQuery& q, Refined& state, const EgoAtContact& ego, Contact&& contact,
+            RefineScratch& scratch, RankWork& work) {
   state.pending = std::move(contact);
   state.ego = ego;
   state.met[state.met_count++] = state.pending.actor;
   const CrashSetup crash = set_up_crash(q.scene, ego, state.pending);
   const TermBounds term = bounds_at_contact(q.scene, crash, state.pending);
-  const double after =
-      q.bounds.most_after(q.scene, q.candidate.motion, met(state), contacts_left(q.scene, state));
-  narrow(state, state.sum + term.least, state.sum + term.most + after);
+  const std::size_t left = contacts_left(q.scene, state);
+  state.after =
+      std::min(q.bounds.most_after(q.scene, q.candidate.motion, met(state), left),
+               most_in_reach(q.scene, reach_after(q.scene, q.candidate, crash, state.pending),
+                             met(state), left, scratch.reach, work.box_tests));
+  narrow(state, state.sum + term.least, state.sum + term.most + state.after);
 }
 
 /// All contacts of a measure that takes the planned motion only.
@@ -113,7 +117,9 @@ bool search(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWo
     state.told.actor = contact.actor;
     state.told.time_of_impact_s = contact.time_of_impact_s;
     state.told.closing_speed_mps = contact.closing_speed_mps;
-    if (decided && scored_by_pulses(q.scene)) expect(q, state, ego, std::move(contact));
+    if (decided && scored_by_pulses(q.scene)) {
+      expect(q, state, ego, std::move(contact), scratch, work);
+    }
   }
   state.stuck = !decided;
   if (state.stuck) return true;
@@ -128,12 +134,10 @@ bool search(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWo
 /// Simulates the pending crash and looks for what comes after it.
 bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work,
            std::uint64_t& pulse_work) {
-  const double after =
-      q.bounds.most_after(q.scene, q.candidate.motion, met(state), contacts_left(q.scene, state));
   const CrashScore scored = score_crash(q.scene, state.ego, state.pending,
                                         q.give_up_above - state.sum, q.watch, scratch.pulse);
   pulse_work += scored.work;
-  narrow(state, state.sum + scored.term.least, state.sum + scored.term.most + after);
+  narrow(state, state.sum + scored.term.least, state.sum + scored.term.most + state.after);
   if (scored.end == CrashScore::End::given_up) return true;
   if (scored.end == CrashScore::End::stopped) return false;
 
@@ -158,7 +162,7 @@ bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWor
     return true;
   }
   const EgoAtContact ego = scratch.aftermath.at(hit->impact.time_s);
-  expect(q, state, ego, make_following_contact(q.scene, ego, *hit));
+  expect(q, state, ego, make_following_contact(q.scene, ego, *hit), scratch, work);
   return true;
 }
 
@@ -170,6 +174,11 @@ Refined unrefined(const Scene& scene, const ScoreBounds& bounds, const Candidate
   state.told.candidate = index;
   state.told.interval = {0.0, bounds.most(scene, candidate.motion)};
   return state;
+}
+
+void settle_as_clear(Refined& state) {
+  state.told.stage = RankStage::near;
+  settle(state, 0.0);
 }
 
 StepEnd refine(const RefineQuery& q, Refined& state, RefineScratch& scratch) {

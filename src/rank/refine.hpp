@@ -6,6 +6,7 @@
 #include "rank/bounds.hpp"
 #include "rank/contact_severity.hpp"
 #include "rank/evaluate.hpp"
+#include "rank/reach.hpp"
 #include "rank/watch.hpp"
 
 #include <array>
@@ -21,6 +22,7 @@ struct RefineScratch {
   PulseMemory pulse;
   Aftermath aftermath;
   std::vector<std::size_t> near;
+  ReachMemory reach;
 };
 
 /// A candidate on its way to its score, between two steps.
@@ -31,8 +33,9 @@ struct Refined {
   /// Bodies met, the pending one included.
   std::array<std::size_t, harm_limits::contacts> met{};
   std::size_t met_count = 0;
-  Contact pending;   ///< whose crash comes next
-  EgoAtContact ego;  ///< at that
+  Contact pending;     ///< whose crash comes next
+  EgoAtContact ego;    ///< at that
+  double after = 0.0;  ///< contacts after the pending one add no more than this
 
   bool open() const noexcept { return !told.known && !stuck; }
 };
@@ -56,6 +59,9 @@ struct StepEnd {
 /// A candidate nothing was looked at of.
 Refined unrefined(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                   std::size_t index);
+
+/// The candidate is known to come near nobody.
+void settle_as_clear(Refined& state);
 
 /// Takes an open candidate one stage further. Depends on the query and the candidate's own state
 /// alone. The interval only ever narrows.

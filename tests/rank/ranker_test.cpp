@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -59,14 +60,24 @@ constexpr std::array<Measure, 7> measures{
     Measure::harm,     Measure::delta_v, Measure::energy,   Measure::closing_energy,
     Measure::polygons, Measure::area,    Measure::intrusion};
 
-/// How many scenes a property is tried on: more where CRASHRANK_RANKER_SCENES says so.
-std::uint64_t scenes_to_try(std::uint64_t otherwise) {
-  const char* const wish = std::getenv("CRASHRANK_RANKER_SCENES");
+std::uint64_t wished(const char* variable, std::uint64_t otherwise) {
+  const char* const wish = std::getenv(variable);
   return wish != nullptr ? std::strtoull(wish, nullptr, 10) : otherwise;
 }
 
+/// How many scenes a property is tried on, and the seed of the first: campaigns say so in
+/// CRASHRANK_RANKER_SCENES and CRASHRANK_RANKER_SEED.
+std::uint64_t scenes_to_try(std::uint64_t otherwise) {
+  return wished("CRASHRANK_RANKER_SCENES", otherwise);
+}
+std::uint64_t first_seed(std::uint64_t otherwise) {
+  return wished("CRASHRANK_RANKER_SEED", otherwise);
+}
+
 TEST(Ranker, WithoutADeadlineItHasTheBitsOfThePlainRanking) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  const std::uint64_t begin = first_seed(1);
+  const std::uint64_t scenes = scenes_to_try(4);
+  for (std::uint64_t seed = begin; seed < begin + scenes; ++seed) {
     for (const Measure measure : measures) {
       SCOPED_TRACE(std::string(measure_name(measure)) + ", seed " + std::to_string(seed));
       const Case c(seed, measure);
@@ -82,7 +93,8 @@ TEST(Ranker, WithoutADeadlineItHasTheBitsOfThePlainRanking) {
           const RankedCandidate& told = answer.ranking[i];
           ASSERT_EQ(told.candidate, c.plain.ranking[i].candidate);
           ASSERT_TRUE(told.known);
-          ASSERT_EQ(told.score, *c.plain.ranking[i].score);
+          ASSERT_EQ(std::bit_cast<std::uint64_t>(told.score),
+                    std::bit_cast<std::uint64_t>(*c.plain.ranking[i].score));
         }
       }
     }
@@ -131,8 +143,9 @@ void cut_everywhere(std::uint64_t seed, Measure measure, std::uint64_t cuts, Wid
   std::vector<double> first(c.candidates.size(), 0.0);
   for (std::uint64_t cut = 0; cut <= cuts; ++cut) {
     RankBudget budget;
-    // Closer together where little has been done.
-    budget.work = cut < 4 ? cut : all * cut * cut / (cuts * cuts);
+    // Closer together where little has been done; never less than at the cut before.
+    const std::uint64_t fewest = std::min<std::uint64_t>(cut, 3);
+    budget.work = std::max(fewest, all * cut * cut / (cuts * cuts));
     const RankerAnswer answer = ranker.rank(c.candidates, budget);
     bool winner_in_race = false;
     for (const RankedCandidate& told : answer.ranking) {
@@ -152,7 +165,8 @@ void cut_everywhere(std::uint64_t seed, Measure measure, std::uint64_t cuts, Wid
   }
   for (std::size_t k = 0; k < Widths::percent.size(); ++k) {
     RankBudget part;
-    part.work = all * Widths::percent[k] / 100;
+    // Rounded up: where all is told by a handful of tests, none is no part of them.
+    part.work = (all * Widths::percent[k] + 99) / 100;
     for (const RankedCandidate& told : ranker.rank(c.candidates, part).ranking) {
       if (!(first[told.candidate] > 0.0)) continue;
       widths.shares[k].push_back((told.interval.highest - told.interval.lowest) /
@@ -162,12 +176,12 @@ void cut_everywhere(std::uint64_t seed, Measure measure, std::uint64_t cuts, Wid
 }
 
 TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
-  constexpr std::uint64_t first_seed = 1000;
+  const std::uint64_t seed = first_seed(1000);
   constexpr std::uint64_t cuts = 14;
   Widths widths;
   const std::uint64_t scenes = scenes_to_try(30);
   for (std::uint64_t i = 0; i < scenes; ++i) {
-    cut_everywhere(first_seed + i, Measure::harm, cuts, widths);
+    cut_everywhere(seed + i, Measure::harm, cuts, widths);
     if (HasFatalFailure()) return;
   }
   ASSERT_FALSE(widths.shares[0].empty());
@@ -177,10 +191,10 @@ TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
         static_cast<unsigned long long>(Widths::percent[k]), widths.median(k),
         widths.shares[k].size(), static_cast<unsigned long long>(scenes));
   }
-  // Wanted is a fifth at a tenth of the work; as run it is 0.85 there. These bounds keep what is
-  // reached, they are not the goal.
-  EXPECT_LT(widths.median(0), 0.95);
-  EXPECT_LT(widths.median(4), 0.2);
+  // Wanted is a fifth at a tenth of the work: these scenes reach it, larger samples come to a
+  // third.
+  EXPECT_LT(widths.median(0), 0.5);
+  EXPECT_LT(widths.median(1), 0.2);
 }
 
 TEST(RankerProperty, IntervalsHoldForEveryMeasure) {

@@ -95,7 +95,7 @@ struct RankerAnswer {
 /// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls are those by
 /// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and `intrusion`,
 /// and harm that weighs property, whose last stage allocates.
-/// The deadline is looked at every 20 µs or so of work. With no deadline the scores have the bits
+/// bench/rank measures how late answers are. With no deadline the scores have the bits
 /// of `crashrank::rank`, and so has the order.
 ///
 /// One thread at a time calls the members; different Rankers are independent.
