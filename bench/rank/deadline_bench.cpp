@@ -17,6 +17,7 @@
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -57,6 +58,7 @@ struct Options {
   std::size_t triangles = 0;
   std::size_t variants = 8;
   unsigned workers = 2;
+  double rest = 0.2;
   bool fifo = false;
 };
 
@@ -112,12 +114,13 @@ void time_whole(Ranker& ranker, const bench::Situations& s) {
 }
 
 void time_deadline(Ranker& ranker, const bench::Situations& s, double deadline_ms,
-                   std::size_t calls, const std::vector<std::size_t>& right,
+                   std::size_t calls, double rest, const std::vector<std::size_t>& right,
                    const std::string& head) {
   RankBudget budget;
   budget.deadline_s = 1e-3 * deadline_ms;
   const auto deadline = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double, std::milli>(deadline_ms));
+  const std::chrono::duration<double, std::milli> pause(2.0 * deadline_ms * rest / (1.0 - rest));
   std::vector<double> late;
   std::vector<double> spin;
   std::size_t correct = 0;
@@ -136,6 +139,7 @@ void time_deadline(Ranker& ranker, const bench::Situations& s, double deadline_m
     while (Clock::now() - start < deadline) {
     }
     spin.push_back(std::max(0.0, micros(Clock::now() - start - deadline)));
+    std::this_thread::sleep_for(pause);
   }
   const auto share = [calls](std::size_t n) {
     return static_cast<double>(n) / static_cast<double>(calls);
@@ -190,7 +194,7 @@ int run(const Options& options) {
     time_whole(*ranker, *s);
     for (std::size_t i = 0; i < options.deadlines_ms.size(); ++i) {
       const std::size_t calls = options.calls[std::min(i, options.calls.size() - 1)];
-      time_deadline(*ranker, *s, options.deadlines_ms[i], calls, right, head);
+      time_deadline(*ranker, *s, options.deadlines_ms[i], calls, options.rest, right, head);
     }
   }
   return 0;
@@ -210,6 +214,11 @@ int main(int argc, char** argv) {
   app.add_option("--triangles", options.triangles, "Of each model, 0: as shipped");
   app.add_option("--variants", options.variants, "Situations that calls take in turn");
   app.add_option("--workers", options.workers, "Threads, the caller's included");
+  app.add_option(
+         "--rest", options.rest,
+         "Share of the time to sleep between calls: the kernel stops real-time threads that "
+         "never do, for a twentieth of every second")
+      ->check(CLI::Range(0.0, 0.9));
   app.add_option("--load", options.load, "What runs beside it, for the table");
   app.add_flag("--fifo", options.fifo, "Real-time scheduling and locked memory");
   CLI11_PARSE(app, argc, argv);
