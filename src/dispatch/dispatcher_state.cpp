@@ -71,7 +71,6 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
   aside_seconds = 0.0;
   const bool estimates = chosen.window() > 1;
   const std::uint32_t whole = chosen.whole_triangles();
-  const float enough_work = cut.job_seconds / seconds_per_work;
   DispatchEnd end = DispatchEnd::ok;
   detail::FoundJob job;
   frames.clear();
@@ -82,6 +81,7 @@ DispatchEnd Dispatcher::State::distribute(View<const DispatchQuery> queries,
         {number, query.b_in_a, box_transform(query.a->frame(), query.b->frame(), query.b_in_a)});
     const BoxTransform to = frames.back().to;
     const detail::WorkEstimate estimate(to);
+    const float enough_work = cut.longest_job_seconds(queries.size() - 1 - i) / seconds_per_work;
     job.query = number;
     job.body_a = holdings.body(*query.a, report.depth);
     job.body_b = holdings.body(*query.b, report.depth);
