@@ -116,7 +116,8 @@ TEST(Adversarial, TheLiteralRulePeelsAStripOneByOne) {
 
 TEST(Adversarial, TheLiteralRuleStopsAtItsWorkLimit) {
   const TriangleMesh mesh = test::strip(2000);
-  std::vector<detail::BuildRecord> records = detail::world_records(mesh);
+  std::vector<detail::BuildRecord> records(mesh.size());
+  detail::write_world_records(mesh, 0, mesh.size(), records);
   std::vector<Node> nodes;
   detail::TreeWriter writer(nodes);
   writer.open_root(detail::to_box(detail::bounds(records)), 0, 2000, 0);
@@ -136,7 +137,8 @@ TEST(Adversarial, AMillionTriangleStripUnderEveryRule) {
   // The literal rule with a twentieth of its work limit, to keep the test short.
   AabbTree tree;
   std::vector<Node> nodes;
-  std::vector<detail::BuildRecord> records = detail::world_records(mesh);
+  std::vector<detail::BuildRecord> records(mesh.size());
+  detail::write_world_records(mesh, 0, mesh.size(), records);
   detail::TreeWriter writer(nodes);
   writer.open_root(detail::to_box(detail::bounds(records)), 0, triangles, 0);
   detail::LiteralBuilder(records).build(writer, records, detail::literal_work_limit / 20);

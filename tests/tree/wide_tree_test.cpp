@@ -1,11 +1,13 @@
 #include "crashrank/tree/wide_tree.hpp"
 
 #include "crashrank/tree/build.hpp"
+#include "crashrank/tree/wide_build.hpp"
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -101,6 +103,22 @@ TEST(WideTree, KeepsEveryBinarySubtreeAddressable) {
     EXPECT_EQ(held, expected) << "node " << i;
   }
   EXPECT_GE(addressed, 2 * wide.clusters.size() - 1);
+}
+
+template <class T> bool same_bits(const Column<T>& a, const Column<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+TEST(WideTree, HasTheSameBitsOnAnyNumberOfThreads) {
+  const AabbTree tree = *build_tree(test::triangle_soup(9000, 0.05F, 8));
+  const WideTree serial = widen(tree);
+  for (const std::uint32_t threads : {2U, 3U, 8U}) {
+    const WideTree parallel = widen(tree, threads);
+    EXPECT_TRUE(same_bits(serial.nodes, parallel.nodes)) << threads;
+    EXPECT_TRUE(same_bits(serial.clusters, parallel.clusters)) << threads;
+    EXPECT_TRUE(same_bits(serial.lanes_of, parallel.lanes_of)) << threads;
+    EXPECT_EQ(serial.depth, parallel.depth);
+  }
 }
 
 // Lanes that stay empty are tested all the same.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/base/huge_pages.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
@@ -9,13 +10,14 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <string>
-#include <vector>
 
 namespace crashrank::detail {
 
@@ -63,20 +65,31 @@ inline LaneBox bounds(View<const BuildRecord> records) {
   return box;
 }
 
-/// Refuses meshes no tree can be built over.
-inline Status check_mesh(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) {
-    return make_error(ErrorCode::bad_input, "the mesh has no triangle");
+/// Memory that begins without values: arrays that are written before they are read, and large
+/// enough that writing them twice would tell.
+template <class T> class RawArray {
+public:
+  explicit RawArray(std::size_t size) : items_(new T[size]), size_(size) {
+    prefer_huge_pages_early(items_.get(), size * sizeof(T));
   }
-  if (mesh.triangles.size() > max_triangles) {
-    return make_error(ErrorCode::limit_exceeded,
-                      "the mesh has more than " + std::to_string(max_triangles) + " triangles");
-  }
+
+  std::size_t size() const { return size_; }
+  T* data() const { return items_.get(); }
+  T& operator[](std::size_t i) const { return items_[i]; }
+
+private:
+  std::unique_ptr<T[]> items_;
+  std::size_t size_;
+};
+
+/// Refuses what no tree can be built over in some triangles of a mesh and in some of its vertices.
+inline Status check_part(const TriangleMesh& mesh, std::size_t triangle, std::size_t triangles_end,
+                         std::size_t vertex, std::size_t vertices_end) {
   const std::size_t vertices = mesh.vertices.size();
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    for (const std::uint32_t vertex : mesh.triangles[i]) {
-      if (vertex >= vertices) {
-        Error error = make_error(ErrorCode::bad_input, "vertex " + std::to_string(vertex) +
+  for (std::size_t i = triangle; i < triangles_end; ++i) {
+    for (const std::uint32_t corner : mesh.triangles[i]) {
+      if (corner >= vertices) {
+        Error error = make_error(ErrorCode::bad_input, "vertex " + std::to_string(corner) +
                                                            " does not exist (the mesh has " +
                                                            std::to_string(vertices) + ")");
         error.place = "triangle " + std::to_string(i);
@@ -84,7 +97,7 @@ inline Status check_mesh(const TriangleMesh& mesh) {
       }
     }
   }
-  for (std::size_t i = 0; i < vertices; ++i) {
+  for (std::size_t i = vertex; i < vertices_end; ++i) {
     if (!mesh.vertices[i].allFinite()) {
       Error error = make_error(ErrorCode::bad_input, "a coordinate is not a finite number");
       error.place = "vertex " + std::to_string(i);
@@ -94,10 +107,23 @@ inline Status check_mesh(const TriangleMesh& mesh) {
   return Success{};
 }
 
-/// Records along the body's own axes: minima and maxima of float32 coordinates, nothing rounded.
-inline std::vector<BuildRecord> world_records(const TriangleMesh& mesh) {
-  std::vector<BuildRecord> records(mesh.triangles.size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
+/// Refuses meshes with no triangle or too many.
+inline Status check_size(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) {
+    return make_error(ErrorCode::bad_input, "the mesh has no triangle");
+  }
+  if (mesh.triangles.size() > max_triangles) {
+    return make_error(ErrorCode::limit_exceeded,
+                      "the mesh has more than " + std::to_string(max_triangles) + " triangles");
+  }
+  return Success{};
+}
+
+/// Writes records along the body's own axes for some triangles: minima and maxima of float32
+/// coordinates, nothing rounded.
+inline void write_world_records(const TriangleMesh& mesh, std::size_t first, std::size_t last,
+                                View<BuildRecord> records) {
+  for (std::size_t i = first; i < last; ++i) {
     const std::array<std::uint32_t, 3>& t = mesh.triangles[i];
     const Eigen::Vector3f& a = mesh.vertices[t[0]];
     const Eigen::Vector3f& b = mesh.vertices[t[1]];
@@ -110,14 +136,12 @@ inline std::vector<BuildRecord> world_records(const TriangleMesh& mesh) {
     record.index = static_cast<std::uint32_t>(i);
     record.unused = 0;
   }
-  return records;
 }
 
-/// Records along other axes, from projections that are rounded outward: each box encloses its
+/// The same along other axes, from projections that are rounded outward: each box encloses its
 /// triangle, which is the convex hull of three points that it encloses.
-inline Result<std::vector<BuildRecord>> projected_records(const TriangleMesh& mesh,
-                                                          const Eigen::Matrix3d& axes) {
-  std::vector<BuildRecord> records(mesh.triangles.size());
+inline Status write_projected_records(const TriangleMesh& mesh, const Eigen::Matrix3d& axes,
+                                      View<BuildRecord> records) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     BuildRecord& record = records[i];
     for (int k = 0; k < 3; ++k) {
@@ -139,7 +163,7 @@ inline Result<std::vector<BuildRecord>> projected_records(const TriangleMesh& me
     record.index = static_cast<std::uint32_t>(i);
     record.unused = 0;
   }
-  return records;
+  return Success{};
 }
 
 }  // namespace crashrank::detail

@@ -67,7 +67,7 @@ inline constexpr std::uint64_t literal_work_limit = std::uint64_t{1} << 30;
 /// after, so a node costs O(its triangles) and a tree O(n log n + n · depth), bounded by the limit.
 class LiteralBuilder {
 public:
-  explicit LiteralBuilder(const std::vector<BuildRecord>& records)
+  explicit LiteralBuilder(View<const BuildRecord> records)
       : suffix_min_(records.size()), goes_left_(records.size()), scratch_(records.size()) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::vector<AxisEntry>& entries = entries_[axis];
@@ -82,8 +82,8 @@ public:
   }
 
   /// Builds what is open; `records` are by triangle index when it begins and by slot when it ends.
-  void build(TreeWriter& writer, std::vector<BuildRecord>& records, std::uint64_t work_limit) {
-    const std::vector<BuildRecord> by_index = records;
+  void build(TreeWriter& writer, View<BuildRecord> records, std::uint64_t work_limit) {
+    const std::vector<BuildRecord> by_index(records.begin(), records.end());
     std::uint64_t work = 0;
     OpenNode open{};
     while (writer.next(open)) {
@@ -151,8 +151,7 @@ private:
     }
   }
 
-  static void build_median(TreeWriter& writer, const OpenNode& from,
-                           std::vector<BuildRecord>& records) {
+  static void build_median(TreeWriter& writer, const OpenNode& from, View<BuildRecord> records) {
     writer.descend(from, [&records](TreeWriter& inner, const OpenNode& open) {
       if (open.count == 1) return inner.leaf(open);
       const View<BuildRecord> all(records.data() + open.first, open.count);

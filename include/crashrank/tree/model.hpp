@@ -3,6 +3,7 @@
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/tree/build.hpp"
+#include "crashrank/tree/wide_build.hpp"
 #include "crashrank/tree/wide_tree.hpp"
 
 #include <utility>
@@ -22,7 +23,7 @@ inline Result<Model> make_model(TriangleMesh mesh, const BuildOptions& options =
   return detail::guarded([&]() -> Result<Model> {
     Result<AabbTree> tree = detail::build_tree_or_throw(mesh, options);
     if (!tree) return tree.error();
-    WideTree wide = widen(*tree);
+    WideTree wide = widen(*tree, options.threads);
     return Model{std::move(mesh), std::move(*tree), std::move(wide)};
   });
 }

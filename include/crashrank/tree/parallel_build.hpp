@@ -18,6 +18,9 @@
 
 namespace crashrank::detail {
 
+/// Below this many triangles a tree is built before a second thread has begun to help.
+inline constexpr std::size_t min_parallel_triangles = 4096;
+
 /// Calls `work(index)` for different indices below `count` on up to that many threads, the calling
 /// one with 0, and returns when all are done: `work` has to share out what there is to do. Throws
 /// what one of them threw.
@@ -69,24 +72,30 @@ template <class Work> void on_slices(std::size_t size, std::uint32_t threads, co
 /// the same bits as a serial one.
 template <class Rule> class ParallelBuilder {
 public:
-  ParallelBuilder(View<BuildRecord> records, View<BuildRecord> scratch, const LeafLimits& leaves)
-      : records_(records), scratch_(scratch), leaves_(leaves) {}
+  ParallelBuilder(const BuildArrays& arrays, const LeafLimits& leaves)
+      : arrays_(arrays), leaves_(leaves) {}
 
-  void build(const Box& root, std::uint32_t threads, std::vector<Node>& nodes) {
-    const auto count = static_cast<std::uint32_t>(records_.size());
+  /// Returns the depth. `slots` is told of runs of slots whose order is final, by whichever thread
+  /// finished them, and asked to get ready while there is nothing else to do.
+  template <class Slots>
+  std::uint32_t build(const Box& root, std::uint32_t threads, std::vector<Node>& nodes,
+                      Slots& slots) {
+    const auto count = static_cast<std::uint32_t>(arrays_.order.size());
     grain_ = std::max(count / (16 * threads), 1024U);
-    pieces_.push_back({{}, root, 0, count, 0, {0, 0}});
+    pieces_.push_back({{}, root, 0, count, 0, 0, {0, 0}});
     waiting_.push_back(0);
     unfinished_ = 1;
-    on_threads(threads, [this](std::uint32_t) {
+    on_threads(threads, [this, &slots](std::uint32_t index) {
       try {
-        work();
+        if (index == 1) slots.prepare();
+        work(slots);
       } catch (...) {
         stop();
         throw;
       }
     });
     assemble(nodes);
+    return deepest_;
   }
 
 private:
@@ -97,11 +106,12 @@ private:
     std::uint32_t first;
     std::uint32_t count;
     std::uint32_t depth;
+    std::uint32_t buffer;
     std::uint32_t child[2];  ///< pieces; 0 where built whole
   };
 
-  void work() {
-    GreedyBuilder<Rule> builder(records_, scratch_, leaves_);
+  template <class Slots> void work(Slots& slots) {
+    GreedyBuilder<Rule> builder(arrays_, leaves_);
     std::unique_lock<std::mutex> lock(mutex_);
     while (true) {
       changed_.wait(lock, [this] { return !waiting_.empty() || unfinished_ == 0 || stopped_; });
@@ -116,9 +126,10 @@ private:
       const bool whole = piece.count <= grain_;
       TreeWriter writer(piece.nodes);
       if (whole) piece.nodes.reserve(piece.count);
-      writer.open_root(piece.box, piece.first, piece.count, piece.depth);
+      writer.open_root(piece.box, piece.first, piece.count, piece.depth, piece.buffer);
       if (whole) {
         builder.build(writer);
+        slots.fill(piece.first, piece.first + piece.count);
       } else {
         OpenNode open{};
         writer.next(open);
@@ -134,11 +145,13 @@ private:
       OpenNode open{};
       for (std::uint32_t side = 0; writer.next(open); ++side) {
         piece.child[side] = static_cast<std::uint32_t>(pieces_.size());
-        pieces_.push_back({{}, writer.box(open), open.first, open.count, open.depth, {0, 0}});
+        pieces_.push_back(
+            {{}, writer.box(open), open.first, open.count, open.depth, open.buffer, {0, 0}});
         waiting_.push_back(piece.child[side]);
         ++unfinished_;
       }
     }
+    deepest_ = std::max(deepest_, writer.deepest());
     pieces_[index] = std::move(piece);
     --unfinished_;
     changed_.notify_all();
@@ -176,8 +189,7 @@ private:
     }
   }
 
-  View<BuildRecord> records_;
-  View<BuildRecord> scratch_;
+  BuildArrays arrays_;
   LeafLimits leaves_;
   std::uint32_t grain_ = 0;
   std::mutex mutex_;  ///< guards what follows
@@ -185,6 +197,7 @@ private:
   std::vector<Piece> pieces_;
   std::vector<std::uint32_t> waiting_;
   std::size_t unfinished_ = 0;
+  std::uint32_t deepest_ = 0;
   bool stopped_ = false;  ///< a thread has thrown
 };
 

@@ -1,12 +1,15 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
-#include "crashrank/tree/binned_split.hpp"
 #include "crashrank/tree/build_records.hpp"
+#include "crashrank/tree/cut_search.hpp"
 #include "crashrank/tree/lanes.hpp"
+#include "crashrank/tree/split_cost.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 
 namespace crashrank::detail {
 
@@ -22,19 +25,17 @@ public:
     for (std::size_t i = 0; i < n; ++i) boxes_[i] = lanes(records[i]);
     Cut best;
     if (n == 2) {  // a frequent set with one cut only
-      const float cost = rule.size(boxes_[0]) + rule.size(boxes_[1]);
+      const float cost = size_of(rule, boxes_[0]) + size_of(rule, boxes_[1]);
       order_[0][0] = 0;
       order_[0][1] = 1;
       if (cost < best.cost) best = {0, 0, 1, cost, boxes_[0], boxes_[1]};
       return best;
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      for (std::size_t i = 0; i < n; ++i) {
-        keys_[axis][i] = boxes_[i].min[axis] + boxes_[i].max[axis];
-      }
-      sort(axis, n);
-      sweep(axis, n, rule, best);
-    }
+    sort(n);
+    search_.begin();
+    for (int axis = 0; axis < 3; ++axis) sweep(axis, n, rule);
+    const auto found = search_.cheapest();
+    if (found.axis >= 0) best = cut_at(found, n);
     return best;
   }
 
@@ -48,43 +49,91 @@ public:
   }
 
 private:
-  /// Every record's place is the number of records before it: no branch to be guessed.
-  void sort(int axis, std::size_t n) {
-    const float* keys = keys_[axis];
-    std::uint32_t place[max_records] = {};
-    for (std::size_t i = 1; i < n; ++i) {
-      std::uint32_t before = 0;
-      for (std::size_t j = 0; j < i; ++j) {
-        const std::uint32_t in_order = keys[j] <= keys[i] ? 1U : 0U;
-        before += in_order;
-        place[j] += 1U - in_order;
+  /// Orders by axis.
+  void sort(std::size_t n) {
+    const std::size_t fours = (n + 3) / 4;
+    for (std::size_t four = 0; four < fours; ++four) {
+      Lanes middles[4];
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t i = 4 * four + k;
+        middles[k] = i < n ? boxes_[i].min + boxes_[i].max
+                           : all_lanes(std::numeric_limits<float>::infinity());
       }
-      place[i] = before;
+      const AxisLanes keys = by_axis(middles);
+      keys_[0][four] = keys.x;
+      keys_[1][four] = keys.y;
+      keys_[2][four] = keys.z;
     }
-    for (std::size_t i = 0; i < n; ++i) order_[axis][place[i]] = static_cast<std::uint8_t>(i);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      switch (fours) {
+        case 1:
+          rank<1>(axis);
+          break;
+        case 2:
+          rank<2>(axis);
+          break;
+        case 3:
+          rank<3>(axis);
+          break;
+        default:
+          rank<4>(axis);
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        order_[axis][places_[i]] = static_cast<std::uint8_t>(i);
+      }
+    }
   }
 
-  void sweep(int axis, std::size_t n, const Rule& rule, Cut& best) const {
+  /// Every record's place is the number of records before it, equal ones in the order they have:
+  /// no branch to be guessed. What fills up the last four is behind all records.
+  template <std::size_t fours> void rank(std::size_t axis) {
+    float keys[4 * fours];
+    std::memcpy(keys, keys_[axis], sizeof keys);
+    for (std::size_t four = 0; four < fours; ++four) {
+      const Lanes own = keys_[axis][four];
+      IntLanes place{0, 0, 0, 0};
+      std::size_t i = 0;
+      for (; i < 4 * four; ++i) place -= all_lanes(keys[i]) <= own;
+      for (int k = 0; k < 4; ++k, ++i) {
+        const Lanes key = all_lanes(keys[i]);
+        const IntLanes later = IntLanes{0, 1, 2, 3} > IntLanes{k, k, k, k};
+        place -= (key < own) | ((key == own) & later);
+      }
+      for (; i < 4 * fours; ++i) place -= all_lanes(keys[i]) < own;
+      std::memcpy(places_ + 4 * four, &place, sizeof place);
+    }
+  }
+
+  void sweep(int axis, std::size_t n, const Rule& rule) {
     const std::uint8_t* order = order_[axis];
-    LaneBox right[max_records];
-    right[n - 1] = boxes_[order[n - 1]];
-    for (std::size_t i = n - 1; i-- > 1;) {
-      right[i] = boxes_[order[i]];
-      right[i].grow(right[i + 1]);
+    LaneBox right = boxes_[order[n - 1]];
+    for (std::size_t i = n - 1; i-- > 0;) {
+      search_.right[i] = rule.terms(right);
+      right = joined(boxes_[order[i]], right);
     }
     LaneBox left = boxes_[order[0]];
-    for (std::size_t i = 1; i < n; ++i) {
-      const auto left_count = static_cast<std::uint32_t>(i);
-      const float cost = to_float(left_count) * rule.size(left) +
-                         to_float(static_cast<std::uint32_t>(n) - left_count) * rule.size(right[i]);
-      if (cost < best.cost) best = {axis, 0, left_count, cost, left, right[i]};
-      left.grow(boxes_[order[i]]);
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      search_.left[i] = rule.terms(left);
+      search_.left_count[i] = static_cast<std::int32_t>(i + 1);
+      left.grow(boxes_[order[i + 1]]);
     }
+    search_.consider(axis, n - 1, static_cast<std::uint32_t>(n));
+  }
+
+  Cut cut_at(const typename CutSearch<Rule>::Found& found, std::size_t n) const {
+    const std::uint8_t* order = order_[found.axis];
+    LaneBox right = boxes_[order[n - 1]];
+    for (std::size_t i = n - 1; i-- > found.place + 1;) right = joined(boxes_[order[i]], right);
+    LaneBox left = boxes_[order[0]];
+    for (std::size_t i = 1; i <= found.place; ++i) left.grow(boxes_[order[i]]);
+    return {found.axis, 0, static_cast<std::uint32_t>(found.place + 1), found.cost, left, right};
   }
 
   LaneBox boxes_[max_records];
-  float keys_[3][max_records];
+  Lanes keys_[3][max_records / 4];
+  std::int32_t places_[max_records];
   std::uint8_t order_[3][max_records];
+  CutSearch<Rule> search_;
 };
 
 }  // namespace crashrank::detail

@@ -6,15 +6,22 @@ namespace crashrank::detail {
 
 // A split rule gives every box within a node a size, which stands for the chance that a box of the
 // other body meets it. A cut costs what its halves are expected to: triangles times size, summed.
+// The size is made of one term an axis, so that four boxes can be sized at once.
+
+/// The size of one box.
+template <class Rule> float size_of(const Rule& rule, const LaneBox& half) {
+  const Lanes t = rule.terms(half);
+  return Rule::size(t[0], t[1], t[2]);
+}
 
 /// Surface-area heuristic: the size of a half is its surface.
 class SurfaceAreaRule {
 public:
   explicit SurfaceAreaRule(const LaneBox& /*whole*/) {}
 
-  float size(const LaneBox& half) const {
-    const Lanes e = half.extent();
-    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+  Lanes terms(const LaneBox& half) const { return half.extent(); }
+  template <class Number> static Number size(Number x, Number y, Number z) {
+    return x * y + y * z + z * x;
   }
 };
 
@@ -32,11 +39,11 @@ public:
     per_mean_ = 3.0F / (e[0] + e[1] + e[2]);
   }
 
-  float size(const LaneBox& half) const {
+  Lanes terms(const LaneBox& half) const {
     constexpr float probe = 0.3125F;
-    const Lanes s = half.extent() * all_lanes(per_mean_) + all_lanes(probe);
-    return s[0] * s[1] * s[2];
+    return half.extent() * all_lanes(per_mean_) + all_lanes(probe);
   }
+  template <class Number> static Number size(Number x, Number y, Number z) { return x * y * z; }
 
 private:
   float per_mean_;  ///< infinite for a point, which makes every cost NaN and no cut the best

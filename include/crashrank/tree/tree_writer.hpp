@@ -14,6 +14,7 @@ struct OpenNode {
   std::uint32_t first;  ///< first record
   std::uint32_t count;
   std::uint32_t depth;
+  std::uint32_t buffer;  ///< where its records are, for builders that keep them in two places
 };
 
 /// Writes nodes in the order of the layout: children in pairs, a node's left side before its right.
@@ -22,9 +23,10 @@ class TreeWriter {
 public:
   explicit TreeWriter(std::vector<Node>& nodes) : nodes_(nodes) {}
 
-  void open_root(const Box& box, std::uint32_t first, std::uint32_t count, std::uint32_t depth) {
+  void open_root(const Box& box, std::uint32_t first, std::uint32_t count, std::uint32_t depth,
+                 std::uint32_t buffer = 0) {
     nodes_.push_back({box, 0, 0});
-    open_.push_back({static_cast<std::uint32_t>(nodes_.size() - 1), first, count, depth});
+    open_.push_back({static_cast<std::uint32_t>(nodes_.size() - 1), first, count, depth, buffer});
   }
   bool next(OpenNode& out) {
     if (open_.empty()) return false;
@@ -35,14 +37,17 @@ public:
   void leaf(const OpenNode& of) {
     nodes_[of.node].first = of.first;
     nodes_[of.node].count = of.count;
+    deepest_ = of.depth > deepest_ ? of.depth : deepest_;
   }
-  void split(const OpenNode& of, std::uint32_t left_count, const Box& left, const Box& right) {
+  void split(const OpenNode& of, std::uint32_t left_count, const Box& left, const Box& right,
+             std::uint32_t buffer = 0) {
     const auto child = static_cast<std::uint32_t>(nodes_.size());
     nodes_[of.node].first = child;
     nodes_.push_back({left, 0, 0});
     nodes_.push_back({right, 0, 0});
-    open_.push_back({child + 1, of.first + left_count, of.count - left_count, of.depth + 1});
-    open_.push_back({child, of.first, left_count, of.depth + 1});
+    open_.push_back(
+        {child + 1, of.first + left_count, of.count - left_count, of.depth + 1, buffer});
+    open_.push_back({child, of.first, left_count, of.depth + 1, buffer});
   }
   /// Decides one open node and all that opens below it before anything else that is open.
   /// `decide(writer, open)` calls leaf() or split() once.
@@ -56,10 +61,13 @@ public:
     }
   }
   const Box& box(const OpenNode& of) const { return nodes_[of.node].box; }
+  /// Depth of the deepest leaf so far.
+  std::uint32_t deepest() const { return deepest_; }
 
 private:
   std::vector<Node>& nodes_;
   std::vector<OpenNode> open_;
+  std::uint32_t deepest_ = 0;
 };
 
 }  // namespace crashrank::detail
