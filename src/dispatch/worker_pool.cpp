@@ -177,6 +177,8 @@ Result<WorkerPool> WorkerPool::start(const PoolOptions& options) {
       if (options.pinned) pin_to_processor(state->threads.back(), worker);
     }
     return WorkerPool(std::move(state));
+  } catch (const std::bad_alloc&) {
+    return out_of_memory();
   } catch (const std::exception& error) {
     return make_error(ErrorCode::internal,
                       std::string("a worker thread could not be started: ") + error.what(),

@@ -2,6 +2,7 @@
 // to fail once: the answer is a typed error, nothing stays allocated, and the same call then works.
 
 #include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/ranker.hpp"
 #include "crashrank/tree/model_file.hpp"
 #include "rank/scenes.hpp"
 
@@ -179,7 +180,7 @@ TEST_F(AllocationFailureOfFiles, LoadingAModel) {
   }
 }
 
-TEST(AllocationFailure, RankingAScenario) {
+scenes::Scene a_wall_ahead() {
   scenes::Scene scene;
   scene.models.push_back(*make_model(sample_mesh(1)));
   scene.scenario.models.emplace_back();
@@ -191,12 +192,30 @@ TEST(AllocationFailure, RankingAScenario) {
   scene.add_candidate("keep going", 0.0);
   scene.add_candidate("brake", -9.0);
   scene.add_actor("wall", 0, 15.0, 0.3);
+  return scene;
+}
+
+TEST(AllocationFailure, RankingAScenario) {
+  const scenes::Scene scene = a_wall_ahead();
   for (const Measure measure : {Measure::polygons, Measure::harm}) {
     RankOptions options;
     options.measure = measure;
     ASSERT_TRUE(scene.ranked(options).ranking[1].collides);
     fail_each(
         "rank", [&] { return outcome(rank(scene.scenario, scene.models, options)); }, 100);
+  }
+}
+
+TEST(AllocationFailure, PreparingARanker) {
+  const scenes::Scene scene = a_wall_ahead();
+  for (const unsigned workers : {1U, 2U}) {
+    RankerOptions options;
+    options.rank.measure = Measure::harm;
+    options.rank.workers = workers;
+    options.limits.candidates = 16;
+    fail_each(
+        "Ranker::prepare",
+        [&] { return outcome(Ranker::prepare(scene.scenario, scene.models, options)); }, 200);
   }
 }
 
