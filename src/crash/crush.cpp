@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace crashrank {
 namespace {
@@ -16,6 +17,8 @@ namespace {
 using detail::Material;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+
+constexpr double endless = std::numeric_limits<double>::infinity();
 
 /// A cell in which both bodies are seen, and how far they are pressed into each other there.
 struct Cell {
@@ -102,10 +105,12 @@ class Reader {
 public:
   Reader(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, double side,
          BodyCrush& told)
-      : mesh_(*body.mesh), map_(map), side_(side), told_(told) {
-    const detail::ViewOfBody view(body.pose, frame);
-    seen_.reserve(mesh_.vertices.size());
-    for (const Eigen::Vector3f& vertex : mesh_.vertices) seen_.emplace_back(view(vertex));
+      : mesh_(*body.mesh),
+        tree_(body.tree),
+        view_(body.pose, frame),
+        map_(map),
+        side_(side),
+        told_(told) {
     // Nothing is pushed that lies behind all of the crush.
     for (std::size_t cell = 0; cell < told.depth_m.size(); ++cell) {
       if (!(told.depth_m[cell] > 0.0)) continue;
@@ -115,9 +120,16 @@ public:
     }
   }
 
-  void run() {
+  void run(detail::LookMemory& memory) {
+    std::vector<std::uint32_t> near;
+    if (tree_ != nullptr) {
+      detail::triangles_within(*tree_, view_, lowest(), highest(), near, memory);
+    } else {
+      near.resize(mesh_.size());
+      std::iota(near.begin(), near.end(), 0U);
+    }
     std::size_t part = 0;
-    for (std::size_t i = 0; i < mesh_.size(); ++i) {
+    for (const std::uint32_t i : near) {
       while (part < mesh_.parts.size() &&
              i >= mesh_.parts[part].first_triangle + mesh_.parts[part].triangle_count) {
         ++part;
@@ -125,7 +137,7 @@ public:
       double furthest = 0.0;
       const double area = moved_area(mesh_.triangles[i], furthest);
       if (!(furthest > 0.0)) continue;
-      told_.triangles.push_back(static_cast<std::uint32_t>(i));
+      told_.triangles.push_back(i);
       told_.area_m2 += area;
       if (part >= mesh_.parts.size() || i < mesh_.parts[part].first_triangle) continue;
       const auto index = static_cast<std::uint32_t>(part);
@@ -138,6 +150,35 @@ public:
   }
 
 private:
+  // Bounds of what can move, wider than what is asked of each triangle.
+  static constexpr double beyond_m = 1e-6;
+
+  Vector3d lowest() const {
+    const double back = side_ > 0.0 ? crushed_to_ - beyond_m : -endless;
+    return {back, map_.grid.low_w_m - beyond_m, map_.grid.low_h_m - beyond_m};
+  }
+  Vector3d highest() const {
+    const ViewGrid& grid = map_.grid;
+    const double right = grid.low_w_m + grid.cell_w_m * static_cast<double>(grid.columns);
+    const double top = grid.low_h_m + grid.cell_h_m * static_cast<double>(grid.rows);
+    const double back = side_ > 0.0 ? endless : beyond_m - crushed_to_;
+    return {back, right + beyond_m, top + beyond_m};
+  }
+
+  /// An index of a cell and the next nearest one.
+  struct Nearest {
+    std::size_t own = 0;
+    std::size_t next = 0;
+
+    Nearest(double place, std::size_t count) {
+      const auto last = static_cast<double>(count) - 1.0;
+      const double index = std::floor(std::clamp(place, 0.0, last));
+      const double other = place < index + 0.5 ? index - 1.0 : index + 1.0;
+      own = static_cast<std::size_t>(index);
+      next = static_cast<std::size_t>(std::clamp(other, 0.0, last));
+    }
+  };
+
   /// How far a point is pushed; 0 where it stays.
   double pushed(const Vector3d& p) const {
     const ViewGrid& grid = map_.grid;
@@ -150,20 +191,35 @@ private:
     if (!(column >= -rim && column <= columns + rim && row >= -rim && row <= rows + rim)) {
       return 0.0;
     }
-    const std::size_t cell =
-        grid.index(static_cast<std::size_t>(std::clamp(column, 0.0, columns - 1.0)),
-                   static_cast<std::size_t>(std::clamp(row, 0.0, rows - 1.0)));
+    const Nearest w(column, grid.columns);
+    const Nearest h(row, grid.rows);
+    // A floor or a flank, seen edge-on, may lie in a cell whose middle looks past it, however small
+    // the cells are: it is then pushed by what the next cell sees before it.
+    const double edge_on = -std::max(grid.cell_w_m, grid.cell_h_m);
+    const std::size_t own = grid.index(w.own, h.own);
+    for (const std::size_t cell :
+         {own, grid.index(w.own, h.next), grid.index(w.next, h.own), grid.index(w.next, h.next)}) {
+      if (behind(cell, p) >= edge_on) return pushed(cell, p);
+    }
+    return pushed(own, p);
+  }
+
+  /// How far a point lies behind the face that a cell shows.
+  double behind(std::size_t cell, const Vector3d& p) const {
+    return side_ > 0.0 ? map_.greatest_m[cell] - p.x() : p.x() - map_.least_m[cell];
+  }
+
+  double pushed(std::size_t cell, const Vector3d& p) const {
     if (!(told_.depth_m[cell] > 0.0)) return 0.0;
-    const double behind = side_ > 0.0 ? map_.greatest_m[cell] - p.x() : p.x() - map_.least_m[cell];
-    return std::clamp(told_.depth_m[cell] - behind, 0.0, told_.depth_m[cell]);
+    return std::clamp(told_.depth_m[cell] - behind(cell, p), 0.0, told_.depth_m[cell]);
   }
 
   /// Cuts the triangle into n² even ones no longer than a cell and counts those that move.
   double moved_area(const std::array<std::uint32_t, 3>& t, double& furthest) const {
     constexpr double most_cuts = 64.0;
-    const Vector3d& a = seen_[t[0]];
-    const Vector3d& b = seen_[t[1]];
-    const Vector3d& c = seen_[t[2]];
+    const Vector3d a = view_(mesh_.vertices[t[0]]);
+    const Vector3d b = view_(mesh_.vertices[t[1]]);
+    const Vector3d c = view_(mesh_.vertices[t[2]]);
     const ViewGrid& grid = map_.grid;
     const Vector3d low = a.cwiseMin(b).cwiseMin(c);
     const Vector3d high = a.cwiseMax(b).cwiseMax(c);
@@ -197,16 +253,17 @@ private:
   }
 
   const TriangleMesh& mesh_;
+  const AabbTree* tree_;
+  detail::ViewOfBody view_;
   const DepthMap& map_;
   double side_;
   BodyCrush& told_;
-  std::vector<Vector3d> seen_;
   /// No surface is moved that is further back than this, along the side looked at.
-  double crushed_to_ = std::numeric_limits<double>::infinity();
+  double crushed_to_ = endless;
 };
 
 void read(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, double side,
-          BodyCrush& told) {
+          detail::LookMemory& memory, BodyCrush& told) {
   for (const double depth : told.depth_m) {
     told.deepest_m = std::max(told.deepest_m, depth);
     told.volume_m3 += depth * map.grid.cell_area_m2();
@@ -214,7 +271,7 @@ void read(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, do
   if (body.rigid.movable() && told.energy_j > 0.0) {
     told.ees_mps = std::sqrt(2.0 * told.energy_j / body.rigid.mass_kg);
   }
-  if (told.deepest_m > 0.0) Reader(body, frame, map, side, told).run();
+  if (told.deepest_m > 0.0) Reader(body, frame, map, side, told).run(memory);
 }
 
 }  // namespace
@@ -275,8 +332,8 @@ CrushResult crush(const PulseBody& a, const PulseBody& b, const Vector3d& point_
     result.a.energy_j += cell.energy_a * result.grid.cell_area_m2();
     result.b.energy_j += cell.energy_b * result.grid.cell_area_m2();
   }
-  read(a, result.frame, map_a, 1.0, result.a);
-  read(b, result.frame, map_b, -1.0, result.b);
+  read(a, result.frame, map_a, 1.0, memory, result.a);
+  read(b, result.frame, map_b, -1.0, memory, result.b);
   return result;
 }
 

@@ -18,6 +18,8 @@ constexpr double endless = std::numeric_limits<double>::infinity();
 struct Span {
   std::size_t first = 0;
   std::size_t end = 0;
+
+  bool empty() const { return first >= end; }
 };
 
 Span cells_between(double low, double high, double start, double cell, std::size_t count) {
@@ -31,14 +33,55 @@ Span cells_between(double low, double high, double start, double cell, std::size
           static_cast<std::size_t>(std::min(last + 1.0, end))};
 }
 
-void draw(const Vector3d& a, const Vector3d& b, const Vector3d& c, DepthMap& map) {
+/// Cells of a grid that boxes may cover, found at less cost than those of triangles: a little too
+/// many rather than one too few.
+class CoveredCells {
+public:
+  explicit CoveredCells(const ViewGrid& grid)
+      : grid_(grid),
+        per_w_(1.0 / grid.cell_w_m),
+        per_h_(1.0 / grid.cell_h_m),
+        columns_(static_cast<double>(grid.columns)),
+        rows_(static_cast<double>(grid.rows)) {}
+
+  Span columns(double low, double high) const {
+    return span((low - grid_.low_w_m) * per_w_, (high - grid_.low_w_m) * per_w_, columns_);
+  }
+  Span rows(double low, double high) const {
+    return span((low - grid_.low_h_m) * per_h_, (high - grid_.low_h_m) * per_h_, rows_);
+  }
+
+private:
+  /// Middles lie at i + 1/2.
+  static Span span(double low, double high, double count) {
+    constexpr double slack = 1e-6;
+    const double from = std::max(low - 0.5 - slack, 0.0);
+    const double to = std::min(high - 0.5 + slack, count - 1.0);
+    if (!(to >= 0.0) || !(from <= to)) return {};
+    auto first = static_cast<std::size_t>(from);
+    if (static_cast<double>(first) < from) ++first;
+    const std::size_t end = static_cast<std::size_t>(to) + 1;
+    return first < end ? Span{first, end} : Span{};
+  }
+
+  const ViewGrid& grid_;
+  double per_w_;
+  double per_h_;
+  double columns_;
+  double rows_;
+};
+
+void draw(const Vector3d& a, const Vector3d& b, const Vector3d& c, const CoveredCells& cells,
+          DepthMap& map) {
   const ViewGrid& grid = map.grid;
   const Vector3d low = a.cwiseMin(b).cwiseMin(c);
   const Vector3d high = a.cwiseMax(b).cwiseMax(c);
+  // Most triangles lie between the middles of cells, which is seen without a division.
+  if (cells.columns(low.y(), high.y()).empty() || cells.rows(low.z(), high.z()).empty()) return;
   const Span columns = cells_between(low.y(), high.y(), grid.low_w_m, grid.cell_w_m, grid.columns);
-  if (columns.first >= columns.end) return;
+  if (columns.empty()) return;
   const Span rows = cells_between(low.z(), high.z(), grid.low_h_m, grid.cell_h_m, grid.rows);
-  if (rows.first >= rows.end) return;
+  if (rows.empty()) return;
   const Vector3d ab = b - a;
   const Vector3d ac = c - a;
   const double twice_area = ab.y() * ac.z() - ab.z() * ac.y();
@@ -116,8 +159,9 @@ DepthMap depth_map(const TriangleMesh& mesh, const Pose& body_in_world, const Vi
   std::vector<Vector3d> seen;
   seen.reserve(mesh.vertices.size());
   for (const Eigen::Vector3f& vertex : mesh.vertices) seen.emplace_back(view(vertex));
+  const CoveredCells cells(map.grid);
   for (const std::array<std::uint32_t, 3>& t : mesh.triangles) {
-    draw(seen[t[0]], seen[t[1]], seen[t[2]], map);
+    draw(seen[t[0]], seen[t[1]], seen[t[2]], cells, map);
   }
   return map;
 }
@@ -156,50 +200,12 @@ private:
   double margin_ = 0.0;
 };
 
-/// Cells of a grid that boxes may cover, found at less cost than those of triangles: a little too
-/// many rather than one too few.
-class CoveredCells {
-public:
-  explicit CoveredCells(const ViewGrid& grid)
-      : grid_(grid),
-        per_w_(1.0 / grid.cell_w_m),
-        per_h_(1.0 / grid.cell_h_m),
-        columns_(static_cast<double>(grid.columns)),
-        rows_(static_cast<double>(grid.rows)) {}
-
-  Span columns(double low, double high) const {
-    return span((low - grid_.low_w_m) * per_w_, (high - grid_.low_w_m) * per_w_, columns_);
-  }
-  Span rows(double low, double high) const {
-    return span((low - grid_.low_h_m) * per_h_, (high - grid_.low_h_m) * per_h_, rows_);
-  }
-
-private:
-  /// Middles lie at i + 1/2.
-  static Span span(double low, double high, double count) {
-    constexpr double slack = 1e-6;
-    const double from = std::max(low - 0.5 - slack, 0.0);
-    const double to = std::min(high - 0.5 + slack, count - 1.0);
-    if (!(to >= 0.0) || !(from <= to)) return {};
-    auto first = static_cast<std::size_t>(from);
-    if (static_cast<double>(first) < from) ++first;
-    const std::size_t end = static_cast<std::size_t>(to) + 1;
-    return first < end ? Span{first, end} : Span{};
-  }
-
-  const ViewGrid& grid_;
-  double per_w_;
-  double per_h_;
-  double columns_;
-  double rows_;
-};
-
 /// Whether a box could still show anywhere: some middle of a cell lies before it, where what has
 /// been seen so far does not reach past it on both sides.
 bool may_show(const DepthMap& map, const CoveredCells& cells, const Vector3d& low,
               const Vector3d& high) {
   const Span columns = cells.columns(low.y(), high.y());
-  if (columns.first >= columns.end) return false;
+  if (columns.empty()) return false;
   const Span rows = cells.rows(low.z(), high.z());
   for (std::size_t row = rows.first; row < rows.end; ++row) {
     for (std::size_t column = columns.first; column < columns.end; ++column) {
@@ -264,34 +270,65 @@ void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, Look
   map.greatest_m.assign(map.grid.size(), -endless);
   if (tree.empty()) return;
   const SeenBoxes boxes(tree, view);
-  Vector3d from;
-  Vector3d to;
-  boxes.see(tree.nodes[0].box, from, to);
-  const double middle = 0.5 * (from.x() + to.x());
+  std::vector<SeenNode>& waiting = memory.waiting;
+  waiting.resize(1);
+  waiting.front().node = 0;
+  boxes.see(tree.nodes[0].box, waiting.front().low, waiting.front().high);
+  const double middle = 0.5 * (waiting.front().low.x() + waiting.front().high.x());
   const CoveredCells cells(map.grid);
-  const auto outer = [&](std::uint32_t node) {
-    boxes.see(tree.nodes[node].box, from, to);
-    return std::max(to.x() - middle, middle - from.x());
+  const auto outer = [middle](const SeenNode& seen) {
+    return std::max(seen.high.x() - middle, middle - seen.low.x());
   };
-  std::vector<std::uint32_t>& stack = memory.stack;
-  stack.assign(1, 0);
-  while (!stack.empty() && memory.goes_on()) {
-    const Node& node = tree.nodes[stack.back()];
-    stack.pop_back();
-    boxes.see(node.box, from, to);
-    if (!may_show(map, cells, from, to)) continue;
+  while (!waiting.empty() && memory.goes_on()) {
+    const SeenNode seen = waiting.back();
+    const Node& node = tree.nodes[seen.node];
+    waiting.pop_back();
+    if (!may_show(map, cells, seen.low, seen.high)) continue;
     if (!node.is_leaf()) {
+      SeenNode left;
+      SeenNode right;
+      left.node = node.first;
+      right.node = node.first + 1;
+      boxes.see(tree.nodes[left.node].box, left.low, left.high);
+      boxes.see(tree.nodes[right.node].box, right.low, right.high);
       // What is further out hides more.
-      const bool right_first = outer(node.first + 1) > outer(node.first);
-      stack.push_back(right_first ? node.first : node.first + 1);
-      stack.push_back(right_first ? node.first + 1 : node.first);
+      const bool right_first = outer(right) > outer(left);
+      waiting.push_back(right_first ? left : right);
+      waiting.push_back(right_first ? right : left);
       continue;
     }
     for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
       const auto& [a, b, c] = tree.triangles[slot].corner;
-      draw(view(a), view(b), view(c), map);
+      draw(view(a), view(b), view(c), cells, map);
     }
   }
+}
+
+void triangles_within(const AabbTree& tree, const ViewOfBody& view, const Vector3d& low,
+                      const Vector3d& high, std::vector<std::uint32_t>& triangles,
+                      LookMemory& memory) {
+  triangles.clear();
+  if (tree.empty()) return;
+  const SeenBoxes boxes(tree, view);
+  Vector3d from;
+  Vector3d to;
+  std::vector<std::uint32_t>& stack = memory.stack;
+  stack.assign(1, 0);
+  while (!stack.empty()) {
+    const Node& node = tree.nodes[stack.back()];
+    stack.pop_back();
+    boxes.see(node.box, from, to);
+    if ((from.array() > high.array()).any() || (to.array() < low.array()).any()) continue;
+    if (!node.is_leaf()) {
+      stack.push_back(node.first + 1);
+      stack.push_back(node.first);
+      continue;
+    }
+    for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
+      triangles.push_back(tree.order[slot]);
+    }
+  }
+  std::sort(triangles.begin(), triangles.end());
 }
 
 void view_bounds(const PulseBody& body, const ViewFrame& frame, Vector3d& low, Vector3d& high,

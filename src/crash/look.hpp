@@ -26,9 +26,17 @@ struct ViewOfBody {
   }
 };
 
+/// A node of a tree, and where it is seen.
+struct SeenNode {
+  std::uint32_t node = 0;
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+};
+
 /// Memory of the looks at a body's tree, and who may end them early.
 struct LookMemory {
   std::vector<std::uint32_t> stack;
+  std::vector<SeenNode> waiting;
   /// Asked every few dozen boxes; once it says true what is looked at stays incomplete.
   bool (*stop)(void* stop_context) = nullptr;
   void* stop_context = nullptr;
@@ -50,6 +58,12 @@ void view_bounds(const AabbTree& tree, const ViewOfBody& view, Eigen::Vector3d& 
 /// As `depth_map` of the tree's mesh into `map.grid`, to the bit, without looking at triangles
 /// between the middles of cells or behind what is seen already.
 void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookMemory& memory);
+
+/// Lists the triangles of a tree's mesh, rising, of which some part may lie within bounds of the
+/// view: those that do and some that do not.
+void triangles_within(const AabbTree& tree, const ViewOfBody& view, const Eigen::Vector3d& low,
+                      const Eigen::Vector3d& high, std::vector<std::uint32_t>& triangles,
+                      LookMemory& memory);
 
 /// The body's tree is looked at where it has one, its mesh otherwise.
 void view_bounds(const PulseBody& body, const ViewFrame& frame, Eigen::Vector3d& low,

@@ -14,6 +14,9 @@ using Eigen::Vector3d;
 
 constexpr double endless = std::numeric_limits<double>::infinity();
 
+/// Columns are found by a rounded division.
+constexpr double rounding_m = 1e-9;
+
 double cross(const Vector2d& p, const Vector2d& q) { return p.x() * q.y() - p.y() * q.x(); }
 
 PlanarBody make_planar(const RigidBody& body, const ViewFrame& frame) {
@@ -47,6 +50,29 @@ void PlanarBody::move(double dt) {
   sine = std::sin(angle);
 }
 
+void AwakeFacets::reserve(std::size_t count) {
+  facet.reserve(count);
+  for (std::vector<double>* field : {&x, &y, &normal_x, &normal_y, &front_m, &at_x, &at_y, &in_a_x,
+                                     &in_a_y, &clear_m, &advance_mps}) {
+    field->reserve(count);
+  }
+}
+
+void AwakeFacets::resize(std::size_t count) {
+  facet.resize(count);
+  for (std::vector<double>* field : {&x, &y, &normal_x, &normal_y, &front_m, &at_x, &at_y, &in_a_x,
+                                     &in_a_y, &clear_m, &advance_mps}) {
+    field->resize(count);
+  }
+}
+
+void AwakeFacets::keep(std::size_t from, std::size_t to) {
+  facet[to] = facet[from];
+  for (std::vector<double>* field : {&x, &y, &normal_x, &normal_y, &front_m, &in_a_x, &in_a_y}) {
+    (*field)[to] = (*field)[from];
+  }
+}
+
 void PulseMemory::prepare(double longest_m, double highest_m, std::uint32_t deepest,
                           const PulseOptions& options) {
   constexpr double most_cells = 1024.0;  // across and up, see `grid_over`
@@ -63,13 +89,13 @@ void PulseMemory::prepare(double longest_m, double highest_m, std::uint32_t deep
     map->greatest_m.reserve(cell_count);
   }
   look.stack.reserve(std::size_t{deepest} + 64);
+  look.waiting.reserve(std::size_t{deepest} + 64);
   facets.reserve(facet_count);
   laws.reserve(facet_count);
   row_front_m.reserve(static_cast<std::size_t>(rows) + 1);
   crushed_m.reserve(cell_count);
   wakes_m.reserve(facet_count);
   awake.reserve(facet_count);
-  at.reserve(facet_count);
 }
 
 bool can_press(const PulseBody& a, const PulseBody& b, const Vector3d& along) {
@@ -158,8 +184,6 @@ PulseRun::PulseRun(const PulseBody& a, const PulseBody& b, const ViewFrame& fram
 double PulseRun::clearance(const Vector2d& in_a, std::size_t row) const {
   const ViewGrid& grid = memory_.map_a.grid;
   const double right = grid.low_w_m + grid.cell_w_m * static_cast<double>(grid.columns);
-  // Columns are found by a rounded division.
-  constexpr double rounding_m = 1e-9;
   return std::max(
              {in_a.x() - memory_.row_front_m[row], grid.low_w_m - in_a.y(), in_a.y() - right}) -
          rounding_m;
@@ -168,7 +192,6 @@ double PulseRun::clearance(const Vector2d& in_a, std::size_t row) const {
 void PulseRun::put_to_sleep() {
   const std::size_t count = memory_.facets.size();
   memory_.wakes_m.assign(count, 0.0);
-  memory_.awake.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const Facet& facet = memory_.facets[i];
     const double arm = (facet.point - b_.start).norm() + options_.cell_w_m;
@@ -182,14 +205,24 @@ void PulseRun::put_to_sleep() {
 void PulseRun::wake() {
   constexpr double ahead_m = 0.05;
   const auto count = static_cast<std::uint32_t>(memory_.wakes_m.size());
-  memory_.awake.clear();
+  AwakeFacets& awake = memory_.awake;
+  awake.facet.clear();
   next_wake_m_ = endless;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (memory_.wakes_m[i] <= moved_m_ + ahead_m) {
-      memory_.awake.push_back(i);
+      awake.facet.push_back(i);
     } else {
       next_wake_m_ = std::min(next_wake_m_, memory_.wakes_m[i]);
     }
+  }
+  awake.resize(awake.facet.size());
+  for (std::size_t k = 0; k < awake.size(); ++k) {
+    const Facet& facet = memory_.facets[awake.facet[k]];
+    awake.x[k] = facet.point.x();
+    awake.y[k] = facet.point.y();
+    awake.normal_x[k] = facet.normal.x();
+    awake.normal_y[k] = facet.normal.y();
+    awake.front_m[k] = memory_.row_front_m[facet.row];
   }
   work_ += count / 8;
 }
@@ -198,12 +231,61 @@ void PulseRun::wake() {
 bool PulseRun::find(const Vector2d& in_a, std::size_t row, std::size_t& cell, double& depth) const {
   const DepthMap& map = memory_.map_a;
   const ViewGrid& grid = map.grid;
-  const double column = std::floor((in_a.y() - grid.low_w_m) / grid.cell_w_m);
+  // Cutting off is rounding down where nothing is below 0.
+  const double column = (in_a.y() - grid.low_w_m) / grid.cell_w_m;
   if (!(column >= 0.0 && column < static_cast<double>(grid.columns))) return false;
   cell = grid.index(static_cast<std::size_t>(column), row);
   if (!map.covered(cell) || in_a.x() < map.least_m[cell]) return false;
   depth = map.greatest_m[cell] - in_a.x();
   return depth > 0.0;
+}
+
+/// Where the facets that are awake have come to, and how fast they advance: the same operations in
+/// the same order as `PlanarBody` has them, on plain arrays, so that they are done several at once.
+void PulseRun::carry_awake() {
+  AwakeFacets& awake = memory_.awake;
+  const std::size_t count = awake.size();
+  const ViewGrid& grid = memory_.map_a.grid;
+  const PlanarBody a = a_;
+  const PlanarBody b = b_;
+  const double left = grid.low_w_m;
+  const double right = grid.low_w_m + grid.cell_w_m * static_cast<double>(grid.columns);
+  const double half_cell = 0.5 * options_.cell_w_m;
+  const double* const x = awake.x.data();
+  const double* const y = awake.y.data();
+  const double* const normal_x = awake.normal_x.data();
+  const double* const normal_y = awake.normal_y.data();
+  const double* const front = awake.front_m.data();
+  double* __restrict const at_x = awake.at_x.data();
+  double* __restrict const at_y = awake.at_y.data();
+  double* __restrict const in_a_x = awake.in_a_x.data();
+  double* __restrict const in_a_y = awake.in_a_y.data();
+  double* __restrict const clear = awake.clear_m.data();
+  double* __restrict const advance = awake.advance_mps.data();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double from_x = x[k] - b.start.x();
+    const double from_y = y[k] - b.start.y();
+    const double px = b.center.x() + (b.cosine * from_x - b.sine * from_y);
+    const double py = b.center.y() + (b.sine * from_x + b.cosine * from_y);
+    const double to_x = px - a.center.x();
+    const double to_y = py - a.center.y();
+    const double ax = a.start.x() + (a.cosine * to_x + a.sine * to_y);
+    const double ay = a.start.y() + (a.cosine * to_y - a.sine * to_x);
+    const double before = ax - front[k];
+    const double beside = left - ay > ay - right ? left - ay : ay - right;
+    clear[k] = ((before > beside ? before : beside) - rounding_m) - half_cell;
+    const double nx = b.cosine * normal_x[k] - b.sine * normal_y[k];
+    const double ny = b.sine * normal_x[k] + b.cosine * normal_y[k];
+    const double slip_x = (b.velocity.x() + b.spin * (b.center.y() - py)) -
+                          (a.velocity.x() + a.spin * (a.center.y() - py));
+    const double slip_y = (b.velocity.y() + b.spin * (px - b.center.x())) -
+                          (a.velocity.y() + a.spin * (px - a.center.x()));
+    advance[k] = slip_x * nx + slip_y * ny;
+    at_x[k] = px;
+    at_y[k] = py;
+    in_a_x[k] = ax;
+    in_a_y[k] = ay;
+  }
 }
 
 PulseRun::Wrench PulseRun::feel() {
@@ -213,22 +295,25 @@ PulseRun::Wrench PulseRun::feel() {
   Wrench sum;
   const ViewGrid& grid = memory_.map_a.grid;
   const double half_cell = 0.5 * options_.cell_w_m;
-  memory_.at.clear();
+  AwakeFacets& awake = memory_.awake;
   std::size_t kept = 0;
-  work_ += memory_.awake.size();
-  for (const std::uint32_t i : memory_.awake) {
-    const Facet& facet = memory_.facets[i];
-    const Vector2d at = b_.carried(facet.point);
-    const Vector2d at_in_a = a_.taken_back(at);
-    const double clear = clearance(at_in_a, facet.row) - half_cell;
+  const std::size_t count = awake.size();
+  work_ += count;
+  carry_awake();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double clear = awake.clear_m[k];
+    const std::uint32_t i = awake.facet[k];
     if (clear > rest_m) {
       memory_.wakes_m[i] = moved_m_ + clear;
       next_wake_m_ = std::min(next_wake_m_, memory_.wakes_m[i]);
       continue;
     }
-    memory_.awake[kept++] = i;
-    memory_.at.push_back(at_in_a);
-    if (clear > 0.0) continue;
+    const Vector2d at(awake.at_x[k], awake.at_y[k]);
+    const double advance = awake.advance_mps[k];
+    if (kept < k) awake.keep(k, kept);
+    ++kept;
+    if (clear > 0.0 || advance <= 0.0) continue;
+    const Facet& facet = memory_.facets[i];
     const Vector2d n = b_.out(facet.normal);
     // Half a cell ahead is the material that is met next.
     const Vector2d ahead = a_.taken_back(at + half_cell * n);
@@ -236,8 +321,6 @@ PulseRun::Wrench PulseRun::feel() {
     double depth = 0.0;
     if (!find(ahead, facet.row, cell, depth) || depth < memory_.crushed_m[cell]) continue;
     const Vector2d slip = b_.velocity_at(at) - a_.velocity_at(at);
-    const double advance = slip.dot(n);
-    if (advance <= 0.0) continue;
     const Vector2d n_a = a_.in(n);
     const double along = std::clamp(a_.in(slip).x() * n_a.x() / advance, 0.0, 1.0);
     const CrushPressure law_a = material_a_.law(ahead, grid.h_of(facet.row), n_a);
@@ -261,19 +344,21 @@ PulseRun::Wrench PulseRun::feel() {
     sum.pressing += push;
     sum.pressed_at += push * at;
   }
-  memory_.awake.resize(kept);
+  if (kept < count) awake.resize(kept);
   return sum;
 }
 
 /// Columns of A that B's surface has pushed back.
 void PulseRun::remember() {
   constexpr double sideways = 1e-3;
-  for (std::size_t k = 0; k < memory_.awake.size(); ++k) {
-    const Facet& facet = memory_.facets[memory_.awake[k]];
-    if (facet.normal.x() > -sideways) continue;
+  const AwakeFacets& awake = memory_.awake;
+  for (std::size_t k = 0; k < awake.size(); ++k) {
+    // Before A's outermost point nothing is pushed back.
+    if (awake.normal_x[k] > -sideways || awake.in_a_x[k] >= awake.front_m[k]) continue;
     std::size_t cell = 0;
     double depth = 0.0;
-    if (!find(memory_.at[k], facet.row, cell, depth)) continue;
+    const Vector2d at(awake.in_a_x[k], awake.in_a_y[k]);
+    if (!find(at, memory_.facets[awake.facet[k]].row, cell, depth)) continue;
     memory_.crushed_m[cell] = std::max(memory_.crushed_m[cell], depth);
     result_.deepest_m = std::max(result_.deepest_m, depth);
   }

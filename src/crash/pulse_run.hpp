@@ -22,6 +22,30 @@ struct FacetLaw {
   CrushPressure aside;  ///< and beside it
 };
 
+/// Facets that may touch, rising, by field: most are passed over at every step by few numbers of
+/// theirs.
+struct AwakeFacets {
+  std::vector<std::uint32_t> facet;
+  std::vector<double> x;  ///< of the facet's point
+  std::vector<double> y;
+  std::vector<double> normal_x;
+  std::vector<double> normal_y;
+  std::vector<double> front_m;  ///< greatest u of A in the facet's row
+  // At the instant looked at.
+  std::vector<double> at_x;  ///< the point
+  std::vector<double> at_y;
+  std::vector<double> in_a_x;  ///< where that is in A as it was
+  std::vector<double> in_a_y;
+  std::vector<double> clear_m;      ///< no nearer to A's surface
+  std::vector<double> advance_mps;  ///< into A, along the normal
+
+  std::size_t size() const noexcept { return facet.size(); }
+  void reserve(std::size_t count);
+  void resize(std::size_t count);
+  /// Moves an entry to a place before it.
+  void keep(std::size_t from, std::size_t to);
+};
+
 /// What pulses write to besides their answer; one for each thread. It grows to what the largest
 /// bodies met need and allocates nothing afterwards.
 struct PulseMemory {
@@ -30,12 +54,11 @@ struct PulseMemory {
   LookMemory look;
   std::vector<Facet> facets;  ///< of B
   std::vector<FacetLaw> laws;
-  std::vector<double> row_front_m;   ///< greatest u of A by row
-  std::vector<double> crushed_m;     ///< by cell of A: how deep it was pushed back
-  std::vector<double> wakes_m;       ///< by facet: sleeps until this much was moved
-  std::vector<std::uint32_t> awake;  ///< facets that may touch, rising
-  std::vector<Eigen::Vector2d> at;   ///< of those: where they are in A as it was
-  std::uint64_t looked_at = 0;       ///< cells and facets that the last look went over
+  std::vector<double> row_front_m;  ///< greatest u of A by row
+  std::vector<double> crushed_m;    ///< by cell of A: how deep it was pushed back
+  std::vector<double> wakes_m;      ///< by facet: sleeps until this much was moved
+  AwakeFacets awake;
+  std::uint64_t looked_at = 0;  ///< cells and facets that the last look went over
 
   /// Room for pulses of a body A that is seen at most this long and high, trees at most this deep.
   void prepare(double longest_m, double highest_m, std::uint32_t deepest,
@@ -114,6 +137,7 @@ private:
 
   void put_to_sleep();
   void wake();
+  void carry_awake();
   double clearance(const Eigen::Vector2d& in_a, std::size_t row) const;
   bool find(const Eigen::Vector2d& in_a, std::size_t row, std::size_t& cell, double& depth) const;
   Wrench feel();

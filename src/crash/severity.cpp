@@ -1,5 +1,7 @@
 #include "crashrank/crash/severity.hpp"
 
+#include "crash/severity_of.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -145,14 +147,20 @@ std::string cdc_code(const Deformation& d) {
 
 Severity crash_severity(const PulseBody& a, const PulseBody& b, const Vector3d& point_m,
                         const Vector3d& along, const SeverityOptions& options) {
+  return detail::severity_of(a, b, point_m, along,
+                             simulate_pulse(a, b, point_m, along, options.pulse), options.crush);
+}
+
+Severity detail::severity_of(const PulseBody& a, const PulseBody& b, const Vector3d& point_m,
+                             const Vector3d& along, const PulseResult& pulse,
+                             const CrushOptions& options) {
   Severity severity;
-  severity.pulse = simulate_pulse(a, b, point_m, along, options.pulse);
-  const PulseResult& pulse = severity.pulse;
+  severity.pulse = pulse;
   if (pulse.acts) {
     const Vector3d force = pulse.b.impulse_ns;
     const double energy = std::max(0.0, pulse.dissipated_j - pulse.friction_j);
     severity.crush =
-        crush(a, b, point_m, force.head<2>().norm() > 0.0 ? force : along, energy, options.crush);
+        crush(a, b, point_m, force.head<2>().norm() > 0.0 ? force : along, energy, options);
   }
   severity.a = describe(a, pulse.a, severity.crush.a, cage_intrusion_m(a, severity.crush, true),
                         pulse.slides);

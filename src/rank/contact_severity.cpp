@@ -1,5 +1,6 @@
 #include "rank/contact_severity.hpp"
 
+#include "crash/severity_of.hpp"
 #include "rank/crash_setup.hpp"
 
 #include "crashrank/crash/pulse.hpp"
@@ -117,8 +118,26 @@ double sample_score(const Scene& scene, const HarmExposure& ego, const HarmExpos
   }
 }
 
-/// Evaluates the contact in every sample of the scene.
-void tell_samples(const Scene& scene, const PulseBody& a, const PulseBody& b, const Vector3d& along,
+PulseVariant variant_of(const HarmSample& sample) { return {sample.friction, sample.strength}; }
+
+bool same(const PulseVariant& p, const PulseVariant& q) {
+  return p.friction == q.friction && p.strength == q.strength;
+}
+
+/// The plain pulse's variant, then those of the scene's samples, in their order. Samples that
+/// differ in risk alone share their pulse; they follow each other.
+std::vector<PulseVariant> variants_of(const Scene& scene, const PulseVariant& plain) {
+  std::vector<PulseVariant> variants{plain};
+  for (std::size_t i = 1; i < scene.samples.size(); ++i) {
+    const PulseVariant wanted = variant_of(scene.samples[i]);
+    if (variants.size() == 1 || !same(variants.back(), wanted)) variants.push_back(wanted);
+  }
+  return variants;
+}
+
+/// Evaluates the contact in every sample of the scene, from the pulses of `variants_of`.
+void tell_samples(const Scene& scene, const PulseBody& a, const PulseBody& b,
+                  const std::vector<PulseVariant>& variants, const std::vector<PulseResult>& pulses,
                   Contact& contact) {
   ContactSeverity& told = contact.severity;
   const std::vector<HarmSample>& samples = scene.samples;
@@ -129,24 +148,9 @@ void tell_samples(const Scene& scene, const PulseBody& a, const PulseBody& b, co
   told.sample_scores.reserve(samples.size());
   told.sample_scores.push_back(sample_score(scene, ego, other, told.dissipated_j, samples.front()));
 
-  // Samples that differ in risk alone share their pulse; they follow each other.
-  std::vector<PulseVariant> variants;
+  std::size_t at = 1;
   for (std::size_t i = 1; i < samples.size(); ++i) {
-    const PulseVariant wanted{samples[i].friction, samples[i].strength};
-    if (variants.empty() || variants.back().friction != wanted.friction ||
-        variants.back().strength != wanted.strength) {
-      variants.push_back(wanted);
-    }
-  }
-  const std::vector<PulseResult> pulses =
-      simulate_pulses(a, b, contact.point_m, along, {variants.data(), variants.size()},
-                      coarse(scene.harm.friction).pulse);
-  std::size_t at = 0;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    if (variants[at].friction != samples[i].friction ||
-        variants[at].strength != samples[i].strength) {
-      ++at;
-    }
+    if (!same(variants[at], variant_of(samples[i]))) ++at;
     const PulseResult& pulse = pulses[at];
     HarmExposure one = ego;
     HarmExposure two = other;
@@ -188,7 +192,13 @@ EgoAfterContact tell_severity(const Scene& scene, const EgoAtContact& ego, Conta
                simulate_pulse(crash.a, crash.b, contact.point_m, crash.along, how.pulse), told);
     return after_pulse(crash, {});
   }
-  const Severity severity = crash_severity(crash.a, crash.b, contact.point_m, crash.along, how);
+  // One look at the surfaces serves the plain pulse and those of the samples.
+  const std::vector<PulseVariant> variants = variants_of(scene, {how.pulse.friction, 1.0});
+  const std::vector<PulseResult> pulses =
+      simulate_pulses(crash.a, crash.b, contact.point_m, crash.along,
+                      {variants.data(), variants.size()}, how.pulse);
+  const Severity severity =
+      severity_of(crash.a, crash.b, contact.point_m, crash.along, pulses.front(), how.crush);
   told.simulated = true;
   told.slides = severity.pulse.slides;
   told.duration_s = severity.pulse.duration_s;
@@ -200,7 +210,9 @@ EgoAfterContact tell_severity(const Scene& scene, const EgoAtContact& ego, Conta
   told.other.harm =
       harm_of(exposure_of(scene, other, scene.ego, false, contact, told.other), scene.harm);
   told.harm = told.ego.harm + told.other.harm;
-  if (!scene.samples.empty()) tell_samples(scene, crash.a, crash.b, crash.along, contact);
+  if (!scene.samples.empty()) {
+    tell_samples(scene, crash.a, crash.b, variants, pulses, contact);
+  }
   return after_pulse(crash, severity.pulse);
 }
 
