@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace crashrank {
@@ -17,8 +16,6 @@ namespace {
 using detail::Material;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double endless = std::numeric_limits<double>::infinity();
 
 /// A cell in which both bodies are seen, and how far they are pressed into each other there.
 struct Cell {
@@ -110,20 +107,12 @@ public:
         view_(body.pose, frame),
         map_(map),
         side_(side),
-        told_(told) {
-    // Nothing is pushed that lies behind all of the crush.
-    for (std::size_t cell = 0; cell < told.depth_m.size(); ++cell) {
-      if (!(told.depth_m[cell] > 0.0)) continue;
-      const double end = side > 0.0 ? map.greatest_m[cell] - told.depth_m[cell]
-                                    : -map.least_m[cell] - told.depth_m[cell];
-      crushed_to_ = std::min(crushed_to_, end);
-    }
-  }
+        told_(told) {}
 
   void run(detail::LookMemory& memory) {
     std::vector<std::uint32_t> near;
     if (tree_ != nullptr) {
-      detail::triangles_within(*tree_, view_, lowest(), highest(), near, memory);
+      detail::triangles_where(*tree_, view_, &Reader::may_move, this, near, memory);
     } else {
       near.resize(mesh_.size());
       std::iota(near.begin(), near.end(), 0U);
@@ -150,20 +139,44 @@ public:
   }
 
 private:
-  // Bounds of what can move, wider than what is asked of each triangle.
-  static constexpr double beyond_m = 1e-6;
+  /// False where nothing within bounds of the view is pushed.
+  static bool may_move(const void* reader, const Vector3d& low, const Vector3d& high) {
+    return static_cast<const Reader*>(reader)->may_move(low, high);
+  }
 
-  Vector3d lowest() const {
-    const double back = side_ > 0.0 ? crushed_to_ - beyond_m : -endless;
-    return {back, map_.grid.low_w_m - beyond_m, map_.grid.low_h_m - beyond_m};
-  }
-  Vector3d highest() const {
+  bool may_move(const Vector3d& low, const Vector3d& high) const {
+    constexpr double rounding_m = 1e-9;
     const ViewGrid& grid = map_.grid;
-    const double right = grid.low_w_m + grid.cell_w_m * static_cast<double>(grid.columns);
-    const double top = grid.low_h_m + grid.cell_h_m * static_cast<double>(grid.rows);
-    const double back = side_ > 0.0 ? endless : beyond_m - crushed_to_;
-    return {back, right + beyond_m, top + beyond_m};
+    // Points ask the cell that they lie in and the ones beside it.
+    const Cells columns(low.y() - grid.low_w_m, high.y() - grid.low_w_m, grid.cell_w_m,
+                        grid.columns);
+    const Cells rows(low.z() - grid.low_h_m, high.z() - grid.low_h_m, grid.cell_h_m, grid.rows);
+    for (std::size_t row = rows.first; row < rows.end; ++row) {
+      for (std::size_t column = columns.first; column < columns.end; ++column) {
+        const std::size_t cell = grid.index(column, row);
+        const double depth = told_.depth_m[cell];
+        if (!(depth > 0.0)) continue;
+        const double into =
+            side_ > 0.0 ? high.x() - map_.greatest_m[cell] : map_.least_m[cell] - low.x();
+        if (into + depth > -rounding_m) return true;
+      }
+    }
+    return false;
   }
+
+  /// Cells that a stretch covers, and one more on each side.
+  struct Cells {
+    std::size_t first = 0;
+    std::size_t end = 0;
+
+    Cells(double low, double high, double cell, std::size_t count) {
+      const auto most = static_cast<double>(count);
+      const double from = std::clamp(std::floor(low / cell) - 1.0, 0.0, most);
+      const double to = std::clamp(std::floor(high / cell) + 2.0, 0.0, most);
+      first = static_cast<std::size_t>(from);
+      end = static_cast<std::size_t>(to);
+    }
+  };
 
   /// An index of a cell and the next nearest one.
   struct Nearest {
@@ -223,13 +236,7 @@ private:
     const ViewGrid& grid = map_.grid;
     const Vector3d low = a.cwiseMin(b).cwiseMin(c);
     const Vector3d high = a.cwiseMax(b).cwiseMax(c);
-    const double right = grid.low_w_m + grid.cell_w_m * static_cast<double>(grid.columns);
-    const double top = grid.low_h_m + grid.cell_h_m * static_cast<double>(grid.rows);
-    if (high.y() < grid.low_w_m || low.y() > right || high.z() < grid.low_h_m || low.z() > top) {
-      return 0.0;
-    }
-    constexpr double rounding_m = 1e-9;
-    if ((side_ > 0.0 ? high.x() : -low.x()) < crushed_to_ - rounding_m) return 0.0;
+    if (!may_move(low, high)) return 0.0;
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     const auto cuts =
         static_cast<int>(std::clamp(std::ceil(longest / grid.cell_w_m), 1.0, most_cuts));
@@ -258,8 +265,6 @@ private:
   const DepthMap& map_;
   double side_;
   BodyCrush& told_;
-  /// No surface is moved that is further back than this, along the side looked at.
-  double crushed_to_ = endless;
 };
 
 void read(const PulseBody& body, const ViewFrame& frame, const DepthMap& map, double side,

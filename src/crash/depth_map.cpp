@@ -304,9 +304,10 @@ void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, Look
   }
 }
 
-void triangles_within(const AabbTree& tree, const ViewOfBody& view, const Vector3d& low,
-                      const Vector3d& high, std::vector<std::uint32_t>& triangles,
-                      LookMemory& memory) {
+void triangles_where(const AabbTree& tree, const ViewOfBody& view,
+                     bool (*wanted)(const void* context, const Vector3d& low, const Vector3d& high),
+                     const void* context, std::vector<std::uint32_t>& triangles,
+                     LookMemory& memory) {
   triangles.clear();
   if (tree.empty()) return;
   const SeenBoxes boxes(tree, view);
@@ -318,7 +319,7 @@ void triangles_within(const AabbTree& tree, const ViewOfBody& view, const Vector
     const Node& node = tree.nodes[stack.back()];
     stack.pop_back();
     boxes.see(node.box, from, to);
-    if ((from.array() > high.array()).any() || (to.array() < low.array()).any()) continue;
+    if (!wanted(context, from, to)) continue;
     if (!node.is_leaf()) {
       stack.push_back(node.first + 1);
       stack.push_back(node.first);

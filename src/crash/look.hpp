@@ -59,11 +59,13 @@ void view_bounds(const AabbTree& tree, const ViewOfBody& view, Eigen::Vector3d& 
 /// between the middles of cells or behind what is seen already.
 void depth_map(const AabbTree& tree, const ViewOfBody& view, DepthMap& map, LookMemory& memory);
 
-/// Lists the triangles of a tree's mesh, rising, of which some part may lie within bounds of the
-/// view: those that do and some that do not.
-void triangles_within(const AabbTree& tree, const ViewOfBody& view, const Eigen::Vector3d& low,
-                      const Eigen::Vector3d& high, std::vector<std::uint32_t>& triangles,
-                      LookMemory& memory);
+/// Lists the triangles of a tree's mesh, rising, whose boxes (and those around them) `wanted` says
+/// yes to: bounds in the view, a little larger than they are.
+void triangles_where(const AabbTree& tree, const ViewOfBody& view,
+                     bool (*wanted)(const void* context, const Eigen::Vector3d& low,
+                                    const Eigen::Vector3d& high),
+                     const void* context, std::vector<std::uint32_t>& triangles,
+                     LookMemory& memory);
 
 /// The body's tree is looked at where it has one, its mesh otherwise.
 void view_bounds(const PulseBody& body, const ViewFrame& frame, Eigen::Vector3d& low,

@@ -171,6 +171,7 @@ PulseRun::PulseRun(const PulseBody& a, const PulseBody& b, const ViewFrame& fram
       material_a_(a, frame),
       material_b_(b, frame) {
   energy_before_j_ = moving_j();
+  speed_before_mps_ = (a_.velocity - b_.velocity).norm();
   over_ = memory.facets.empty();
   if (over_) return;
   memory.crushed_m.assign(memory.map_a.grid.size(), 0.0);
@@ -432,12 +433,32 @@ bool PulseRun::advance(int steps) {
   return !over_;
 }
 
+/// The centres of mass never again move faster against each other: all kinetic energy about the
+/// common centre of mass in their speed.
+double PulseRun::most_speed_mps() const {
+  const double inverse = a_.inverse_mass + b_.inverse_mass;
+  const double speed = (a_.velocity - b_.velocity).norm();
+  const double turns = 2.0 * (turning_j(a_) + turning_j(b_));
+  return (1.0 + 1e-9) * std::sqrt(speed * speed + turns * inverse);
+}
+
 double PulseRun::most_left_ns() const {
   const double inverse = a_.inverse_mass + b_.inverse_mass;
   if (over_ || !(inverse > 0.0)) return 0.0;
   const double speed = (a_.velocity - b_.velocity).norm();
-  const double turns = 2.0 * (turning_j(a_) + turning_j(b_));
-  return (1.0 + 1e-9) * (speed + std::sqrt(speed * speed + turns * inverse)) / inverse;
+  return ((1.0 + 1e-9) * speed + most_speed_mps()) / inverse;
+}
+
+double PulseRun::least_whole_ns() const {
+  const double inverse = a_.inverse_mass + b_.inverse_mass;
+  if (!(inverse > 0.0)) return 0.0;
+  return std::max(0.0, (1.0 - 1e-9) * speed_before_mps_ - most_speed_mps()) / inverse;
+}
+
+double PulseRun::most_whole_ns() const {
+  const double inverse = a_.inverse_mass + b_.inverse_mass;
+  if (!(inverse > 0.0)) return 0.0;
+  return ((1.0 + 1e-9) * speed_before_mps_ + most_speed_mps()) / inverse;
 }
 
 double PulseRun::most_left_j() const {

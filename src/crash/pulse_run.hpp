@@ -115,6 +115,11 @@ public:
   /// No more impulse can follow than this, N·s: kinetic energy of the two about their common centre
   /// of mass is never gained, and that is what further impulses live on.
   double most_left_ns() const;
+  /// The whole impulse, from first contact to the end, is no smaller than this, N·s: how fast the
+  /// centres of mass move against each other at the end is bounded by the energy that is left.
+  double least_whole_ns() const;
+  /// And no larger than this.
+  double most_whole_ns() const;
   /// No more energy can be dissipated than this, J.
   double most_left_j() const;
   /// Kinetic energy that both have lost so far, J.
@@ -147,6 +152,7 @@ private:
   Eigen::Vector3d in_world(const Eigen::Vector2d& v) const;
   void tell(const RigidBody& body, const PlanarBody& end, double sign, BodyImpulse& told) const;
   double moving_j() const;
+  double most_speed_mps() const;
 
   const PulseOptions& options_;
   PulseVariant variant_;
@@ -168,6 +174,7 @@ private:
   double next_wake_m_ = 0.0;
   std::uint64_t work_ = 0;
   double energy_before_j_ = 0.0;
+  double speed_before_mps_ = 0.0;  ///< of the centres of mass against each other
   Eigen::Vector2d impulse_ = Eigen::Vector2d::Zero();
   double pressed_ = 0.0;
   Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();
