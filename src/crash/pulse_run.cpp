@@ -31,6 +31,14 @@ PlanarBody make_planar(const RigidBody& body, const ViewFrame& frame) {
   return p;
 }
 
+/// How far ahead (u) A's surface may come within the pulse. Where B begins says nothing about it: a
+/// long wall that is struck along its flank begins far behind A.
+double reach_m(const PulseBody& a, const PulseBody& b, double low_m, double high_m,
+               const PulseOptions& options) {
+  const Vector3d closing = a.rigid.velocity.linear_mps - b.rigid.velocity.linear_mps;
+  return high_m + std::max(high_m - low_m, closing.head<2>().norm() * options.longest_s);
+}
+
 double turning_j(const PlanarBody& body) {
   return body.inverse_inertia > 0.0 ? 0.5 * body.spin * body.spin / body.inverse_inertia : 0.0;
 }
@@ -131,7 +139,7 @@ void look(const PulseBody& a, const PulseBody& b, const ViewFrame& frame,
   depth_map(a, frame, grid_a, memory.map_a, memory.look);
   depth_map(b, frame, grid_b, memory.map_b, memory.look);
   if (memory.look.stopped) return;
-  facets_of(memory.map_b, low_b.x() + (high_a.x() - low_a.x()), memory.facets);
+  facets_of(memory.map_b, reach_m(a, b, low_a.x(), high_a.x(), options), memory.facets);
 
   memory.row_front_m.assign(grid_a.rows, -endless);
   for (std::size_t row = 0; row < grid_a.rows; ++row) {

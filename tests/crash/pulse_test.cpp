@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace crashrank {
 namespace {
@@ -102,6 +103,34 @@ TEST(Pulse, WithoutOverlapNothingHappens) {
   EXPECT_TRUE(past.a.delta_v_mps.isZero(0.0));
   const TriangleMesh bridge = box_mesh({0.5, 1, 1}, {0, 0, 3});
   EXPECT_FALSE(simulate_pulse(a, wall_of(bridge, at(0, 0)), {-0.5, 0, 0}, {1, 0, 0}).acts);
+}
+
+// A car that runs at a flat angle into the flank of a long wall is turned aside by it, wherever the
+// wall begins behind the car.
+TEST(Pulse, AWallIsFeltAlongItsWholeFlank) {
+  const TriangleMesh car = box_mesh({2, 0.9, 0.5}, {0, 0, 0.5}, 8);
+  const double heading = 0.17;
+  const double speed = 33.0;
+  const Vector3d v(speed * std::cos(heading), speed * std::sin(heading), 0.0);
+  // The front left corner touches the wall's face y = 0.
+  const double y = -(2.0 * std::sin(heading) + 0.9 * std::cos(heading)) - 1e-4;
+  const PulseBody a = body_of(car, 1500, at(0, y, heading), v, even(50e3, 600e3, 0, 1));
+  const double corner_x = 2.0 * std::cos(heading) - 0.9 * std::sin(heading);
+  std::vector<double> across;
+  for (const double behind : {2.0, 8.0, 20.0}) {
+    const double length = 0.5 * (behind + 12.0);
+    const TriangleMesh wall = box_mesh({length, 0.25, 1}, {12.0 - length, 0.25, 1}, 4);
+    const PulseResult r =
+        simulate_pulse(a, wall_of(wall, at(0, 0)), {corner_x, 0, 0}, {v.x(), v.y(), 0});
+    ASSERT_TRUE(r.acts);
+    across.push_back(-r.a.delta_v_mps.y());
+    // It is heavy work to push a corner in by the way that it would go otherwise.
+    EXPECT_GT(across.back(), 0.25 * v.y()) << behind;
+    EXPECT_LT(across.back(), 1.2 * v.y()) << behind;
+  }
+  // The cells lie a little differently.
+  EXPECT_NEAR(across[1], across[0], 0.05 * across[0]);
+  EXPECT_NEAR(across[2], across[0], 0.05 * across[0]);
 }
 
 TEST(Pulse, MassRatiosRunToTheirLimits) {
