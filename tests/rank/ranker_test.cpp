@@ -65,8 +65,8 @@ std::uint64_t wished(const char* variable, std::uint64_t otherwise) {
   return wish != nullptr ? std::strtoull(wish, nullptr, 10) : otherwise;
 }
 
-/// How many scenes a property is tried on, and the seed of the first: campaigns say so in
-/// CRASHRANK_RANKER_SCENES and CRASHRANK_RANKER_SEED.
+/// How many scenes a property is tried on, the seed of the first, and how often the work on each is
+/// cut: campaigns say so in CRASHRANK_RANKER_SCENES, CRASHRANK_RANKER_SEED, CRASHRANK_RANKER_CUTS.
 std::uint64_t scenes_to_try(std::uint64_t otherwise) {
   return wished("CRASHRANK_RANKER_SCENES", otherwise);
 }
@@ -177,7 +177,7 @@ void cut_everywhere(std::uint64_t seed, Measure measure, std::uint64_t cuts, Wid
 
 TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
   const std::uint64_t seed = first_seed(1000);
-  constexpr std::uint64_t cuts = 14;
+  const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 14);
   Widths widths;
   const std::uint64_t scenes = scenes_to_try(30);
   for (std::uint64_t i = 0; i < scenes; ++i) {
