@@ -17,6 +17,7 @@
 #include "crashrank/tree/lanes.hpp"
 
 #include <cmath>
+#include <cstring>
 
 namespace crashrank {
 namespace detail {
@@ -60,6 +61,15 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
   return query;
 }
 
+/// One corner of a node's box. Read as four floats at once, which its node has, rather than as
+/// three.
+HWY_INLINE Lanes corner_lanes(const Eigen::Vector3f& corner) {
+  static_assert(sizeof(Box) == 24 && sizeof(Node) == 32);
+  Lanes read;
+  std::memcpy(&read, reinterpret_cast<const char*>(&corner), sizeof read);
+  return three(read);
+}
+
 /// Whether B certainly misses A's box wherever it is turned: whether the ball around B's origin
 /// that encloses its box misses. The cheapest test there is. With u = 2^-24, A the largest and |b|
 /// the farthest corner of a box from its origin: every coordinate of the gap is rounded by at most
@@ -67,11 +77,11 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
 /// asks for d² > 1.01·|b|² and d > 2^-8·|t| and d > 2^-8·A: d is off by less than 2^-13 of itself
 /// and above 1.004·|b|, while a pose stretches lengths by at most 2e-6 and `carry` rounds by 2^-50.
 /// Squares that leave the range of floats, or come near, leave it undecided.
-bool origin_ball_misses(const Box& a, const Box& b, const Pose& b_in_a) {
-  const Lanes a_min = to_lanes(a).min;
-  const Lanes a_max = to_lanes(a).max;
-  const Lanes b_min = to_lanes(b).min;
-  const Lanes b_max = to_lanes(b).max;
+HWY_INLINE bool origin_ball_misses(const Node& a, const Node& b, const Pose& b_in_a) {
+  const Lanes a_min = corner_lanes(a.box.min);
+  const Lanes a_max = corner_lanes(a.box.max);
+  const Lanes b_min = corner_lanes(b.box.min);
+  const Lanes b_max = corner_lanes(b.box.max);
   const Eigen::Vector3d& at = b_in_a.translation;
   const Lanes t{static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]),
                 0.0F};
@@ -106,35 +116,31 @@ bool ball_misses(const Box& a, const Box& b, const Pose& b_in_a) {
          certain * certain > 0.25 * (1.0 + 0x1p-16) * (b_max - b_min).squaredNorm();
 }
 
-}  // namespace detail
+namespace {
 
-CollideResult collide(const Model& a, std::uint32_t a_node, const Model& b, std::uint32_t b_node,
-                      const Pose& b_in_a, std::vector<Pair>& pairs, ModelWorkspace& workspace,
-                      const CollideOptions& options) {
-  pairs.clear();
-  CollideResult result;
+/// A query that is not decided by the cheapest test. A function of its own, because what it keeps
+/// on the stack would cost those that are.
+HWY_NOINLINE void collide_near(const Model& a, std::uint32_t a_node, const Model& b,
+                               std::uint32_t b_node, const Pose& b_in_a, std::vector<Pair>& pairs,
+                               ModelWorkspace& workspace, const CollideOptions& options,
+                               CollideResult& result) {
   const Box& a_box = a.tree.nodes[a_node].box;
   const Box& b_box = b.tree.nodes[b_node].box;
-  result.work.bv_tests = 1;
-  if (a.tree.axes_are_world && b.tree.axes_are_world &&
-      (detail::origin_ball_misses(a_box, b_box, b_in_a) ||
-       detail::ball_misses(a_box, b_box, b_in_a))) {
-    return result;
-  }
+  if (a.tree.axes_are_world && b.tree.axes_are_world && ball_misses(a_box, b_box, b_in_a)) return;
   const BoxTransform to = box_transform(a.tree, b.tree, b_in_a);
-  if (!boxes_may_touch(a_box, b_box, to)) return result;
+  if (!boxes_may_touch(a_box, b_box, to)) return;
   workspace.prepare(a, b);
   const double size =
-      to.translation.cwiseAbs().sum() + 3.0 * (detail::largest_coordinate(a.tree.nodes[0].box) +
-                                               detail::largest_coordinate(b.tree.nodes[0].box));
-  const bool wide = !a.wide.empty() && !b.wide.empty() && size < detail::max_wide_size &&
+      to.translation.cwiseAbs().sum() +
+      3.0 * (largest_coordinate(a.tree.nodes[0].box) + largest_coordinate(b.tree.nodes[0].box));
+  const bool wide = !a.wide.empty() && !b.wide.empty() && size < max_wide_size &&
                     a.wide.lanes_of[a_node].lanes != 0 && b.wide.lanes_of[b_node].lanes != 0;
   if (wide) {
-    const detail::WideQuery query = detail::make_query(a, b, to, size, b_in_a, options.any);
+    const WideQuery query = make_query(a, b, to, size, b_in_a, options.any);
     const WideLanes& from_a = a.wide.lanes_of[a_node];
     const WideLanes& from_b = b.wide.lanes_of[b_node];
-    detail::WideSink sink{&pairs, workspace.wide.data(), workspace.wide.size(), result.work};
-    HWY_DYNAMIC_DISPATCH(detail::wide_traverse)
+    WideSink sink{&pairs, workspace.wide.data(), workspace.wide.size(), result.work};
+    HWY_DYNAMIC_DISPATCH(wide_traverse)
     (query, WideTask{from_a.node, from_b.node, from_a.lanes, from_b.lanes}, sink);
     result.work = sink.work;
   } else {
@@ -143,12 +149,35 @@ CollideResult collide(const Model& a, std::uint32_t a_node, const Model& b, std:
   }
   result.pairs = pairs.size();
   result.intersecting = !pairs.empty();
+}
+
+HWY_INLINE CollideResult collide_from(const Model& a, std::uint32_t a_node, const Model& b,
+                                      std::uint32_t b_node, const Pose& b_in_a,
+                                      std::vector<Pair>& pairs, ModelWorkspace& workspace,
+                                      const CollideOptions& options) {
+  pairs.clear();
+  CollideResult result;
+  result.work.bv_tests = 1;
+  const bool world = a.tree.axes_are_world && b.tree.axes_are_world;
+  if (world && origin_ball_misses(a.tree.nodes[a_node], b.tree.nodes[b_node], b_in_a)) {
+    return result;
+  }
+  collide_near(a, a_node, b, b_node, b_in_a, pairs, workspace, options, result);
   return result;
+}
+
+}  // namespace
+}  // namespace detail
+
+CollideResult collide(const Model& a, std::uint32_t a_node, const Model& b, std::uint32_t b_node,
+                      const Pose& b_in_a, std::vector<Pair>& pairs, ModelWorkspace& workspace,
+                      const CollideOptions& options) {
+  return detail::collide_from(a, a_node, b, b_node, b_in_a, pairs, workspace, options);
 }
 
 CollideResult collide(const Model& a, const Model& b, const Pose& b_in_a, std::vector<Pair>& pairs,
                       ModelWorkspace& workspace, const CollideOptions& options) {
-  return collide(a, 0, b, 0, b_in_a, pairs, workspace, options);
+  return detail::collide_from(a, 0, b, 0, b_in_a, pairs, workspace, options);
 }
 
 const char* vector_unit() noexcept {
