@@ -101,17 +101,18 @@ Reply read_reply(const ReadBytes& read, const ImportLimits& limits, ImportedMesh
                          "install crashrank-import and the library together");
     return Reply::refused;
   }
+  const Error nonsense =
+      make_error(ErrorCode::bad_input, "the parser lost its way in it", "export the file again");
   if (header.status != ImportStatus::ok) {
     failure.code = code_of(header.status);
     failure.place = printable(reader.text(max_import_text));
     failure.reason = printable(reader.text(max_import_text));
     failure.remedy = printable(reader.text(max_import_text));
     if (reader.value<std::uint64_t>() != import_trailer) return Reply::broken_off;
+    if (failure.reason.empty()) failure = nonsense;
     return Reply::refused;
   }
 
-  const Error nonsense =
-      make_error(ErrorCode::bad_input, "the parser lost its way in it", "export the file again");
   if (!within(header, limits)) {
     failure = nonsense;
     return Reply::refused;

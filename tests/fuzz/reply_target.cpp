@@ -79,8 +79,7 @@ bool take(const Bytes& bytes) {
   Error failure;
   const detail::Reply reply = detail::read_reply(read, limits, imported, failure);
   if (reply == detail::Reply::refused) {
-    require(!failure.reason.empty() || failure.code != ErrorCode::internal,
-            "a refusal says nothing");
+    require(!failure.reason.empty(), "a refusal says nothing");
   }
   if (reply != detail::Reply::complete) return false;
   const TriangleMesh& mesh = imported.mesh;
