@@ -185,6 +185,7 @@ int run(const Options& options) {
   if (!options.damage_folder.empty()) {
     if (const Status made = make_folder(options.damage_folder); !made) return fail(made.error());
   }
+  if (const Status status = can_be_written(options.report); !status) return fail(status.error());
   const Result<std::vector<Model>> models = load_models(*scenario, options.tree);
   if (!models) return fail(models.error());
   const Result<RankResult> ranked = options.bounded()
@@ -256,15 +257,20 @@ void add_rank(CLI::App& app, Action& action) {
   command
       ->add_option("--deadline-ms", options->deadline_ms,
                    "Answer within this time, in what is known by then; counted from the call, "
-                   "meshes and trees being ready")
-      ->check(CLI::Range(0.0, 1e9));
+                   "meshes and trees being ready; ranges of what is not known are not varied")
+      ->check(CLI::Range(0.0, 1e9))
+      ->check([](const std::string& text) {
+        return text.find_first_of("nN") == std::string::npos ? std::string()
+                                                             : "'" + text + "' is no time";
+      });
   command
       ->add_option("--work-budget", options->work_budget,
                    "Answer in what is known after this many tests of boxes, triangles and "
                    "facets; the same on every machine")
       ->check(CLI::NonNegativeNumber);
-  command->add_flag("--first-place", options->first_place,
-                    "Answer as soon as the first place is proved");
+  command->add_flag(
+      "--first-place", options->first_place,
+      "Look closer only at those that can still be first, and answer when that is proved");
   command->add_option("--policy", options->policy, policy_help());
   command->add_option("--depth", options->depth,
                       "Distribution depth at which trees are cut, 1 to 16, or auto (default)");

@@ -107,6 +107,18 @@ Result<StandardInputFile> StandardInputFile::receive(std::size_t limit,
 
 void OutputFile::Close::operator()(std::FILE* file) const { std::fclose(file); }
 
+Status can_be_written(const std::string& path) {
+  if (path.empty() || is_standard(path)) return Success{};
+  const bool there = access(path.c_str(), F_OK) == 0;
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  if (there ? access(path.c_str(), W_OK) == 0 : access(folder.c_str(), W_OK | X_OK) == 0) {
+    return Success{};
+  }
+  return file_error(ErrorCode::not_found, path, std::string("cannot write: ") + strerror(errno),
+                    "name a file in a folder that can be written to");
+}
+
 Result<OutputFile> OutputFile::open(const std::string& path, bool follow_links) {
   OutputFile out;
   out.path_ = path;

@@ -30,6 +30,10 @@ private:
   std::unique_ptr<const std::string, Remove> path_;
 };
 
+/// Whether a file could be written there, before the work for it is begun; an empty name and
+/// standard output can. Errors: not_found.
+Status can_be_written(const std::string& path);
+
 /// A text file being written, or standard output for "-".
 class OutputFile {
 public:

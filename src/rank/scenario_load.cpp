@@ -50,8 +50,8 @@ Result<std::string> resolve(const std::string& scenario_file, const std::string&
     return Error{ErrorCode::bad_input,
                  scenario_file,
                  {},
-                 "the path \"" + mesh + "\" cannot be followed",
-                 "check it"};
+                 "the path \"" + mesh + "\" cannot be followed: " + error.message(),
+                 "check it, and the permissions of the folders on the way"};
   }
   const fs::path owner = owning_folder(folder);
   if (is_below(path, owner)) return path.string();

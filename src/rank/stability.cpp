@@ -6,12 +6,42 @@
 #include <vector>
 
 namespace crashrank::detail {
+namespace {
+
+/// Where scores are open, a candidate stands behind those whose scores are lower whatever is found
+/// out, and before those whose scores are higher.
+void places_by_intervals(std::vector<CandidateResult>& ranking) {
+  std::vector<double> lowest;
+  std::vector<double> highest;
+  for (const CandidateResult& c : ranking) {
+    lowest.push_back(c.score_interval.lowest);
+    highest.push_back(c.score_interval.highest);
+  }
+  std::sort(lowest.begin(), lowest.end());
+  std::sort(highest.begin(), highest.end());
+  for (std::size_t place = 0; place < ranking.size(); ++place) {
+    CandidateResult& c = ranking[place];
+    const auto before =
+        std::lower_bound(highest.begin(), highest.end(), c.score_interval.lowest) - highest.begin();
+    const auto behind =
+        lowest.end() - std::upper_bound(lowest.begin(), lowest.end(), c.score_interval.highest);
+    // Of candidates that are level the order says who stands where.
+    c.best_place = std::min(place, static_cast<std::size_t>(before));
+    c.worst_place = std::max(place, ranking.size() - 1 - static_cast<std::size_t>(behind));
+  }
+}
+
+}  // namespace
 
 void tell_stability(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   for (std::size_t place = 0; place < ranking.size(); ++place) {
     ranking[place].best_place = place;
     ranking[place].worst_place = place;
+  }
+  if (!result.complete) {
+    places_by_intervals(ranking);
+    return;
   }
   const std::size_t samples = result.samples.size();
   // Without a score there is nothing to put in order; those come last.

@@ -11,8 +11,15 @@ Result<std::string> read_text_file(const std::string& file, std::size_t most_byt
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (error || !fs::exists(status)) {
+  if (status.type() == fs::file_type::not_found) {
     return Error{ErrorCode::not_found, file, {}, "there is no such file", "check the path"};
+  }
+  if (error) {
+    return Error{ErrorCode::not_found,
+                 file,
+                 {},
+                 "cannot be reached: " + error.message(),
+                 "check the permissions of the folders above it"};
   }
   if (!fs::is_regular_file(status)) {
     return Error{ErrorCode::not_found, file, {}, "is not a file", wanted};

@@ -147,7 +147,9 @@ private:
   void verdict() {
     if (result_.ranking.empty()) return;
     out_ += "<section class='verdict'><h2>";
-    out_ += result_.measure == Measure::harm ? "Least harmful: " : "Least destructive: ";
+    out_ += !result_.proved                    ? "Best guess so far: "
+            : result_.measure == Measure::harm ? "Least harmful: "
+                                               : "Least destructive: ";
     out_ += escape_xml(name_of(0)) + "</h2>\n";
     out_ += result_.ranking.size() > 1
                 ? "<p>" + escape_xml(detail::reason_words(scenario_, result_, 0)) + "</p>\n"

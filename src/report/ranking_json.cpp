@@ -146,6 +146,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
                     std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
   const Candidate& candidate = result.candidates[ranked.candidate];
+  const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
   Json contacts = Json::array();
   for (const Contact& contact : ranked.contacts) {
     contacts.push_back(contact_json(scenario, models, contact));
@@ -160,8 +161,8 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
              {"score_interval",
               Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},
              {"places", Json::array({ranked.best_place + 1, ranked.worst_place + 1})},
-             {"separable_from_next", ranked.separable},
-             {"overtaken_share", ranked.overtaken},
+             {"separable_from_next", sampled ? Json(ranked.separable) : Json(nullptr)},
+             {"overtaken_share", sampled ? Json(ranked.overtaken) : Json(nullptr)},
              {"collides", ranked.score || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
              {"contacts", std::move(contacts)},
              {"other", nullptr},
@@ -178,8 +179,14 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
     entry["delta_v_mps"] = both(crash.ego.delta_v_mps, crash.other.delta_v_mps);
     entry["pdof_deg"] = both(crash.ego.pdof_deg, crash.other.pdof_deg);
   }
-  add_damage(entry, detail::summary_of(ranked.ego, models[scenario.ego.model].mesh),
-             detail::summary_of_others(scenario, models, ranked));
+  if (ranked.score) {
+    add_damage(entry, detail::summary_of(ranked.ego, models[scenario.ego.model].mesh),
+               detail::summary_of_others(scenario, models, ranked));
+  } else {
+    for (const char* key : {"damaged_triangles", "damaged_area_m2", "damaged_parts"}) {
+      entry[key] = nullptr;
+    }
+  }
   entry["grazes"] = std::move(grazes);
   entry["origin"] = origin_name(candidate.origin);
   entry["acceleration_mps2"] = candidate.acceleration_mps2;

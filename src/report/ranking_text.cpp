@@ -128,6 +128,11 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
         effort.without_search, effort.without_crash, effort.fully_evaluated, effort.left_early,
         1e3 * effort.prepare_s, 1e3 * effort.bounds_s, 1e3 * effort.refining_s, effort.work);
   }
+  if (simulated && result.samples.empty()) {
+    text +=
+        "What is not known well was not varied: under a deadline, a budget or --first-place "
+        "intervals\nand places are those of the work left undone alone.\n";
+  }
   if (result.measure == Measure::harm) {
     for (const std::string& line : detail::harm_words(result.harm)) text += line + "\n";
   }

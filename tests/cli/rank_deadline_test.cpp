@@ -45,6 +45,19 @@ TEST(RankDeadline, WithoutWorkOnlyIntervalsAreKnownAndTheCodeIsThatOfABudget) {
       const std::vector<double> interval = one.at("score_interval");
       EXPECT_LE(interval.at(0), all.at(one.at("candidate")));
       EXPECT_GE(interval.at(1), all.at(one.at("candidate")));
+      for (const char* key : {"separable_from_next", "overtaken_share", "damaged_triangles"}) {
+        EXPECT_TRUE(one.at(key).is_null()) << key;
+      }
+    }
+    // Where the full answer puts somebody the intervals have to allow.
+    const Json full = ranked(place, {"--deadline-ms", "100000"}).json();
+    for (std::size_t at = 0; at < full.at("ranking").size(); ++at) {
+      for (const Json& one : answer.at("ranking")) {
+        if (one.at("candidate") != full.at("ranking")[at].at("candidate")) continue;
+        const std::vector<std::size_t> places = one.at("places");
+        EXPECT_LE(places.at(0), at + 1);
+        EXPECT_GE(places.at(1), at + 1);
+      }
     }
   }
 }
@@ -60,6 +73,17 @@ TEST(RankDeadline, TimeEnoughGivesThePlainScores) {
     EXPECT_EQ(run.json().at("effort").at("left_early"), 0);
     EXPECT_FALSE(plain.contains("effort"));
   }
+}
+
+TEST(RankDeadline, WhatIsNoTimeAndAReportThatCannotBeWrittenAreRefusedBeforeTheWork) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  for (const char* text : {"nan", "inf", "-1", "soon"}) {
+    EXPECT_EQ(ranked(place, {"--deadline-ms", text}).code, 2) << text;
+  }
+  const Outcome run = ranked(place, {"--report", "no/such/folder/page.html"});
+  EXPECT_EQ(run.code, 3);
+  EXPECT_NE(run.err.find("no/such/folder/page.html"), std::string::npos) << run.err;
 }
 
 TEST(RankDeadline, ABudgetOfWorkCutsTheSameEveryTime) {

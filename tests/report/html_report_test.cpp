@@ -55,7 +55,7 @@ TEST(HtmlReport, ListsEveryCandidateAndSaysThatThePlaceIsNotProved) {
   EXPECT_EQ(count(page, "<tr data-place="), 3U);
   EXPECT_EQ(count(page, "<section class='candidate'"), 2U);  // the best and the worst
   for (const char* word : {"the answer is partial", "still in the race: miss, unknown",
-                           "nothing, but grazes", "Least destructive: miss"}) {
+                           "nothing, but grazes", "Best guess so far: miss"}) {
     EXPECT_NE(page.find(word), std::string::npos) << word;
   }
 }
