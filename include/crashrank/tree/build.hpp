@@ -33,8 +33,8 @@ struct BuildOptions {
   /// smaller; at most this many passes over the tree, fewer when nothing moves any more. Worth its
   /// time (see bench/tree_bench) for a model that is built once and queried often.
   std::uint32_t reinsertion_passes = 0;
-  /// Threads that min_relative_segment and sah build on, and that a model's wide tree is written on,
-  /// 1 to 256, the calling one among them. The trees are the same, bit for bit.
+  /// Threads that min_relative_segment and sah build on, and that a model's wide tree is written
+  /// on, 1 to 256, the calling one among them. The trees are the same, bit for bit.
   std::uint32_t threads = 1;
 };
 
