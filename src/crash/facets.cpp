@@ -10,25 +10,32 @@ using Eigen::Vector2d;
 
 class Line {
 public:
-  Line(const ViewGrid& grid, double deepest, std::vector<Facet>& facets)
-      : grid_(grid), deepest_(deepest), facets_(facets) {}
+  Line(const ViewGrid& grid, double nearest, double deepest, std::vector<Facet>& facets)
+      : grid_(grid), nearest_(nearest), deepest_(deepest), facets_(facets) {}
 
   /// A stretch with the body on its far side: out of the body is to the left of it.
   void add(Vector2d from, Vector2d to, std::size_t row) {
-    if (std::min(from.x(), to.x()) >= deepest_) return;
+    if (std::min(from.x(), to.x()) >= deepest_ || std::max(from.x(), to.x()) < nearest_) return;
     if (from.x() > deepest_) from = cut(to, from);
     if (to.x() > deepest_) to = cut(from, to);
     const Vector2d whole = to - from;
     const double length = whole.norm();
     if (!(length > 0.0)) return;
-    const auto pieces = static_cast<std::size_t>(std::ceil(length / grid_.cell_w_m));
-    const auto count = static_cast<double>(pieces);
+    const double count = std::ceil(length / grid_.cell_w_m);
     Facet facet;
     facet.normal = Vector2d(-whole.y(), whole.x()) / length;
     facet.area_m2 = length / count * grid_.cell_h_m;
     facet.row = row;
-    for (std::size_t i = 0; i < pieces; ++i) {
-      facet.point = from + ((static_cast<double>(i) + 0.5) / count) * whole;
+    // A spike may be as long as it likes: pieces too far behind are not even gone over.
+    double first = 0.0;
+    double last = count;
+    if (from.x() < nearest_) first = std::floor(count * ((nearest_ - from.x()) / whole.x()));
+    if (to.x() < nearest_) last = std::ceil(count * ((nearest_ - from.x()) / whole.x())) + 1.0;
+    last = std::min(last, count);
+    for (double i = std::max(first - 1.0, 0.0); i < last; i += 1.0) {
+      facet.point = from + ((i + 0.5) / count) * whole;
+      if (facet.point.x() < nearest_) continue;
+      if (facets_.size() == most_facets) return;
       facets_.push_back(facet);
     }
   }
@@ -39,16 +46,18 @@ private:
   }
 
   const ViewGrid& grid_;
+  double nearest_;
   double deepest_;
   std::vector<Facet>& facets_;
 };
 
 }  // namespace
 
-void facets_of(const DepthMap& map, double deepest_m, std::vector<Facet>& facets) {
+void facets_of(const DepthMap& map, double nearest_m, double deepest_m,
+               std::vector<Facet>& facets) {
   facets.clear();
   const ViewGrid& grid = map.grid;
-  Line line(grid, deepest_m, facets);
+  Line line(grid, nearest_m, deepest_m, facets);
   const Vector2d half(0.0, 0.5 * grid.cell_w_m);
   for (std::size_t row = 0; row < grid.rows; ++row) {
     const auto covered = [&](std::size_t column) {

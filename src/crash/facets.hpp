@@ -19,7 +19,10 @@ struct Facet {
 
 /// The side of a body that looks against the view, row by row: a line through the cells' middles,
 /// cut into pieces no longer than a cell, closed by the flanks where the body ends. Only what lies
-/// before `deepest_m` counts. `facets` is emptied first.
-void facets_of(const DepthMap& map, double deepest_m, std::vector<Facet>& facets);
+/// before `deepest_m` and behind `nearest_m` counts, and no more than `most_facets`, which is
+/// several times what cars and lorries have. `facets` is emptied first.
+void facets_of(const DepthMap& map, double nearest_m, double deepest_m, std::vector<Facet>& facets);
+
+inline constexpr std::size_t most_facets = std::size_t{1} << 20U;
 
 }  // namespace crashrank::detail

@@ -31,12 +31,17 @@ PlanarBody make_planar(const RigidBody& body, const ViewFrame& frame) {
   return p;
 }
 
-/// How far ahead (u) A's surface may come within the pulse. Where B begins says nothing about it: a
-/// long wall that is struck along its flank begins far behind A.
-double reach_m(const PulseBody& a, const PulseBody& b, double low_m, double high_m,
+/// No pulse is told of bodies that come together faster.
+constexpr double most_closing_mps = 150.0;
+
+/// How far A's surface may come within the pulse, ahead and, since what is behind falls back as
+/// fast as what is ahead comes near, what lies further behind than that is out of its way. Where B
+/// begins says nothing about it: a long wall that is struck along its flank begins far behind A.
+double reach_m(const PulseBody& a, const PulseBody& b, double length_m,
                const PulseOptions& options) {
   const Vector3d closing = a.rigid.velocity.linear_mps - b.rigid.velocity.linear_mps;
-  return high_m + std::max(high_m - low_m, closing.head<2>().norm() * options.longest_s);
+  const double speed = std::min(closing.head<2>().norm(), most_closing_mps);
+  return std::max(length_m, speed * options.longest_s);
 }
 
 double turning_j(const PlanarBody& body) {
@@ -87,9 +92,12 @@ void PulseMemory::prepare(double longest_m, double highest_m, std::uint32_t deep
   const double across = std::min(std::ceil((longest_m + 1.0) / options.cell_w_m) + 4.0, most_cells);
   const double rows = std::min(std::ceil(highest_m / options.cell_h_m) + 1.0, most_cells);
   const double cells = across * rows;
-  // From one column to the next a line of facets may go from A's front to its back; pieces are as
-  // long as a cell.
-  const double pieces = 2.0 * cells * (longest_m / options.cell_w_m + 3.0);
+  // From one column to the next a line of facets may go over A's length and its reach on both
+  // sides; pieces are as long as a cell.
+  const double stretch =
+      longest_m + 2.0 * std::max(longest_m, most_closing_mps * options.longest_s);
+  const double pieces =
+      std::min(2.0 * cells * (stretch / options.cell_w_m + 3.0), static_cast<double>(most_facets));
   const auto cell_count = static_cast<std::size_t>(cells);
   const auto facet_count = static_cast<std::size_t>(pieces);
   for (DepthMap* map : {&map_a, &map_b}) {
@@ -139,7 +147,8 @@ void look(const PulseBody& a, const PulseBody& b, const ViewFrame& frame,
   depth_map(a, frame, grid_a, memory.map_a, memory.look);
   depth_map(b, frame, grid_b, memory.map_b, memory.look);
   if (memory.look.stopped) return;
-  facets_of(memory.map_b, reach_m(a, b, low_a.x(), high_a.x(), options), memory.facets);
+  const double reach = reach_m(a, b, high_a.x() - low_a.x(), options);
+  facets_of(memory.map_b, low_a.x() - reach, high_a.x() + reach, memory.facets);
 
   memory.row_front_m.assign(grid_a.rows, -endless);
   for (std::size_t row = 0; row < grid_a.rows; ++row) {
@@ -180,6 +189,7 @@ PulseRun::PulseRun(const PulseBody& a, const PulseBody& b, const ViewFrame& fram
       material_b_(b, frame) {
   energy_before_j_ = moving_j();
   speed_before_mps_ = (a_.velocity - b_.velocity).norm();
+  speeds_before_mps_ = a_.velocity.norm() + b_.velocity.norm();
   over_ = memory.facets.empty();
   if (over_) return;
   memory.crushed_m.assign(memory.map_a.grid.size(), 0.0);
@@ -455,6 +465,11 @@ double PulseRun::most_left_ns() const {
   if (over_ || !(inverse > 0.0)) return 0.0;
   const double speed = (a_.velocity - b_.velocity).norm();
   return ((1.0 + 1e-9) * speed + most_speed_mps()) / inverse;
+}
+
+double PulseRun::rounding_ns() const {
+  const double inverse = a_.inverse_mass + b_.inverse_mass;
+  return inverse > 0.0 ? 1e-12 * speeds_before_mps_ / inverse : 0.0;
 }
 
 double PulseRun::least_whole_ns() const {

@@ -120,6 +120,11 @@ public:
   double least_whole_ns() const;
   /// And no larger than this.
   double most_whole_ns() const;
+  /// What rounding may move impulses by, N·s: they are differences of velocities that may be far
+  /// larger.
+  double rounding_ns() const;
+  /// And energies, J.
+  double rounding_j() const { return 1e-12 * energy_before_j_; }
   /// No more energy can be dissipated than this, J.
   double most_left_j() const;
   /// Kinetic energy that both have lost so far, J.
@@ -174,7 +179,8 @@ private:
   double next_wake_m_ = 0.0;
   std::uint64_t work_ = 0;
   double energy_before_j_ = 0.0;
-  double speed_before_mps_ = 0.0;  ///< of the centres of mass against each other
+  double speed_before_mps_ = 0.0;   ///< of the centres of mass against each other
+  double speeds_before_mps_ = 0.0;  ///< of both, over ground, summed
   Eigen::Vector2d impulse_ = Eigen::Vector2d::Zero();
   double pressed_ = 0.0;
   Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();

@@ -250,10 +250,13 @@ TermBounds bounds_in_pulse(const Scene& scene, const CrashSetup& crash, const Co
                            const PulseRun& run) {
   const double so_far = run.impulse_ns().norm();
   const double left = run.most_left_ns();
-  const double least = std::max(so_far - left, run.least_whole_ns());
-  const double most = std::min(so_far + left, run.most_whole_ns());
+  const double rounding = run.rounding_ns();
+  const double least = std::max(0.0, std::max(so_far - left, run.least_whole_ns()) - rounding);
+  const double most = std::min(so_far + left, run.most_whole_ns()) + rounding;
   const double spent = run.dissipated_j();
-  return bounds_of(scene, crash, contact, least, most, spent, slack * spent + run.most_left_j());
+  const double least_spent = std::max(0.0, spent - run.rounding_j());
+  return bounds_of(scene, crash, contact, least, most, least_spent,
+                   slack * spent + run.most_left_j());
 }
 
 }  // namespace crashrank::detail

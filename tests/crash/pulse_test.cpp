@@ -133,6 +133,29 @@ TEST(Pulse, AWallIsFeltAlongItsWholeFlank) {
   EXPECT_NEAR(across[2], across[0], 0.05 * across[0]);
 }
 
+// What lies further behind than anything can come within the pulse takes neither room nor time.
+TEST(Pulse, ASpikeBehindTheCarIsNoneOfItsBusinessHoweverLong) {
+  const TriangleMesh car = box_mesh({2, 0.9, 0.5}, {0, 0, 0.5}, 8);
+  const PulseBody a = body_of(car, 1500, at(0, 0), {15, 0, 0}, even(50e3, 600e3, 0, 1));
+  std::vector<double> stopped;
+  for (const double behind : {100.0, 1e4, 1e6}) {
+    TriangleMesh wall = box_mesh({0.5, 3, 1}, {2.5, 0, 1}, 2);
+    const double half = 0.5 * (behind + 2.0);
+    const TriangleMesh rail = box_mesh({half, 0.1, 1}, {2.0 - half, 1.2, 1}, 1);
+    const auto first = static_cast<std::uint32_t>(wall.vertices.size());
+    for (const auto& vertex : rail.vertices) wall.vertices.push_back(vertex);
+    for (const auto& t : rail.triangles) {
+      wall.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    const PulseResult r = simulate_pulse(a, wall_of(wall, at(0, 0)), {2, 0, 0}, {1, 0, 0});
+    ASSERT_TRUE(r.acts);
+    stopped.push_back(-r.a.delta_v_mps.x());
+  }
+  EXPECT_NEAR(stopped[0], 15.0, 1.5);
+  EXPECT_NEAR(stopped[1], stopped[0], 0.02 * stopped[0]);
+  EXPECT_NEAR(stopped[2], stopped[0], 0.02 * stopped[0]);
+}
+
 TEST(Pulse, MassRatiosRunToTheirLimits) {
   const TriangleMesh car = box_mesh({2, 0.9, 0.5}, {0, 0, 0.5}, 2);
   const CrushStrength strength = even(50e3, 600e3, 0, 1);

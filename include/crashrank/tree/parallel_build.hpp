@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -25,7 +24,7 @@ inline constexpr std::size_t min_parallel_triangles = 4096;
 /// one with 0, and returns when all are done: `work` has to share out what there is to do. Throws
 /// what one of them threw.
 template <class Work> void on_threads(std::uint32_t count, const Work& work) {
-  std::vector<std::exception_ptr> thrown(count);
+  std::vector<std::exception_ptr> thrown(std::max(count, 1U));
   const auto guarded = [&work, &thrown](std::uint32_t index) {
     try {
       work(index);
@@ -34,11 +33,11 @@ template <class Work> void on_threads(std::uint32_t count, const Work& work) {
     }
   };
   std::vector<std::thread> threads;
-  threads.reserve(count - 1);
+  threads.reserve(std::max(count, 1U) - 1);
   try {
     for (std::uint32_t i = 1; i < count; ++i) threads.emplace_back(guarded, i);
-  } catch (const std::system_error&) {
-    // No more threads to be had: those that run share the work.
+  } catch (const std::exception&) {
+    // No more threads, or no memory for one, to be had: those that run share the work.
   }
   guarded(0);
   for (std::thread& thread : threads) thread.join();
