@@ -9,6 +9,8 @@ set(CPACK_PACKAGE_NAME crashrank)
 set(CPACK_PACKAGE_VENDOR "The crashrank authors")
 set(CPACK_PACKAGE_CONTACT "${CRASHRANK_CONTACT}")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+# Each part says in its first line what it is; a line for all of them would come before that.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL library dev tools)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ
@@ -31,8 +33,8 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/packa
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS crashrank-tools)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
 "ranks the crashes a vehicle can still choose
- Finds what touches what, when and how hard along candidate manoeuvres, and
- ranks them by what they destroy. This package has the shared libraries.")
+Finds what touches what, when and how hard along candidate manoeuvres, and
+ranks them by what they destroy. This package has the shared libraries.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libcrashrank-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
@@ -40,15 +42,15 @@ set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS crashrank-tools)
 set(CPACK_COMPONENT_DEV_DESCRIPTION
 "ranks the crashes a vehicle can still choose (development files)
- Headers for C++17 and later and for C, with the files that CMake and
- pkg-config find them by.")
+Headers for C++17 and later and for C, with the files that CMake and
+pkg-config find them by.")
 
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME crashrank-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION
 "ranks the crashes a vehicle can still choose (programs)
- The command crashrank, the importer of mesh files, the shipped models and
- scenarios, and the JSON Schemas of all documents.")
+The command crashrank, the importer of mesh files, the shipped models and
+scenarios, and the JSON Schemas of all documents.")
 
 # Every package says whose it is and what changed.
 if(CRASHRANK_GZIP)
@@ -64,6 +66,17 @@ if(CRASHRANK_GZIP)
       ${CMAKE_CURRENT_BINARY_DIR}/package/changelog.gz
       ${CMAKE_CURRENT_BINARY_DIR}/package/changelog.Debian.gz
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${part}_PACKAGE_NAME}
+      COMPONENT ${component} EXCLUDE_FROM_ALL)
+    # These packages close no bug of Debian's. And CPack calls ldconfig in scripts of its own, as if
+    # there were no trigger.
+    set(name ${CPACK_DEBIAN_${part}_PACKAGE_NAME})
+    set(overrides "${name}: initial-upload-closes-no-bugs\n")
+    if(part STREQUAL LIBRARY)
+      string(APPEND overrides "${name}: maintscript-calls-ldconfig\n")
+    endif()
+    file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/package/overrides/${name} "${overrides}")
+    install(FILES ${CMAKE_CURRENT_BINARY_DIR}/package/overrides/${name}
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides
       COMPONENT ${component} EXCLUDE_FROM_ALL)
   endforeach()
 endif()
