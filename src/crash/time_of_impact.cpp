@@ -1,5 +1,6 @@
 #include "crashrank/crash/time_of_impact.hpp"
 
+#include "base/hidden.hpp"
 #include "crash/impact_search.hpp"
 #include "crash/relative_motion.hpp"
 
@@ -13,7 +14,7 @@
 
 namespace crashrank {
 
-struct ImpactWorkspace::State {
+struct CRASHRANK_HIDDEN ImpactWorkspace::State {
   detail::SearchMemory search;
   DistanceWorkspace distance;
   CollideWorkspace collide;

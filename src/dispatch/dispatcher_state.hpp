@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/hidden.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "dispatch/choose_depth.hpp"
 #include "dispatch/core.hpp"
@@ -19,7 +20,7 @@
 namespace crashrank {
 
 /// What a dispatcher keeps from run to run, and the real cores that its placer talks to.
-struct Dispatcher::State {
+struct CRASHRANK_HIDDEN Dispatcher::State {
   explicit State(WorkerPool started)
       : pool(std::move(started)),
         processors(std::max(1U, std::thread::hardware_concurrency())),

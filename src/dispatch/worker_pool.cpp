@@ -1,5 +1,6 @@
 #include "crashrank/dispatch/worker_pool.hpp"
 
+#include "base/hidden.hpp"
 #include "dispatch/pause.hpp"
 
 #include <algorithm>
@@ -86,7 +87,7 @@ void pin_to_processor(std::thread& thread, std::uint32_t worker) {
 
 }  // namespace
 
-struct WorkerPool::State {
+struct CRASHRANK_HIDDEN WorkerPool::State {
   explicit State(std::uint32_t workers) : mailboxes(workers) {}
 
   std::vector<Mailbox> mailboxes;

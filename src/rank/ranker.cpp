@@ -1,5 +1,6 @@
 #include "crashrank/rank/ranker.hpp"
 
+#include "base/hidden.hpp"
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
 #include "rank/near.hpp"
@@ -61,7 +62,7 @@ std::uint64_t hash_of(View<const RankedCandidate> ranking) {
 
 }  // namespace
 
-struct Ranker::State {
+struct CRASHRANK_HIDDEN Ranker::State {
   State(detail::Scene&& made, WorkerPool&& started)
       : scene(std::move(made)), pool(std::move(started)) {}
 
