@@ -1,9 +1,12 @@
 #include "rank/json_object.hpp"
 
+#include "base/utf8.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <string_view>
 
 namespace crashrank::detail {
 namespace {
@@ -14,12 +17,16 @@ std::size_t characters(const std::string& utf8) {
   }));
 }
 
-std::string printable(const std::string& text) {
+/// One printable line of a stranger's text, cut between characters.
+std::string printable(std::string_view text, std::size_t most_bytes) {
   std::string shown;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    shown += byte < 0x20 || byte == 0x7F ? '?' : c;
-    if (shown.size() == 64) return shown + "...";
+  while (!text.empty()) {
+    const CodePoint point = decode_utf8(text);
+    const bool control = point.value < 0x20 || (point.value >= 0x7F && point.value < 0xA0);
+    const std::string_view piece = point.valid && !control ? text.substr(0, point.bytes) : "?";
+    if (shown.size() + piece.size() > most_bytes) return shown + "...";
+    shown += piece;
+    text.remove_prefix(point.bytes);
   }
   return shown;
 }
@@ -31,6 +38,14 @@ void refuse_at(Status& status, const std::string& path, const std::string& reaso
   if (status.ok()) status = Error{code, {}, path, reason, remedy};
 }
 
+Error told_of(const std::string& file, Error error) {
+  error.file = file;
+  for (std::string* const text : {&error.place, &error.reason, &error.remedy}) {
+    *text = printable(*text, 4096);
+  }
+  return error;
+}
+
 std::string number_text(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", number);
@@ -39,18 +54,20 @@ std::string number_text(double number) {
 
 double checked_number(const nlohmann::json& value, const std::string& path, NumberRange range,
                       Status& status, double otherwise) {
-  const std::string bounds = (range.above ? "more than " : "from ") + number_text(range.lowest) +
-                             (range.above ? ", at most " : " to ") + number_text(range.highest);
+  const auto bounds = [&range] {
+    return (range.above ? "more than " : "from ") + number_text(range.lowest) +
+           (range.above ? ", at most " : " to ") + number_text(range.highest);
+  };
   if (!value.is_number()) {
     refuse_at(status, path, std::string("is ") + value.type_name() + ", not a number",
-              "give a number " + bounds);
+              "give a number " + bounds());
     return otherwise;
   }
   const double number = value.get<double>();
   const bool low = range.above ? number > range.lowest : number >= range.lowest;
   if (!(low && number <= range.highest)) {
     refuse_at(status, path, "is " + number_text(number) + ", out of range",
-              "give a number " + bounds);
+              "give a number " + bounds());
     return otherwise;
   }
   return number;
@@ -86,7 +103,7 @@ JsonObject::JsonObject(const nlohmann::json& value, std::string path, Status& st
     if (is_known) continue;
     std::string list;
     for (const char* key : known) list += (list.empty() ? "" : ", ") + std::string(key);
-    refuse_at(status, path_of(printable(item.key()).c_str()), "there is no such key",
+    refuse_at(status, path_of(printable(item.key(), 64).c_str()), "there is no such key",
               "the keys here are " + list);
     return;
   }

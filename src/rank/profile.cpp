@@ -18,10 +18,7 @@ Result<HarmOptions> parse(const std::string& text, const std::string& file,
     return Error{ErrorCode::limit_exceeded, file, {}, "is larger than 1 MiB", "shorten it"};
   }
   Result<nlohmann::json> document = detail::parse_json(text);
-  if (!document) {
-    document.error().file = file;
-    return document.error();
-  }
+  if (!document) return detail::told_of(file, document.error());
   Status status = Success{};
   const detail::JsonObject root(
       *document, {}, status,
@@ -36,10 +33,7 @@ Result<HarmOptions> parse(const std::string& text, const std::string& file,
   root.text("description", text_characters);
   HarmOptions harm = otherwise;
   if (status.ok()) detail::read_harm(root, harm);
-  if (!status.ok()) {
-    status.error().file = file;
-    return status.error();
-  }
+  if (!status.ok()) return detail::told_of(file, status.error());
   return harm;
 }
 

@@ -324,16 +324,10 @@ Result<Scenario> parse(const std::string& text, const std::string& file) {
         ErrorCode::limit_exceeded, file, {}, "is larger than 16 MiB", "split the scenario"};
   }
   Result<json> document = detail::parse_json(text);
-  if (!document) {
-    document.error().file = file;
-    return document.error();
-  }
+  if (!document) return detail::told_of(file, document.error());
   Status status = Success{};
   Scenario scenario = read_scenario(*document, status);
-  if (!status.ok()) {
-    status.error().file = file;
-    return status.error();
-  }
+  if (!status.ok()) return detail::told_of(file, status.error());
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
   return scenario;
 }

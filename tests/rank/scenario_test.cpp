@@ -201,6 +201,17 @@ TEST(Scenario, UnknownKeysAreShownWithoutControlCharacters) {
   EXPECT_EQ(error.place, "a?b?[2J");
 }
 
+TEST(Scenario, ErrorsQuoteTheTextWithoutControlCharacters) {
+  EXPECT_EQ(error_of(R"({"\u001b[2J": 1, "\u001b[2J": 2})").place, "?[2J");
+  json odd = sample();
+  odd["models"].begin().value()["kind"] = "c\x1b]0;r\xc2\x9b";
+  EXPECT_EQ(error_of(odd.dump()).reason, "'c?]0;r?' is not a kind of body");
+  // Cut between characters.
+  json wide = sample();
+  wide[std::string(63, 'k') + "\xc3\xa9"] = 1;
+  EXPECT_EQ(error_of(wide.dump()).place, std::string(63, 'k') + "...");
+}
+
 TEST(MassGuess, FollowsKindAndSize) {
   const Eigen::Vector3d car(4.5, 1.8, 1.5);
   EXPECT_NEAR(guess_mass_kg(BodyKind::car, car), -1333.5 + 526.9 * std::exp(0.8 * std::log(8.1)),
