@@ -14,6 +14,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace crashrank::detail::HWY_NAMESPACE {
@@ -28,29 +29,26 @@ HWY_INLINE Boxes load_boxes(const WideNode& node) {
 }
 
 /// Boxes of one frame enclosed in boxes of the other. `r` row-major, `s` its absolute values.
+template <bool fused>
 HWY_INLINE Boxes turn_boxes(const Boxes& boxes, const float* r, const float* s, const float* t,
                             float margin) {
   const V8& c = boxes.center;
   const V8& h = boxes.half;
   const F8 m = all(margin);
-  Boxes out;
-  out.center.x =
-      mul_add(all(r[0]), c.x, mul_add(all(r[1]), c.y, mul_add(all(r[2]), c.z, all(t[0]))));
-  out.center.y =
-      mul_add(all(r[3]), c.x, mul_add(all(r[4]), c.y, mul_add(all(r[5]), c.z, all(t[1]))));
-  out.center.z =
-      mul_add(all(r[6]), c.x, mul_add(all(r[7]), c.y, mul_add(all(r[8]), c.z, all(t[2]))));
-  out.half.x = mul_add(all(s[0]), h.x, mul_add(all(s[1]), h.y, mul_add(all(s[2]), h.z, m)));
-  out.half.y = mul_add(all(s[3]), h.x, mul_add(all(s[4]), h.y, mul_add(all(s[5]), h.z, m)));
-  out.half.z = mul_add(all(s[6]), h.x, mul_add(all(s[7]), h.y, mul_add(all(s[8]), h.z, m)));
-  return out;
+  const auto sum = [](const float* row, const V8& v, F8 last) {
+    return mul_add<fused>(all(row[0]), v.x,
+                          mul_add<fused>(all(row[1]), v.y, mul_add<fused>(all(row[2]), v.z, last)));
+  };
+  return {{sum(r, c, all(t[0])), sum(r + 3, c, all(t[1])), sum(r + 6, c, all(t[2]))},
+          {sum(s, h, m), sum(s + 3, h, m), sum(s + 6, h, m)}};
 }
 /// The same with the transposed rotation.
+template <bool fused>
 HWY_INLINE Boxes turn_boxes_back(const Boxes& boxes, const float* r, const float* s, const float* t,
                                  float margin) {
   const float rt[9] = {r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]};
   const float st[9] = {s[0], s[3], s[6], s[1], s[4], s[7], s[2], s[5], s[8]};
-  return turn_boxes(boxes, rt, st, t, margin);
+  return turn_boxes<fused>(boxes, rt, st, t, margin);
 }
 
 HWY_INLINE M8 overlap(const Boxes& p, const Boxes& q) {
@@ -58,6 +56,12 @@ HWY_INLINE M8 overlap(const Boxes& p, const Boxes& q) {
   const V8 reach = p.half + q.half;
   return both(both(at_most(apart.x, reach.x), at_most(apart.y, reach.y)),
               at_most(apart.z, reach.z));
+}
+
+/// How far overlapping boxes reach into each other, along the axis where they do so least.
+HWY_INLINE F8 penetration(const Boxes& p, const Boxes& q) {
+  const V8 depth = (p.half + q.half) - absolute(p.center - q.center);
+  return minimum(depth.x, minimum(depth.y, depth.z));
 }
 
 HWY_INLINE std::size_t lowest(std::uint32_t mask) {
@@ -118,7 +122,13 @@ public:
     push(start);
     while (waiting_ != 0) {
       const WideTask task = stack_[--waiting_];
-      step(task);
+      // Which pair is met first is the same on every target: boxes by which the order is chosen are
+      // rounded alike.
+      if (query_.any) {
+        step<true>(task);
+      } else {
+        step<false>(task);
+      }
       // Where one pair is enough the clusters at hand come first.
       if (pairs_ < (query_.any ? 1 : cluster_pairs_wait)) continue;
       if (!collide_waiting()) return;
@@ -133,15 +143,16 @@ public:
 
 private:
   static constexpr std::uint32_t no_cluster = 0;  // no entry of a cluster is 0
+  static constexpr float no_penetration = -1e30F;
 
-  /// Lanes of a node of A against lanes of a node of B.
-  void step(const WideTask& task) {
+  /// Lanes of a node of A against lanes of a node of B. `any`: one pair is enough.
+  template <bool any> void step(const WideTask& task) {
     const WideNode& na = query_.a_nodes[task.a_node];
     const WideNode& nb = query_.b_nodes[task.b_node];
     const Boxes a = load_boxes(na);
     const Boxes b = load_boxes(nb);
     const Boxes b_in_a =
-        turn_boxes(b, query_.rotation, query_.abs_rotation, query_.a_from_b, query_.margin_a);
+        turn_boxes<!any>(b, query_.rotation, query_.abs_rotation, query_.a_from_b, query_.margin_a);
     std::uint32_t a_lanes = task.a_lanes & na.used_lanes;
     std::uint32_t b_lanes = task.b_lanes & nb.used_lanes;
     if ((a_lanes & (a_lanes - 1)) != 0) {  // more than one: the box around all may reject some of B
@@ -150,8 +161,8 @@ private:
       b_lanes &= bits(overlap(own, b_in_a));
       if (b_lanes == 0) return;
     }
-    const Boxes a_in_b =
-        turn_boxes_back(a, query_.rotation, query_.abs_rotation, query_.b_from_a, query_.margin_b);
+    const Boxes a_in_b = turn_boxes_back<!any>(a, query_.rotation, query_.abs_rotation,
+                                               query_.b_from_a, query_.margin_b);
     if ((b_lanes & (b_lanes - 1)) != 0) {
       work_.bv_tests += 8;
       const Boxes own{all3(nb.own_center.data()), all3(nb.own_half.data())};
@@ -159,9 +170,11 @@ private:
       if (a_lanes == 0) return;
     }
     if (__builtin_popcount(a_lanes) <= __builtin_popcount(b_lanes)) {
-      descend<true>(task, na, nb, meet(na, a_in_b, a_lanes, b, b_in_a, b_lanes, nb.leaf_lanes));
+      descend<any, true>(task, na, nb,
+                         meet<any>(na, a_in_b, a_lanes, b, b_in_a, b_lanes, nb.leaf_lanes));
     } else {
-      descend<false>(task, nb, na, meet(nb, b_in_a, b_lanes, a, a_in_b, a_lanes, na.leaf_lanes));
+      descend<any, false>(task, nb, na,
+                          meet<any>(nb, b_in_a, b_lanes, a, a_in_b, a_lanes, na.leaf_lanes));
     }
   }
 
@@ -175,6 +188,7 @@ private:
 
   /// `one_turned`: boxes of the rows in the other frame. `other`, `other_turned`: boxes of the
   /// columns.
+  template <bool any>
   HWY_INLINE Meetings meet(const WideNode& one, const Boxes& one_turned, std::uint32_t one_lanes,
                            const Boxes& other, const Boxes& other_turned, std::uint32_t other_lanes,
                            std::uint32_t other_leaves) {
@@ -187,6 +201,9 @@ private:
       const Boxes turned = spread_box(turned_.center[0], turned_.half[0], i);
       const std::uint32_t found =
           bits(both(overlap(own, other_turned), overlap(turned, other))) & other_lanes;
+      if (any) {
+        store(minimum(penetration(own, other_turned), penetration(turned, other)), penetration_[i]);
+      }
       const std::uint32_t is_leaf = 0U - (one.leaf_lanes >> i & 1U);
       const std::uint64_t leaves = found & other_leaves;
       const std::uint64_t inner = found & ~other_leaves;
@@ -198,7 +215,7 @@ private:
     return met;
   }
 
-  template <bool a_rows>
+  template <bool any, bool a_rows>
   HWY_INLINE void descend(const WideTask& task, const WideNode& one, const WideNode& other,
                           const Meetings& met) {
     const std::uint32_t row_node = a_rows ? task.a_node : task.b_node;
@@ -223,14 +240,24 @@ private:
       put(child, 0xffU, column_node, static_cast<std::uint32_t>(left >> 8 * r) & 0xffU);
       left &= ~(std::uint64_t{0xff} << 8 * r);
     }
+    std::size_t first = waiting_;
+    float deepest = no_penetration;
     for (std::uint64_t left = met.nodes; left != 0; left &= left - 1) {
       const auto at = static_cast<std::size_t>(__builtin_ctzll(left));
       const std::uint32_t row = one.child[at >> 3U];
       const std::uint32_t col = other.child[at & 7U];
       prefetch(query_.a_nodes[a_rows ? row : col]);
       prefetch(query_.b_nodes[a_rows ? col : row]);
+      if (any && penetration_[at >> 3U][at & 7U] > deepest) {
+        deepest = penetration_[at >> 3U][at & 7U];
+        first = waiting_;
+      }
       put(row, 0xffU, col, 0xffU);
     }
+    // Where one pair is enough, what reaches deepest into the other comes first.
+    if (any && met.nodes != 0) std::swap(stack_[first], stack_[waiting_ - 1]);
+    const std::size_t before = pairs_;
+    deepest = no_penetration;
     for (std::uint64_t left = met.clusters; left != 0; left &= left - 1) {
       const auto at = static_cast<std::size_t>(__builtin_ctzll(left));
       const std::uint32_t row = one.child[at >> 3U];
@@ -241,8 +268,13 @@ private:
                              2.001F * (nb.half[0][lane] + nb.half[1][lane] + nb.half[2][lane])};
       prefetch(query_.a_clusters[cluster_index(pair.a)]);
       prefetch(query_.b_clusters[cluster_index(pair.b)]);
+      if (any && penetration_[at >> 3U][at & 7U] > deepest) {
+        deepest = penetration_[at >> 3U][at & 7U];
+        first = pairs_;
+      }
       cluster_pairs_[pairs_++] = pair;
     }
+    if (any && met.clusters != 0) std::swap(cluster_pairs_[first], cluster_pairs_[before]);
   }
 
   /// Returns false to stop.
@@ -303,6 +335,7 @@ private:
   std::size_t waiting_ = 0;
   std::size_t pairs_ = 0;
   StoredBoxes turned_;
+  alignas(64) float penetration_[8][8];  // of rows and columns, where one pair is enough
   ClusterPair cluster_pairs_[max_cluster_pairs];
   // Clusters made ready, by the last bits of their index: neighbours in the tree, which meet the
   // same clusters of the other body, have neighbouring indices.

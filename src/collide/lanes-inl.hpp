@@ -61,6 +61,10 @@ HWY_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
   CRASHRANK_EACH a.v[k] = hn::MulAdd(a.v[k], b.v[k], c.v[k]);
   return a;
 }
+/// a·b + c, fused where the target can or, for the same bits on all, rounded twice.
+template <bool fused> HWY_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
+  return fused ? mul_add(a, b, c) : a * b + c;
+}
 /// a·b − c
 HWY_INLINE F8 mul_sub(F8 a, F8 b, F8 c) {
   CRASHRANK_EACH a.v[k] = hn::MulSub(a.v[k], b.v[k], c.v[k]);

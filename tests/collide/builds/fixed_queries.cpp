@@ -1,6 +1,7 @@
 // A fixed set of queries, answered by the scalar engine and by the vector engine on every unit that
-// this machine has, for every split rule, leaf size and box frame. Prints one hash over all pairs;
-// ends with 1 where two of them differ. Built in several ways by same_answers.sh: no compiler, flag
+// this machine has, for every split rule, leaf size and box frame. Prints one hash over all pairs
+// of each query and one over the pairs met first where one is enough; ends with 1 where two of them
+// differ. Built in several ways by same_answers.sh: no compiler, flag
 // or vector unit may change the hash.
 
 // The vector units that the library is built for.
@@ -80,6 +81,20 @@ std::string answers(const Model& a, const Model& b, const std::vector<Pose>& pos
   return text;
 }
 
+// The pair met first of every query: another tree meets another one, another vector unit does not.
+void first_met(const Model& a, const Model& b, const std::vector<Pose>& poses,
+               std::vector<Pair>& met) {
+  std::vector<Pair> pairs;
+  ModelWorkspace workspace;
+  CollideOptions options;
+  options.any = true;
+  met.clear();
+  for (const Pose& p : poses) {
+    collide(a, b, p, pairs, workspace, options);
+    met.insert(met.end(), pairs.begin(), pairs.end());
+  }
+}
+
 }  // namespace
 
 int main() {
@@ -88,6 +103,9 @@ int main() {
                                 pose(2, 0, 0, 1, 0.75, 0, 0), pose(7, -1, 4, 2, 0.3, -0.9, 0.2),
                                 pose(1, 1, 1, 1, -0.5, 0.5, 1)};
   std::string expected;
+  std::vector<Pair> met_by_all;
+  std::vector<Pair> expected_met;
+  std::vector<Pair> met;
   int trees = 0;
   int units = 0;
   for (int rule = 0; rule < 4; ++rule) {
@@ -114,14 +132,22 @@ int main() {
           hwy::SetSupportedTargetsForTest(left & (~left + 1));
           hwy::GetChosenTarget().DeInit();
           if (!check(answers(a, b, poses, false), vector_unit())) return 1;
+          first_met(a, b, poses, met);
+          if (units == 0) expected_met = met;
+          if (met != expected_met) {
+            std::fprintf(stderr, "rule %d, leaf size %u, frame %d: %s meets other pairs first\n",
+                         rule, leaf_size, frame, vector_unit());
+            return 1;
+          }
           ++units;
         }
         hwy::SetSupportedTargetsForTest(0);
         hwy::GetChosenTarget().DeInit();
+        met_by_all.insert(met_by_all.end(), met.begin(), met.end());
       }
     }
   }
   std::fprintf(stderr, "%d trees, %d vector units\n", trees, units);
-  std::printf("%s\n", expected.c_str());
+  std::printf("%s %s\n", expected.c_str(), pairs_hash(met_by_all).c_str());
   return 0;
 }
