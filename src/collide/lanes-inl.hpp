@@ -104,17 +104,6 @@ HWY_INLINE M8 differ(M8 a, M8 b) {
   CRASHRANK_EACH a.m[k] = hn::Xor(a.m[k], b.m[k]);
   return a;
 }
-/// The least and the greatest of eight.
-HWY_INLINE float least(F8 a) {
-  auto v = a.v[0];
-  for (std::size_t k = 1; k < vectors; ++k) v = hn::Min(v, a.v[k]);
-  return hn::GetLane(hn::MinOfLanes(FloatTag(), v));
-}
-HWY_INLINE float greatest(F8 a) {
-  auto v = a.v[0];
-  for (std::size_t k = 1; k < vectors; ++k) v = hn::Max(v, a.v[k]);
-  return hn::GetLane(hn::MaxOfLanes(FloatTag(), v));
-}
 /// yes where the mask is set, no elsewhere
 HWY_INLINE F8 select(M8 mask, F8 yes, F8 no) {
   CRASHRANK_EACH no.v[k] = hn::IfThenElse(mask.m[k], yes.v[k], no.v[k]);
@@ -223,6 +212,49 @@ HWY_INLINE void store3(V8 v, float* rows) {
 }
 HWY_INLINE V8 pick3(const Picker& pick, const float* rows) {
   return {pick(rows), pick(rows + 8), pick(rows + 16)};
+}
+/// Folds each coordinate's eight lanes into one, of three floats and one to spare. `fold`: the
+/// least or the greatest of two vectors, lane by lane.
+template <class Fold> HWY_INLINE void store_folded(V8 v, const Fold& fold, float* out) {
+  const FloatTag tag;
+  const auto one = [&](F8 x) {
+    auto folded = x.v[0];
+    for (std::size_t k = 1; k < vectors; ++k) folded = fold(folded, x.v[k]);
+    return folded;
+  };
+  const auto x = one(v.x);
+  const auto y = one(v.y);
+  const auto z = one(v.z);
+#if HWY_TARGET == HWY_SCALAR
+  hn::Store(x, tag, out);
+  hn::Store(y, tag, out + 1);
+  hn::Store(z, tag, out + 2);
+#else
+  // Lanes of x and y in turn and of z beside itself, then all three in turn.
+  const hn::Repartition<double, FloatTag> two;
+  const auto xy =
+      hn::BitCast(two, fold(hn::InterleaveLower(tag, x, y), hn::InterleaveUpper(tag, x, y)));
+  const auto zz =
+      hn::BitCast(two, fold(hn::InterleaveLower(tag, z, z), hn::InterleaveUpper(tag, z, z)));
+  const auto xyz = fold(hn::BitCast(tag, hn::InterleaveLower(two, xy, zz)),
+                        hn::BitCast(tag, hn::InterleaveUpper(two, xy, zz)));
+  const hn::CappedTag<float, 4> four;
+  if constexpr (tag_lanes == 8) {
+    hn::Store(fold(hn::LowerHalf(four, xyz), hn::UpperHalf(four, xyz)), four, out);
+  } else {
+    hn::Store(xyz, four, out);
+  }
+#endif
+}
+/// The least, or the greatest, of each coordinate into the first three of four floats at a multiple
+/// of 16 bytes.
+HWY_INLINE void store_least(V8 v, float* out) {
+  store_folded(
+      v, [](auto a, auto b) { return hn::Min(a, b); }, out);
+}
+HWY_INLINE void store_greatest(V8 v, float* out) {
+  store_folded(
+      v, [](auto a, auto b) { return hn::Max(a, b); }, out);
 }
 /// One entry of three rows in all lanes.
 HWY_INLINE V8 spread3(const float* rows, std::size_t lane) {

@@ -20,18 +20,19 @@ namespace crashrank::detail::HWY_NAMESPACE {
 /// relative to `place`, so that the rounding of its corners follows its own size and not its
 /// distance from A's origin.
 struct alignas(64) Prepared {
-  float corner[9][8];  // of B, relative to place
-  float normal[3][8];  // (c1 − c0) × (c2 − c0)
-  float normal_sum[8];
-  float normal_error[8];  // what the normal's own rounding adds to a distance, per metre of reach
-  float edge[8];          // largest extent of the triangle, within its corners' errors
-  float low[3][8];        // box, widened by what rounding may have moved it, in A's frame
+  float corner[9][8];    // of B, relative to place
+  float normal[3][8];    // (c1 − c0) × (c2 − c0)
+  float plane_error[8];  // of a distance from the triangle's plane times its normal, per reach, m
+  float edge[8];         // largest extent of the triangle, within its corners' errors
+  float low[3][8];       // box, widened by what rounding may have moved it, in A's frame
   float high[3][8];
-  float own_low[3];  // the box around all of them
-  float own_high[3];
+  float own_low[4];  // the box around all of them, and one lane to spare
+  float own_high[4];
   float place[3];
-  float error;   // m, a relative corner of B against the coordinates that `carry` gives
-  float around;  // m, how far apart corners of touching boxes may be beyond their triangles' sizes
+  float error;  // m, a relative corner of B against the coordinates that `carry` gives
+  // How far apart corners of touching boxes may be beyond their triangles' sizes, and what stands
+  // for `error` in errors of distances: m.
+  float around;
   std::uint32_t size;
   const TriangleCluster* source;
 };
@@ -44,10 +45,11 @@ HWY_INLINE F8 products(V8 u, V8 v) {
   return mul_add(p.x, q.y + q.z, mul_add(p.y, q.z + q.x, p.z * (q.x + q.y)));
 }
 
-HWY_INLINE void store_shape(Prepared& p, V8 normal, F8 normal_error, V8 low, V8 high) {
+/// `normal_error`: what the normal's own rounding adds to a distance, per metre of reach.
+HWY_INLINE void store_shape(Prepared& p, const WideQuery& query, V8 normal, F8 normal_error, V8 low,
+                            V8 high) {
   store3(normal, p.normal[0]);
-  store(sum_abs(normal), p.normal_sum);
-  store(normal_error, p.normal_error);
+  store(mul_add(sum_abs(normal), all(query.per_reach), normal_error), p.plane_error);
   const V8 extent = high - low;
   store(maximum(extent.x, maximum(extent.y, extent.z)), p.edge);
 }
@@ -55,12 +57,8 @@ HWY_INLINE void store_shape(Prepared& p, V8 normal, F8 normal_error, V8 low, V8 
 HWY_INLINE void store_boxes(Prepared& p, V8 low, V8 high) {
   store3(low, p.low[0]);
   store3(high, p.high[0]);
-  p.own_low[0] = least(low.x);
-  p.own_low[1] = least(low.y);
-  p.own_low[2] = least(low.z);
-  p.own_high[0] = greatest(high.x);
-  p.own_high[1] = greatest(high.y);
-  p.own_high[2] = greatest(high.z);
+  store_least(low, p.own_low);
+  store_greatest(high, p.own_high);
 }
 
 /// `child`: the cluster's entry in its node.
@@ -77,7 +75,7 @@ HWY_INLINE void prepare_a(const WideQuery& query, std::uint32_t child, Prepared&
   store_boxes(p, low, high);
   const V8 e1 = c1 - c0;
   const V8 e2 = c2 - c0;
-  store_shape(p, cross(e1, e2), all(0x1p-24F * 10.0F) * products(e1, e2), low, high);
+  store_shape(p, query, cross(e1, e2), all(0x1p-24F * 10.0F) * products(e1, e2), low, high);
 }
 
 /// `child`: the cluster's entry in its node; `diagonal`: twice the sum of its box's half extents.
@@ -125,7 +123,7 @@ HWY_INLINE void prepare_b(const WideQuery& query, std::uint32_t child, float dia
   // Adding the place back rounds once more.
   const F8 slack = all(p.error + 0x1p-23F * (farthest + diagonal));
   const V8 widen{slack, slack, slack};
-  p.around = p.error + 0x1p-23F * (farthest + diagonal) + 3.0F * p.error;
+  p.around = 0x1p-23F * (farthest + diagonal) + 4.0F * p.error + query.reach_per_error * p.error;
   const V8 to = all3(p.place);
   const V8 low = minimum(corner[0], minimum(corner[1], corner[2]));
   const V8 high = maximum(corner[0], maximum(corner[1], corner[2]));
@@ -137,7 +135,7 @@ HWY_INLINE void prepare_b(const WideQuery& query, std::uint32_t child, float dia
   const V8 n = cross(e1, e2);
   const F8 lb = maximum(max_abs(e1), max_abs(e2));
   const F8 moved = all(50.0F * query.carry_error) * (lb + all(query.carry_error));
-  store_shape(p, V8{dot(r0, n), dot(r1, n), dot(r2, n)},
+  store_shape(p, query, V8{dot(r0, n), dot(r1, n), dot(r2, n)},
               mul_add(all(0x1p-24F * 16.0F), products(e1, e2), moved), low, high);
 }
 
@@ -203,10 +201,12 @@ inline bool decide(const WideQuery& query, const TriangleCluster& a, std::size_t
 /// - det[ea, w, eb]: six monomials of at most la·Q·lb, factors off by u·la, by 1.1·e + 2·u·Q and by
 ///   2·e + u·lb, and four roundings: 6·la·(lb·(1.1·e + 8·u·Q) + 2·Q·e).
 /// Each is used with a factor of two to spare, which also covers the rounding of the bounds
-/// themselves, plus a floor for products that vanish below the smallest float.
-HWY_INLINE std::uint32_t test_pairs(const WideQuery& query, const Prepared& a, const Prepared& b,
-                                    const std::int32_t* ia, const std::int32_t* ib,
-                                    std::uint32_t valid, std::uint32_t& unsure) {
+/// themselves, plus a floor for products that vanish below the smallest float. `reach` is Q with
+/// 2.2·e/k' added, k' being the query's `per_reach`, which every |N|₁ is multiplied by: it then
+/// holds the 2.2·e that |N|₁ would have to be multiplied by as well.
+HWY_INLINE std::uint32_t test_pairs(const Prepared& a, const Prepared& b, const std::int32_t* ia,
+                                    const std::int32_t* ib, std::uint32_t valid,
+                                    std::uint32_t& unsure) {
   constexpr float u = 0x1p-24F;
   const F8 floor = all(1e-30F);
   const F8 zero = all(0.0F);
@@ -222,15 +222,13 @@ HWY_INLINE std::uint32_t test_pairs(const WideQuery& query, const Prepared& a, c
   const F8 la = pa(a.edge);
   const F8 lb = pb(b.edge);
   const F8 reach = la + lb + all(b.around);
-  const F8 per_normal = mul_add(all(query.per_reach), reach, all(2.2F * b.error));
 
   const V8 na = pick3(pa, a.normal[0]);
   const V8 w = b0 - a0;
   const F8 p0 = dot(na, w);
   const F8 p1 = dot(na, b1 - a0);
   const F8 p2 = dot(na, b2 - a0);
-  const F8 plane_a =
-      mul_add(pa(a.normal_sum), per_normal, mul_add(pa(a.normal_error), reach, floor));
+  const F8 plane_a = mul_add(pa(a.plane_error), reach, floor);
   // All on one side: the least above the bound, or the greatest below its negative.
   const M8 apart_a = either(less(plane_a, minimum(p0, minimum(p1, p2))),
                             less(maximum(p0, maximum(p1, p2)), zero - plane_a));
@@ -240,8 +238,7 @@ HWY_INLINE std::uint32_t test_pairs(const WideQuery& query, const Prepared& a, c
   const F8 q0 = zero - dot(nb, w);
   const F8 q1 = dot(nb, (corner_a1 - to) - b0);
   const F8 q2 = dot(nb, (corner_a2 - to) - b0);
-  const F8 plane_b =
-      mul_add(pb(b.normal_sum), per_normal, mul_add(pb(b.normal_error), reach, floor));
+  const F8 plane_b = mul_add(pb(b.plane_error), reach, floor);
   const M8 apart_b = either(less(plane_b, minimum(q0, minimum(q1, q2))),
                             less(maximum(q0, maximum(q1, q2)), zero - plane_b));
   const std::uint32_t crossing = valid & ~bits(either(apart_a, apart_b));
@@ -335,7 +332,7 @@ HWY_INLINE bool collide_clusters(const WideQuery& query, const Prepared& a, std:
   for (std::size_t at = 0; at < count; at += 8) {
     const std::uint32_t valid = count - at >= 8 ? 0xffU : (1U << (count - at)) - 1U;
     std::uint32_t unsure = 0;
-    std::uint32_t hits = test_pairs(query, a, b, ia + at, ib + at, valid, unsure);
+    std::uint32_t hits = test_pairs(a, b, ia + at, ib + at, valid, unsure);
     for (std::uint32_t left = unsure; left != 0; left &= left - 1) {
       const auto k = at + static_cast<std::size_t>(__builtin_ctz(left));
       if (decide(query, *a.source, static_cast<std::size_t>(ia[k]), *b.source,

@@ -52,6 +52,7 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
   const Eigen::Matrix3d skew =
       detail::multiply(pose.rotation.transpose(), pose.rotation) - Eigen::Matrix3d::Identity();
   query.per_reach = round_up(52.0 * 0x1p-24 + 10.0 * skew.cwiseAbs().rowwise().sum().maxCoeff());
+  query.reach_per_error = round_up(2.2 / static_cast<double>(query.per_reach));
   query.body_boxes = a.tree.axes_are_world && b.tree.axes_are_world;
   query.a_nodes = a.wide.nodes.data();
   query.b_nodes = b.wide.nodes.data();

@@ -20,9 +20,10 @@ struct WideQuery {
   // Body frames, for triangles.
   float body_rotation[9];
   const Pose* pose;
-  float carry_error;  // m: how far `carry` may be from the real motion
-  float per_reach;    // error of a distance from a plane, per normal and metre between corners
-  bool body_boxes;    // both trees' boxes stand along A's and B's body axes
+  float carry_error;      // m: how far `carry` may be from the real motion
+  float per_reach;        // error of a distance from a plane, per normal and metre between corners
+  float reach_per_error;  // metres between corners that stand for a metre of error of a corner
+  bool body_boxes;        // both trees' boxes stand along A's and B's body axes
 
   const WideNode* a_nodes;
   const WideNode* b_nodes;
