@@ -191,10 +191,8 @@ TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
         static_cast<unsigned long long>(Widths::percent[k]), widths.median(k),
         widths.shares[k].size(), static_cast<unsigned long long>(scenes));
   }
-  // Wanted is a fifth at a tenth of the work: these scenes reach it, larger samples come to a
-  // third.
-  EXPECT_LT(widths.median(0), 0.5);
-  EXPECT_LT(widths.median(1), 0.2);
+  // Of larger samples more than half the candidates are told in full by a tenth of the work.
+  EXPECT_LT(widths.median(0), 0.2);
 }
 
 TEST(RankerProperty, IntervalsHoldForEveryMeasure) {
