@@ -122,8 +122,8 @@ public:
     push(start);
     while (waiting_ != 0) {
       const WideTask task = stack_[--waiting_];
-      // Which pair is met first is the same on every target: boxes by which the order is chosen are
-      // rounded alike.
+      // Which pair is met first is the same on every target: boxes by which the order of tasks is
+      // chosen are rounded alike, and `collide_clusters` lists triangles in an order of its own.
       if (query_.any) {
         step<true>(task);
       } else {
@@ -257,6 +257,7 @@ private:
     // Where one pair is enough, what reaches deepest into the other comes first.
     if (any && met.nodes != 0) std::swap(stack_[first], stack_[waiting_ - 1]);
     const std::size_t before = pairs_;
+    first = pairs_;
     deepest = no_penetration;
     for (std::uint64_t left = met.clusters; left != 0; left &= left - 1) {
       const auto at = static_cast<std::size_t>(__builtin_ctzll(left));

@@ -231,7 +231,7 @@ template <class Fold> HWY_INLINE void store_folded(V8 v, const Fold& fold, float
   hn::Store(z, tag, out + 2);
 #else
   // Lanes of x and y in turn and of z beside itself, then all three in turn.
-  const hn::Repartition<double, FloatTag> two;
+  const hn::Repartition<std::uint64_t, FloatTag> two;
   const auto xy =
       hn::BitCast(two, fold(hn::InterleaveLower(tag, x, y), hn::InterleaveUpper(tag, x, y)));
   const auto zz =

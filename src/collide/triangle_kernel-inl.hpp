@@ -36,6 +36,7 @@ struct alignas(64) Prepared {
   std::uint32_t size;
   const TriangleCluster* source;
 };
+static_assert(offsetof(Prepared, own_low) % 16 == 0 && offsetof(Prepared, own_high) % 16 == 0);
 
 /// Sum over the components of u × v of the sizes of their two products: what their rounding is
 /// relative to. For slivers it is far below the squared length of the longest edge.
@@ -120,10 +121,10 @@ HWY_INLINE void prepare_b(const WideQuery& query, std::uint32_t child, float dia
     corner[k] = V8{dot(r0, relative[k]), dot(r1, relative[k]), dot(r2, relative[k])} + rest;
     store3(corner[k], p.corner[3 * k]);
   }
-  // Adding the place back rounds once more.
+  // Adding the place back rounds once more, and widening once.
   const F8 slack = all(p.error + 0x1p-23F * (farthest + diagonal));
   const V8 widen{slack, slack, slack};
-  p.around = 0x1p-23F * (farthest + diagonal) + 4.0F * p.error + query.reach_per_error * p.error;
+  p.around = 0x1p-22F * (farthest + diagonal) + 4.0F * p.error + query.reach_per_error * p.error;
   const V8 to = all3(p.place);
   const V8 low = minimum(corner[0], minimum(corner[1], corner[2]));
   const V8 high = maximum(corner[0], maximum(corner[1], corner[2]));
@@ -180,12 +181,12 @@ inline bool decide(const WideQuery& query, const TriangleCluster& a, std::size_t
 /// `unsure`, of those that floats cannot decide.
 ///
 /// Bounds. u = 2^-24; e the error of B's relative corners, at least 12·u·s with s its cluster's
-/// diagonal; la, lb the triangles' extents; Q = la + lb + around bounds every coordinate of a
-/// difference of their corners, because their boxes overlap: A's box is exact, B's is widened by
-/// its slack, which far from A's origin may be larger than the triangles, and its corners and its
-/// extent are off by e each; N the normals; P the sum of the sizes of the six products that a
-/// normal is made of; c what `carry` may be off the real motion; k the pose's skew, the largest row
-/// sum of |RᵀR − 1|.
+/// diagonal; la, lb the triangles' extents; Q = la + lb + what `around` holds but for its
+/// last term bounds every coordinate of a difference of their corners, because their boxes overlap:
+/// A's box is exact, B's is widened by its slack, which far from A's origin may be larger than the
+/// triangles, and its corners and its extent are off by e each; N the normals; P the sum of the
+/// sizes of the six products that a normal is made of; c what `carry` may be off the real motion; k
+/// the pose's skew, the largest row sum of |RᵀR − 1|.
 /// - A relative to B's place is rounded once: u·(s + Q). A corner difference w = b − a is then off
 ///   by e + u·(s + Q) + u·Q ≤ 1.1·e + 2·u·Q. Its product with a normal is off by |N|₁ times that
 ///   and, from three roundings a term, by 3.1·u·|N|₁·Q: |N|₁·(1.1·e + 5.1·u·Q).
@@ -202,8 +203,8 @@ inline bool decide(const WideQuery& query, const TriangleCluster& a, std::size_t
 ///   2·e + u·lb, and four roundings: 6·la·(lb·(1.1·e + 8·u·Q) + 2·Q·e).
 /// Each is used with a factor of two to spare, which also covers the rounding of the bounds
 /// themselves, plus a floor for products that vanish below the smallest float. `reach` is Q with
-/// 2.2·e/k' added, k' being the query's `per_reach`, which every |N|₁ is multiplied by: it then
-/// holds the 2.2·e that |N|₁ would have to be multiplied by as well.
+/// 2.2·e/k' added, the last term of `around`, k' being the query's `per_reach`, which every |N|₁ is
+/// multiplied by: it then holds the 2.2·e that |N|₁ would have to be multiplied by as well.
 HWY_INLINE std::uint32_t test_pairs(const Prepared& a, const Prepared& b, const std::int32_t* ia,
                                     const std::int32_t* ib, std::uint32_t valid,
                                     std::uint32_t& unsure) {
@@ -305,7 +306,10 @@ HWY_INLINE bool collide_clusters(const WideQuery& query, const Prepared& a, std:
   alignas(32) std::int32_t ia[72];
   alignas(32) std::int32_t ib[72];
   std::size_t count = 0;
-  const bool over_a = __builtin_popcount(a_lanes) <= __builtin_popcount(b_lanes);
+  // Where one pair is enough the order must not hang on lanes, which rounding decides at the border
+  // of a box: it is another on another vector unit.
+  const bool over_a =
+      query.any ? a.size <= b.size : __builtin_popcount(a_lanes) <= __builtin_popcount(b_lanes);
   const Prepared& one = over_a ? a : b;
   const Prepared& eight = over_a ? b : a;
   const std::uint32_t lanes = over_a ? b_lanes : a_lanes;

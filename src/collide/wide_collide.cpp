@@ -48,7 +48,7 @@ WideQuery make_query(const Model& a, const Model& b, const BoxTransform& to, dou
   query.pose = &pose;
   // `carry` rounds four times in double; each sum stays below `size`.
   query.carry_error = round_up(0x1p-50 * size);
-  // Twice 17.4·u and 4.6 times the skew: see `test_pairs`.
+  // Three times 17.4·u and twice 4.6 times the skew: see `test_pairs`.
   const Eigen::Matrix3d skew =
       detail::multiply(pose.rotation.transpose(), pose.rotation) - Eigen::Matrix3d::Identity();
   query.per_reach = round_up(52.0 * 0x1p-24 + 10.0 * skew.cwiseAbs().rowwise().sum().maxCoeff());
