@@ -13,13 +13,14 @@ __asm__(".pushsection .rodata\n"
         ".popsection\n");
 
 extern "C" {
-extern const char begin[] __asm__("crashrank_@name@_begin");
-extern const char end[] __asm__("crashrank_@name@_end");
+extern const char embedded_@name@_begin[] __asm__("crashrank_@name@_begin");
+extern const char embedded_@name@_end[] __asm__("crashrank_@name@_end");
 }
 
 namespace crashrank::detail {
 std::string_view embedded_@name@() {
-  return {begin, static_cast<std::size_t>(end - begin)};
+  return {embedded_@name@_begin,
+          static_cast<std::size_t>(embedded_@name@_end - embedded_@name@_begin)};
 }
 }  // namespace crashrank::detail
 ]])

@@ -55,7 +55,12 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
     text.pop_back();
     text += meant(word, commands);
   }
-  for (const std::string& unknown : named->remaining()) {
+  const std::vector<std::string> strangers = named->remaining();
+  if (named != &app && !strangers.empty()) {
+    text = "not expected:";
+    for (const std::string& stranger : strangers) text += " '" + stranger + "'";
+  }
+  for (const std::string& unknown : strangers) {
     const std::string option = unknown.substr(0, unknown.find('='));
     if (option.rfind("--", 0) == 0) text += meant(option, option_names(*named));
   }

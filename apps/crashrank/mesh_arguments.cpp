@@ -112,7 +112,7 @@ public:
     const bool named = !arguments.format.empty();
     if (!named && !models) return unknown;
     Result<StandardInputFile> file = StandardInputFile::receive(
-        ImportLimits{}.file_bytes, named ? escape_file_name(arguments.format) : "crm");
+        ImportLimits{}.file_bytes, named ? escape_file_name(arguments.format) : "unnamed");
     if (!file) return file.error();
     source.received_ = std::move(*file);
     if (!named && !is_model_file(source.path())) return unknown;

@@ -1,6 +1,8 @@
 #include "numbers.hpp"
 
 #include <charconv>
+#include <limits>
+#include <system_error>
 
 namespace crashrank::cli {
 
@@ -17,8 +19,11 @@ std::optional<std::vector<double>> parse_numbers(std::string_view line) {
     double value = 0.0;
     const std::from_chars_result end =
         std::from_chars(word.data(), word.data() + word.size(), value);
-    if (end.ec != std::errc{} || end.ptr != word.data() + word.size()) return std::nullopt;
-    numbers.push_back(value);
+    if (end.ec == std::errc::invalid_argument || end.ptr != word.data() + word.size()) {
+      return std::nullopt;
+    }
+    const bool beyond = end.ec == std::errc::result_out_of_range;
+    numbers.push_back(beyond ? std::numeric_limits<double>::infinity() : value);
   }
 }
 

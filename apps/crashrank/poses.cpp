@@ -13,7 +13,8 @@ Result<Pose> parse_pose_option(const std::string& text) {
   const std::optional<std::vector<double>> numbers = parse_numbers(text);
   const auto finite = [](double x) { return std::isfinite(x); };
   if (numbers && !std::all_of(numbers->begin(), numbers->end(), finite)) {
-    return make_error(ErrorCode::usage, "--pose " + text + ": holds a number that is not finite",
+    return make_error(ErrorCode::usage,
+                      "--pose " + text + ": holds a number that is not finite or beyond a double",
                       "give metres and degrees");
   }
   if (!numbers || numbers->size() != 6) {

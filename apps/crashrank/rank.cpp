@@ -267,7 +267,7 @@ void add_rank(CLI::App& app, Action& action) {
       ->add_option("--work-budget", options->work_budget,
                    "Answer in what is known after this many tests of boxes, triangles and "
                    "facets; the same on every machine")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number());
   command->add_flag(
       "--first-place", options->first_place,
       "Look closer only at those that can still be first, and answer when that is proved");

@@ -308,7 +308,7 @@ void add_sweep(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--memory", options->memory, "Bytes of each core's store; 0 (default): no limit")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number());
   command->add_flag("--batch", options->batch, "All poses in one dispatch");
   command->add_option("--kernel", options->kernel, "Engine that works on the jobs")
       ->check(CLI::IsMember({"scalar", "fast"}))

@@ -16,9 +16,17 @@ static int fail(const Error& error) {
   return 3;
 }
 
-static Result<std::vector<Model>> load(const Scenario& scenario) {
+static Result<std::vector<Model>> load(Scenario& scenario) {
   std::vector<Model> models;
-  for (const ScenarioModel& wanted : scenario.models) {
+  for (ScenarioModel& wanted : scenario.models) {
+    if (is_model_file(wanted.path)) {  // made by `crashrank compile`: nothing is parsed or built
+      Result<LoadedModel> loaded = load_model(wanted.path);
+      if (!loaded) return loaded.error();
+      const double mass_kg = loaded->stored.mass.mass_kg;
+      if (!wanted.mass_kg && mass_kg > 0.0) wanted.mass_kg = mass_kg;
+      models.push_back(std::move(loaded->stored.model));
+      continue;
+    }
     ImportOptions options;
     options.transform = wanted.transform;
     Result<ImportedMesh> imported = import_mesh(wanted.path, options);

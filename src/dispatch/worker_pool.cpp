@@ -1,6 +1,7 @@
 #include "crashrank/dispatch/worker_pool.hpp"
 
 #include "base/hidden.hpp"
+#include "dispatch/alarm.hpp"
 #include "dispatch/pause.hpp"
 
 #include <algorithm>
@@ -95,6 +96,7 @@ struct CRASHRANK_HIDDEN WorkerPool::State {
   std::atomic<std::int64_t> spin_ns{0};
   std::int64_t usual_spin_ns = 0;
   alignas(64) std::atomic<std::uint32_t> finished{0};
+  detail::Alarm owner_alarm;  ///< for an owner who waits until a time
   alignas(64) std::atomic<bool> stop{false};
   std::atomic<bool> failed{false};
   std::mutex failure_lock;
@@ -137,6 +139,7 @@ struct CRASHRANK_HIDDEN WorkerPool::State {
       mail.finished.fetch_add(1, std::memory_order_release);
       finished.fetch_add(1, std::memory_order_release);
       finished.notify_one();
+      owner_alarm.ring();
     }
   }
 
@@ -249,6 +252,16 @@ void WorkerPool::wait_all() noexcept {
       wait_beyond(seen);
     }
   }
+}
+
+bool WorkerPool::wait_all_until(std::chrono::steady_clock::time_point until) noexcept {
+  const std::chrono::nanoseconds spin(state_->spin_ns.load(std::memory_order_relaxed));
+  return state_->owner_alarm.wait_until(until, spin, [this] {
+    for (std::uint32_t worker = 0; worker < size(); ++worker) {
+      if (outstanding(worker) != 0) return false;
+    }
+    return true;
+  });
 }
 
 bool WorkerPool::failed() const noexcept { return state_->failed.load(std::memory_order_acquire); }

@@ -72,7 +72,9 @@ Result<MeshFile> open_mesh(const std::string& path, const ImportLimits& limits) 
     return make_error(ErrorCode::bad_input, "not a regular file");
   }
   file.bytes = static_cast<std::size_t>(status.st_size);
-  if (file.bytes == 0) return make_error(ErrorCode::bad_input, "the file is empty");
+  if (file.bytes == 0) {
+    return make_error(ErrorCode::bad_input, "the file is empty", "export the mesh again");
+  }
   if (file.bytes > limits.file_bytes) {
     return make_error(ErrorCode::limit_exceeded,
                       "the file has " + std::to_string(file.bytes) + " bytes, more than the " +

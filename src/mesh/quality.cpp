@@ -15,7 +15,7 @@
 namespace crashrank {
 namespace {
 
-using Corners = std::array<std::uint32_t, 3>;
+using CornerIndices = std::array<std::uint32_t, 3>;
 
 // Number of the position of each vertex: equal positions share one, −0 equals 0.
 std::vector<std::uint32_t> weld(View<const Eigen::Vector3f> vertices) {
@@ -64,7 +64,7 @@ void count_edges(std::vector<Edge>& edges, MeshQuality& quality) {
   }
 }
 
-std::size_t count_duplicates(std::vector<Corners>& sorted_corners) {
+std::size_t count_duplicates(std::vector<CornerIndices>& sorted_corners) {
   std::sort(sorted_corners.begin(), sorted_corners.end());
   std::size_t duplicates = 0;
   for (std::size_t i = 1; i < sorted_corners.size(); ++i) {
@@ -131,15 +131,15 @@ MeshQuality assess(const TriangleMesh& mesh) {
 
   const std::vector<std::uint32_t> position = weld(mesh.vertices);
   std::vector<Edge> edges;
-  std::vector<Corners> corners;
+  std::vector<CornerIndices> corners;
   edges.reserve(3 * mesh.size());
   corners.reserve(mesh.size());
   Box bounds;
-  for (const Corners& v : mesh.triangles) {
+  for (const CornerIndices& v : mesh.triangles) {
     if (!finite[v[0]] || !finite[v[1]] || !finite[v[2]]) continue;
     const Triangle triangle{{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]}};
     for (const Eigen::Vector3f& corner : triangle.corner) bounds.grow(corner);
-    Corners p{position[v[0]], position[v[1]], position[v[2]]};
+    CornerIndices p{position[v[0]], position[v[1]], position[v[2]]};
     if (degenerate(triangle)) {
       ++quality.degenerate_triangles;
     } else {

@@ -48,6 +48,16 @@ public:
     }
   }
 
+  /// Path of the value that the parser has in hand and has not shown yet.
+  std::string place_in_hand() const {
+    std::string path;
+    for (const Level& level : levels_) {
+      const bool innermost = &level == &levels_.back();
+      append(level, level.elements - (innermost || level.elements == 0 ? 0 : 1), path);
+    }
+    return path;
+  }
+
 private:
   struct Level {
     bool array = false;
@@ -63,15 +73,17 @@ private:
   [[noreturn]] void refuse(const char* reason, const char* remedy) const {
     std::string path;
     for (const Level& level : levels_) {
-      if (level.array) {
-        path.append("[")
-            .append(std::to_string(level.elements == 0 ? 0 : level.elements - 1))
-            .append("]");
-      } else if (!level.key.empty()) {
-        path.append(path.empty() ? "" : ".").append(level.key);
-      }
+      append(level, level.elements == 0 ? 0 : level.elements - 1, path);
     }
     throw Refusal{{ErrorCode::bad_input, {}, path, reason, remedy}};
+  }
+
+  static void append(const Level& level, std::size_t element, std::string& path) {
+    if (level.array) {
+      path.append("[").append(std::to_string(element)).append("]");
+    } else if (!level.key.empty()) {
+      path.append(path.empty() ? "" : ".").append(level.key);
+    }
   }
 
   std::vector<Level> levels_;
@@ -102,6 +114,13 @@ Result<json> parse_json(const std::string& text) {
   } catch (const Refusal& refusal) {
     return refusal.error;
   } catch (const json::parse_error& error) {
+    if (error.byte <= 1) {
+      return Error{ErrorCode::bad_input,
+                   {},
+                   line_and_column(text, error.byte),
+                   "this is not JSON, which begins with {",
+                   "give the JSON file; meshes and model files are named inside it"};
+    }
     return Error{ErrorCode::bad_input,
                  {},
                  line_and_column(text, error.byte),
@@ -109,8 +128,11 @@ Result<json> parse_json(const std::string& text) {
                  "mend the text there or just before; JSON has neither comments nor trailing "
                  "commas, NaN nor Infinity"};
   } catch (const json::exception&) {
-    return Error{
-        ErrorCode::bad_input, {}, {}, "a number is too large", "keep to the ranges stated"};
+    return Error{ErrorCode::bad_input,
+                 {},
+                 watcher.place_in_hand(),
+                 "this number is too large",
+                 "keep to the ranges stated"};
   }
 }
 

@@ -8,6 +8,7 @@
 #include "rank/refine.hpp"
 #include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
+#include "rank/score_crash.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,9 +33,15 @@ using detail::Watch;
 constexpr std::size_t most_slots = 64;
 constexpr std::size_t refined_together = 16;
 
+/// How much sooner time is up for workers, so that what they know by then still counts: of a
+/// hundred stretches of work between two looks at the clock 99 are shorter (bench/rank:
+/// clock_looks).
+constexpr std::chrono::microseconds ahead{30};
+
 struct Slot {
   Refined state;
   StepEnd end;
+  std::atomic<bool> done{false};  ///< the other two are whole
 };
 
 double seconds_between(Watch::Clock::time_point from, Watch::Clock::time_point to) {
@@ -81,10 +88,19 @@ struct CRASHRANK_HIDDEN Ranker::State {
 
   // One round: set by the calling thread, read by all.
   View<const Candidate> candidates;
-  const Watch* watch = nullptr;
+  Watch watch;
+  Watch helpers_watch;
   double give_up_above = 0.0;
   std::size_t count = 0;
   std::atomic<std::size_t> next{0};
+
+  /// What workers read of candidates when they may still be at it after the call has returned. No
+  /// names.
+  std::vector<Candidate> kept;
+  bool leaves = false;  ///< the call returns at its time, whatever the workers are at
+  bool left = false;    ///< it did so: they may still be at it
+
+  ~State() { await_helpers(); }
 
   struct Helper {
     State* state = nullptr;
@@ -92,18 +108,38 @@ struct CRASHRANK_HIDDEN Ranker::State {
   };
   std::vector<Helper> helpers;
 
-  void take_part(RefineScratch& own) noexcept {
-    for (;;) {
+  /// Before anything is changed that workers read.
+  void await_helpers() noexcept {
+    if (left) pool.wait_all();
+    left = false;
+  }
+
+  void take_part(RefineScratch& own, const Watch& until) noexcept {
+    while (!until.expired()) {
       const std::size_t i = next.fetch_add(1, std::memory_order_relaxed);
       if (i >= count) return;
       Slot& slot = slots[i];
-      if (watch->expired()) {
-        slot.end = {0, false};
-        continue;
-      }
-      const RefineQuery query{scene, bounds, candidates[chosen[i]], give_up_above, *watch};
+      const RefineQuery query{scene, bounds, candidates[chosen[i]], give_up_above, until};
       slot.end = detail::refine(query, slot.state, own);
+      slot.done.store(true, std::memory_order_release);
     }
+  }
+
+  /// Sets the candidates of a call, and whether it may leave its workers behind: where these look
+  /// at the clock all along, and their candidates can be kept without memory.
+  void take(View<const Candidate> asked) noexcept {
+    candidates = asked;
+    leaves = watch.runs() && pool.size() > 0 && detail::scored_by_pulses(scene) &&
+             std::none_of(asked.begin(), asked.end(),
+                          [](const Candidate& c) { return c.motion.holds_poses(); });
+    helpers_watch = leaves ? Watch(watch.until() - ahead) : watch;
+    if (!leaves) return;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      kept[i].motion = asked[i].motion;
+      kept[i].acceleration_mps2 = asked[i].acceleration_mps2;
+      kept[i].curvature_per_m = asked[i].curvature_per_m;
+    }
+    candidates = {kept.data(), asked.size()};
   }
 
   /// Takes the first `steps` of the chosen candidates one stage further, on all threads.
@@ -111,23 +147,31 @@ struct CRASHRANK_HIDDEN Ranker::State {
     give_up_above = limit;
     count = steps;
     next.store(0, std::memory_order_relaxed);
-    for (std::size_t i = 0; i < steps; ++i) slots[i].state = states[chosen[i]];
+    for (std::size_t i = 0; i < steps; ++i) {
+      slots[i].state = states[chosen[i]];
+      slots[i].done.store(false, std::memory_order_relaxed);
+    }
     const std::size_t wanted = std::min(helpers.size(), steps > 0 ? steps - 1 : 0);
     for (std::size_t i = 0; i < wanted; ++i) {
       const WorkerPool::Task task{[](void* context, std::uint32_t) {
                                     const Helper& helper = *static_cast<Helper*>(context);
-                                    helper.state->take_part(helper.state->scratch[helper.worker]);
+                                    State& s = *helper.state;
+                                    s.take_part(s.scratch[helper.worker], s.helpers_watch);
                                   },
                                   &helpers[i]};
       pool.post(static_cast<std::uint32_t>(i), task);
     }
-    take_part(scratch.front());
+    take_part(scratch.front(), watch);
     // All steps are begun by now: whoever has not woken yet need not.
     for (std::size_t i = 0; i < wanted; ++i) {
       WorkerPool::Task unneeded;
       pool.recall(static_cast<std::uint32_t>(i), unneeded);
     }
-    pool.wait_all();
+    if (leaves) {
+      left = !pool.wait_all_until(watch.until());
+    } else {
+      pool.wait_all();
+    }
   }
 
   /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
@@ -136,11 +180,12 @@ struct CRASHRANK_HIDDEN Ranker::State {
     bool in_time = true;
     for (std::size_t i = 0; i < steps; ++i) {
       const bool affordable = work < budget;
-      if (affordable) {
+      const bool done = slots[i].done.load(std::memory_order_acquire);
+      if (affordable && done) {
         states[chosen[i]] = slots[i].state;
         work += slots[i].end.work;
       }
-      in_time = in_time && affordable && slots[i].end.finished;
+      in_time = in_time && affordable && done && slots[i].end.finished;
       race.put_back(chosen[i], states);
     }
     return in_time;
@@ -153,13 +198,13 @@ struct CRASHRANK_HIDDEN Ranker::State {
     bool going = budget.work > 0;
     std::uint32_t begin = 0;
     if (going && all > 1) {
-      if (detail::all_are_clear(scene, candidates, *watch, effort.work)) {
+      if (detail::all_are_clear(scene, candidates, watch, effort.work)) {
         for (; begin < all; ++begin) {
           detail::settle_as_clear(states[begin]);
           race.put_back(begin, states);
         }
       }
-      going = effort.work < budget.work && !watch->expired();
+      going = effort.work < budget.work && !watch.expired();
     }
     while (begin < all && going) {
       const std::size_t steps = std::min<std::size_t>(most_slots, all - begin);
@@ -168,7 +213,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
       }
       run_round(steps, std::numeric_limits<double>::infinity());
       begin += static_cast<std::uint32_t>(steps);
-      going = take_over(steps, budget.work, effort.work) && !watch->expired();
+      going = take_over(steps, budget.work, effort.work) && !watch.expired();
     }
     const auto seen = Watch::Clock::now();
     effort.bounds_s = seconds_between(start, seen);
@@ -181,7 +226,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
         continue;
       }
       run_round(steps, limit);
-      going = take_over(steps, budget.work, effort.work) && !watch->expired();
+      going = take_over(steps, budget.work, effort.work) && !watch.expired();
     }
     effort.refining_s = seconds_between(seen, Watch::Clock::now());
   }
@@ -291,6 +336,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->bounds.prepare(state->scene);
     state->states.resize(options.limits.candidates);
     state->ranking.resize(options.limits.candidates);
+    if (state->pool.size() > 0) state->kept.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
     state->scratch = std::vector<RefineScratch>(state->pool.size() + 1);
     for (RefineScratch& scratch : state->scratch) prepare_scratch(state->scene, scratch);
@@ -303,6 +349,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
 }
 
 Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noexcept {
+  state_->await_helpers();
   detail::Scene& scene = state_->scene;
   if (actors.size() != scene.actors.size()) {
     return make_error(ErrorCode::usage, "there is not one motion for each actor",
@@ -327,16 +374,16 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   // What is left to do after the last look at the clock: an order and a hash.
   const auto count = static_cast<double>(candidates.size());
   const double closing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);
-  Watch watch;
+  s.await_helpers();
+  s.watch = Watch();
   constexpr double longest_s = 1e6;
   if (budget.deadline_s < longest_s) {
     const double seconds = std::max(budget.deadline_s - closing_s, 0.0);
-    watch = Watch(start + std::chrono::duration_cast<Watch::Clock::duration>(
-                              std::chrono::duration<double>(seconds)));
+    s.watch = Watch(start + std::chrono::duration_cast<Watch::Clock::duration>(
+                                std::chrono::duration<double>(seconds)));
   }
   answer.effort.prepare_s = s.prepare_s;
-  s.candidates = candidates;
-  s.watch = &watch;
+  s.take(candidates);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     s.states[i] = detail::unrefined(s.scene, s.bounds, candidates[i], i);
   }

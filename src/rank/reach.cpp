@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Sums and roots round; bounds are widened by far more than that.
-constexpr double slack = 1.0 + 1e-9;
+constexpr double speed_slack = 1.0 + 1e-9;
 constexpr double endless = std::numeric_limits<double>::infinity();
 
 double reduced_kg(double ego_kg, double other_kg) {
@@ -33,11 +33,11 @@ struct Other {
 Other other_of(const Scene& scene, const Body& actor) {
   const MotionBound bound = actor.motion.bound(0.0, scene.slice_s.back());
   Other other;
-  other.speed_mps = slack * (bound.speed_mps + bound.angular_radps * actor.radius_m);
-  other.angular_radps = slack * bound.angular_radps;
+  other.speed_mps = speed_slack * (bound.speed_mps + bound.angular_radps * actor.radius_m);
+  other.angular_radps = speed_slack * bound.angular_radps;
   if (std::isfinite(actor.mass_kg)) {
     other.turning_j2 =
-        slack * actor.mass.inertia_kgm2(2, 2) * bound.angular_radps * bound.angular_radps;
+        speed_slack * actor.mass.inertia_kgm2(2, 2) * bound.angular_radps * bound.angular_radps;
   }
   other.reduced_kg = reduced_kg(scene.ego.mass_kg, actor.mass_kg);
   return other;
@@ -48,14 +48,14 @@ double most_of_one(const Scene& scene, const Body& actor, const Other& other, do
                    double turning_j2) {
   const double relative = speed_mps + other.speed_mps;
   const double turning = turning_j2 + other.turning_j2;
-  const double impulse = slack * other.reduced_kg *
+  const double impulse = speed_slack * other.reduced_kg *
                          (relative + std::sqrt(relative * relative + turning / other.reduced_kg));
-  const double ego_delta_v = slack * impulse / scene.ego.mass_kg;
+  const double ego_delta_v = speed_slack * impulse / scene.ego.mass_kg;
   switch (scene.measure) {
     case Measure::delta_v:
       return ego_delta_v;
     case Measure::energy:
-      return slack * 0.5 * (other.reduced_kg * relative * relative + turning);
+      return speed_slack * 0.5 * (other.reduced_kg * relative * relative + turning);
     case Measure::harm:
       break;
     default:
@@ -70,20 +70,20 @@ double most_of_one(const Scene& scene, const Body& actor, const Other& other, do
   ego.kind = scene.ego.kind;
   ego.ego = true;
   ego.delta_v_mps = ego_delta_v;
-  ego.closing_speed_mps =
-      slack * (relative + spin * ego_arm + other.angular_radps * (actor.radius_m + 2.0 * ego_arm));
+  ego.closing_speed_mps = speed_slack * (relative + spin * ego_arm +
+                                         other.angular_radps * (actor.radius_m + 2.0 * ego_arm));
   HarmExposure hit = ego;
   hit.kind = actor.kind;
   hit.ego = false;
-  hit.delta_v_mps = std::isfinite(actor.mass_kg) ? slack * impulse / actor.mass_kg : 0.0;
-  return slack * (most_harm(ego, scene.harm) + most_harm(hit, scene.harm));
+  hit.delta_v_mps = std::isfinite(actor.mass_kg) ? speed_slack * impulse / actor.mass_kg : 0.0;
+  return speed_slack * (most_harm(ego, scene.harm) + most_harm(hit, scene.harm));
 }
 
 /// A box that the ego stays in until `until_s`.
 Box box_of(const Scene& scene, const Reach& reach, double until_s) {
   const double seconds = std::max(until_s - reach.from_s, 0.0);
   const Vector3d along = seconds * reach.common_mps;
-  const double around = slack * std::min(reach.around_mps * seconds, reach.furthest_m);
+  const double around = speed_slack * std::min(reach.around_mps * seconds, reach.furthest_m);
   // Between poses its origin moves straight while it turns: then its centre of mass is off by twice
   // their distance at most.
   const double body = radius_about_mass(scene.ego) + 2.0 * scene.ego.mass.center_m.norm();
@@ -126,22 +126,22 @@ Reach reach_after(const Scene& scene, const Candidate& candidate, const CrashSet
   reach.from_s = contact.time_of_impact_s;
   reach.from_m = a.center_m;
   reach.common_mps = a.velocity.linear_mps - share * closing;
-  reach.around_mps = slack * share * std::sqrt(speed2 + turning_j2 / reduced);
+  reach.around_mps = speed_slack * share * std::sqrt(speed2 + turning_j2 / reduced);
   reach.energy_mps =
-      slack * (std::sqrt(a.velocity.linear_mps.squaredNorm() + turning(a) / a.mass_kg) +
-               2.0 * b.velocity.linear_mps.norm() + std::sqrt(turning(b) / a.mass_kg));
+      speed_slack * (std::sqrt(a.velocity.linear_mps.squaredNorm() + turning(a) / a.mass_kg) +
+                     2.0 * b.velocity.linear_mps.norm() + std::sqrt(turning(b) / a.mass_kg));
   reach.speed_mps =
-      std::min(slack * (reach.common_mps.norm() + reach.around_mps), reach.energy_mps);
-  reach.turning_j2 = slack * std::min(reduced * speed2 + turning_j2,
-                                      a.mass_kg * reach.energy_mps * reach.energy_mps);
+      std::min(speed_slack * (reach.common_mps.norm() + reach.around_mps), reach.energy_mps);
+  reach.turning_j2 = speed_slack * std::min(reduced * speed2 + turning_j2,
+                                            a.mass_kg * reach.energy_mps * reach.energy_mps);
   reach.furthest_m = endless;
   const double deceleration =
       std::max(scene.harm.after.deceleration_mps2, -candidate.acceleration_mps2);
   if (deceleration > 0.0) {
     const PulseOptions pulse = coarse(scene.harm.friction).pulse;
     const double crash_s = pulse.longest_s + 2.0 * pulse.step_s;
-    reach.furthest_m = slack * (reach.speed_mps * crash_s +
-                                0.5 * reach.speed_mps * reach.speed_mps / deceleration) +
+    reach.furthest_m = speed_slack * (reach.speed_mps * crash_s +
+                                      0.5 * reach.speed_mps * reach.speed_mps / deceleration) +
                        1e-3;
   }
   return reach;
@@ -189,10 +189,10 @@ double most_in_reach(const Scene& scene, const Reach& reach, View<const std::siz
       turning = std::max(turning, std::min(other.reduced_kg * relative * relative + turns,
                                            mass_kg * left_mps * left_mps));
     }
-    now.energy_mps = slack * energy;
+    now.energy_mps = speed_slack * energy;
     now.common_mps.setZero();
-    now.speed_mps = now.around_mps = slack * speed;
-    now.turning_j2 = slack * turning;
+    now.speed_mps = now.around_mps = speed_slack * speed;
+    now.turning_j2 = speed_slack * turning;
     now.furthest_m = endless;
   }
 
@@ -230,7 +230,7 @@ double most_in_reach(const Scene& scene, const Reach& reach, View<const std::siz
     }
     most = std::max(most, sum);
   }
-  return slack * most;
+  return speed_slack * most;
 }
 
 }  // namespace crashrank::detail

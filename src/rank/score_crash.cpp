@@ -59,6 +59,7 @@ CrashScore score_crash(const Scene& scene, const EgoAtContact& ego, const Contac
     const ViewFrame frame = view_along(crash.along, contact.point_m);
     memory.look.stop = &Watch::stop;
     memory.look.stop_context = const_cast<Watch*>(&watch);
+    memory.look.boxes = 0;
     look(crash.a, crash.b, frame, how.pulse, memory);
     score.work += memory.looked_at;
     if (memory.look.stopped) {

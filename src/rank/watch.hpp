@@ -12,6 +12,8 @@ public:
   Watch() = default;
   explicit Watch(Clock::time_point until) : until_(until), runs_(true) {}
 
+  bool runs() const { return runs_; }
+  Clock::time_point until() const { return until_; }
   bool expired() const { return runs_ && Clock::now() >= until_; }
   /// For ImpactOptions::stop.
   static bool stop(void* watch) { return static_cast<const Watch*>(watch)->expired(); }

@@ -112,7 +112,7 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
                       result.complete ? "" : "are known to ",
                       simulated ? " Delta-v (over all contacts) and crush are the ego's."
                                 : " Damage is ego + others.",
-                      result.elapsed_s * 1e3, result.complete ? "" : "; the answer is partial");
+                      result.elapsed_s * 1e3, result.complete ? "" : "; not every score is known");
   if (!result.complete) {
     text += result.proved ? "The first place is proved.\n"
                           : fmt::format("The first place is not proved: {} are in the race.\n",
@@ -121,11 +121,10 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
   if (result.effort) {
     const RankerEffort& effort = *result.effort;
     text += fmt::format(
-        "Scores: {} from swept boxes, {} from contacts, {} from simulated crashes; {} left "
-        "early as not to be first. Preparing took {:.1f} ms, the boxes {:.2f} ms, refining {:.2f} "
-        "ms, {} "
-        "tests.\n",
-        effort.without_search, effort.without_crash, effort.fully_evaluated, effort.left_early,
+        "Scores: {} from swept boxes, {} from contacts, {} from {}; {} left early as not to be "
+        "first. Preparing took {:.1f} ms, the boxes {:.2f} ms, refining {:.2f} ms, {} tests.\n",
+        effort.without_search, effort.without_crash, effort.fully_evaluated,
+        simulated ? "simulated crashes" : "intersected meshes", effort.left_early,
         1e3 * effort.prepare_s, 1e3 * effort.bounds_s, 1e3 * effort.refining_s, effort.work);
   }
   if (simulated && result.samples.empty()) {

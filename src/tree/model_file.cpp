@@ -4,6 +4,7 @@
 #include "tree/file_bytes.hpp"
 #include "tree/model_layout.hpp"
 
+#include <string_view>
 #include <utility>
 
 namespace crashrank {
@@ -43,7 +44,11 @@ Status save_model(const StoredModel& stored, const std::string& path, bool overw
 }
 
 bool is_model_file(const std::string& path) {
-  return detail::begins_with(path, {detail::model_magic.data(), detail::model_magic.size()});
+  constexpr std::string_view extension = ".crm";
+  const bool named = path.size() > extension.size() &&
+                     path.compare(path.size() - extension.size(), extension.size(), extension) == 0;
+  return named ||
+         detail::begins_with(path, {detail::model_magic.data(), detail::model_magic.size()});
 }
 
 }  // namespace crashrank

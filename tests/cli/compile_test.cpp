@@ -169,6 +169,14 @@ TEST(Compile, RefusesWhatMakesNoSense) {
   EXPECT_EQ(place.crashrank({"collide", "a.crm", "b.obj", "--frame", "gaussian"}).code, 2);
   EXPECT_EQ(place.crashrank({"inspect", "a.crm", "--up", "+y"}).code, 2);
 
+  const Outcome misspelt = place.crashrank({"inspect", "aa.crm"});
+  EXPECT_EQ(misspelt.code, 3);
+  EXPECT_NE(misspelt.err.find("aa.crm: cannot open"), std::string::npos) << misspelt.err;
+  place.write("mesh.crm", cli_test::box_obj("a", 0, 0, 0, 1, 1, 1));
+  const Outcome no_model = place.crashrank({"inspect", "mesh.crm"});
+  EXPECT_EQ(no_model.code, 3);
+  EXPECT_NE(no_model.err.find("model file"), std::string::npos) << no_model.err;
+
   std::string damaged = before;
   damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
   place.write("damaged.crm", damaged);

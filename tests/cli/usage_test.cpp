@@ -60,6 +60,22 @@ TEST(Usage, WhatWasMeantIsSaid) {
   }
 }
 
+TEST(Usage, WhatIsNotExpectedIsToldInItsOrder) {
+  const Workplace place;
+  const Outcome run = place.crashrank({"rank", "s.json", "--elephant", "grey"});
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.err.find("not expected: '--elephant' 'grey'"), std::string::npos) << run.err;
+}
+
+TEST(Usage, ACountIsAWholeNumber) {
+  const Workplace place;
+  for (const std::string wrong : {"-4", "1.5", "1e3", "many", "99999999999999999999"}) {
+    const Outcome run = place.crashrank({"rank", "s.json", "--work-budget", wrong});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("'" + wrong + "' is no count"), std::string::npos) << run.err;
+  }
+}
+
 TEST(Usage, HelpShowsTheCommandOnce) {
   const Workplace place;
   const Outcome help = place.crashrank({"inspect", "--help"});
@@ -92,6 +108,7 @@ TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
            {"collide", "a.obj", "a.obj", "--pose", "1,2,3"},
            {"collide", "a.obj", "a.obj", "--pose", "1,2,3,4,5,six"},
            {"collide", "a.obj", "a.obj", "--pose", "nan,0,0,0,0,0"},
+           {"collide", "a.obj", "a.obj", "--pose", "1e999,0,0,0,0,0"},
            {"collide", "a.obj", "a.obj", "--repeat", "0"},
            {"collide", "a.obj", "a.obj", "--split", "guess"},
            {"collide", "a.obj", "a.obj", "--frame", "moving"},

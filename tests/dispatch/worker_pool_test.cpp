@@ -104,6 +104,43 @@ TEST(WorkerPool, TasksTakenBackRunOnce) {
   EXPECT_GT(here, 0U);
 }
 
+TEST(WorkerPool, WaitsForAllUntilATimeAtTheLatest) {
+  using Clock = std::chrono::steady_clock;
+  using std::chrono::milliseconds;
+  for (const std::int32_t spin_us : {0, 50}) {
+    PoolOptions options = with_workers(2);
+    options.spin_us = spin_us;
+    Result<WorkerPool> pool = WorkerPool::start(options);
+    ASSERT_TRUE(pool.ok());
+    EXPECT_TRUE(pool->wait_all_until(Clock::now() - milliseconds(1)));  // nothing to wait for
+    std::atomic<bool> open{false};
+    const WorkerPool::Task held{
+        [](void* context, std::uint32_t) { static_cast<std::atomic<bool>*>(context)->wait(false); },
+        &open};
+    pool->post(1, held);
+    const Clock::time_point until = Clock::now() + milliseconds(5);
+    EXPECT_FALSE(pool->wait_all_until(until));
+    EXPECT_GE(Clock::now(), until);
+    EXPECT_EQ(pool->outstanding(1), 1U);
+    open.store(true);
+    open.notify_all();
+    EXPECT_TRUE(pool->wait_all_until(Clock::now() + std::chrono::minutes(1)));
+
+    // A wake-up that was lost would last until the test's time limit.
+    std::atomic<int> done{0};
+    const WorkerPool::Task quick{
+        [](void* context, std::uint32_t) { static_cast<std::atomic<int>*>(context)->fetch_add(1); },
+        &done};
+    constexpr int rounds = 5000;
+    for (int i = 1; i <= rounds; ++i) {
+      pool->post(0, quick);
+      pool->post(1, quick);
+      ASSERT_TRUE(pool->wait_all_until(Clock::now() + std::chrono::hours(1)));
+      ASSERT_EQ(done.load(), 2 * i);
+    }
+  }
+}
+
 TEST(WorkerPool, EndsAtAnyMoment) {
   for (int round = 0; round < 200; ++round) {
     std::atomic<int> ran{0};

@@ -245,6 +245,35 @@ TEST(Ranker, AnyDeadlineGivesASoundAnswer) {
   }
 }
 
+TEST(Ranker, WorkersThatADeadlineLeavesBehindReadNothingOfTheCallers) {
+  const Case c(301, Measure::harm);
+  std::vector<Motion> motions;
+  for (const ScenarioActor& actor : c.scene.scenario.actors) motions.push_back(*make_motion(actor));
+  const Pose& start = c.scene.scenario.ego.pose;
+  Ranker ranker = c.ranker(Measure::harm, 4);
+  const std::uint64_t whole = ranker.rank(c.candidates).hash;
+  for (int call = 0; call < 300; ++call) {
+    RankBudget budget;
+    budget.deadline_s = 1e-5 * call;
+    {
+      std::vector<Candidate> gone = c.candidates;
+      ASSERT_TRUE(ranker.rank(gone, budget).status);
+      for (Candidate& candidate : gone) candidate.motion = Motion::at_rest(start);
+    }
+    // Both change or read what the workers may still be reading.
+    if (call % 3 == 1) {
+      ASSERT_TRUE(ranker.move_actors(start, motions));
+    }
+    if (call % 20 == 2) {
+      EXPECT_EQ(ranker.rank(c.candidates).hash, whole);
+    }
+    if (call % 50 == 3) {
+      Ranker ended = c.ranker(Measure::harm, 4);
+      ended.rank(c.candidates, budget);
+    }
+  }
+}
+
 TEST(Ranker, MovedActorsAreRankedAsANewScenarioWouldBe) {
   Scene scene = traffic(400);
   RankerOptions options;

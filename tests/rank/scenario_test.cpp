@@ -177,6 +177,22 @@ TEST(Scenario, TextThatIsNoJsonNamesLineAndColumn) {
   EXPECT_EQ(error_of("[]").reason, "is array, not an object");
 }
 
+TEST(Scenario, ANumberBeyondADoubleNamesItsKey) {
+  EXPECT_EQ(error_of(R"({"grip": 1e999})").place, "grip");
+  EXPECT_EQ(error_of(R"({"ego": {"speed_kmh": -1e999}})").place, "ego.speed_kmh");
+  EXPECT_EQ(error_of(R"({"actors": [{"poses": [[0, 1], [2, 1e999]]}]})").place,
+            "actors[0].poses[1][1]");
+  EXPECT_EQ(error_of(R"({"a": [1], "b": [1e999]})").place, "b[0]");
+}
+
+TEST(Scenario, WhatIsNoJsonAtAllIsTold) {
+  for (const char* const text : {"# a mesh\no car\nv 0 0 0\n", "v 0 0 0", "glTF\x02\x01"}) {
+    const Error error = error_of(text);
+    EXPECT_EQ(error.place, "line 1, column 1");
+    EXPECT_NE(error.reason.find("not JSON, which begins with {"), std::string::npos);
+  }
+}
+
 TEST(Scenario, AKeyThatComesTwiceIsAnError) {
   EXPECT_EQ(error_of(R"({"grip": 1, "grip": 2})").place, "grip");
   EXPECT_EQ(error_of(R"({"actors": [{"name": "a"}, {"name": "b", "name": "c"}]})").place,

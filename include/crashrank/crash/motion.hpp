@@ -104,6 +104,9 @@ public:
   /// of as many poses, nothing is allocated. After an error it rests.
   Status become_timed(View<const TimedPose> poses);
 
+  /// Whether it is a timed motion, the one kind whose copies take memory.
+  bool holds_poses() const noexcept { return std::holds_alternative<Timed>(kind_); }
+
   /// Body to world at time t. About 50 ns.
   Pose pose_at(double t_s) const;
 

@@ -3,6 +3,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -66,6 +67,9 @@ public:
   std::uint32_t finished_tasks() const noexcept;
   /// Waits until nothing is outstanding.
   void wait_all() noexcept;
+  /// The same until that time at the latest, whatever the workers are at; true when nothing is
+  /// outstanding. Workers go on with what they have in hand.
+  bool wait_all_until(std::chrono::steady_clock::time_point until) noexcept;
   /// True after a task threw, until `take_failure`. May be asked at any time, also by workers.
   bool failed() const noexcept;
   /// What the first task that threw said, as an Error of kind internal; clears it. Call after

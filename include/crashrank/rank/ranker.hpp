@@ -95,6 +95,11 @@ struct RankerAnswer {
 /// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls are those by
 /// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and `intrusion`,
 /// and harm that weighs property, whose last stage allocates.
+///
+/// At its deadline a call returns without waiting for workers in the middle of a step: they leave it
+/// at their next look at the clock, behind the caller's back, and the next call of a member waits
+/// for that. They read nothing of the caller's but the models. Except, again, with those measures,
+/// and where a candidate's motion is a timed one: then the call waits for them.
 /// bench/rank measures how late answers are. With no deadline the scores have the bits
 /// of `crashrank::rank`, and so has the order.
 ///
