@@ -56,7 +56,7 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
     text += meant(word, commands);
   }
   const std::vector<std::string> strangers = named->remaining();
-  if (named != &app && !strangers.empty()) {
+  if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
     text = "not expected:";
     for (const std::string& stranger : strangers) text += " '" + stranger + "'";
   }

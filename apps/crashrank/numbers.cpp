@@ -6,6 +6,18 @@
 
 namespace crashrank::cli {
 
+namespace {
+
+/// What a number rounds to that no double holds: zero or infinity.
+double beyond_double(std::string_view word) {
+  long double value = 0.0L;
+  const auto end = std::from_chars(word.data(), word.data() + word.size(), value);
+  return end.ec == std::errc{} ? static_cast<double>(value)
+                               : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
 std::optional<std::vector<double>> parse_numbers(std::string_view line) {
   constexpr std::string_view separators = " \t,\r";
   std::vector<double> numbers;
@@ -22,8 +34,8 @@ std::optional<std::vector<double>> parse_numbers(std::string_view line) {
     if (end.ec == std::errc::invalid_argument || end.ptr != word.data() + word.size()) {
       return std::nullopt;
     }
-    const bool beyond = end.ec == std::errc::result_out_of_range;
-    numbers.push_back(beyond ? std::numeric_limits<double>::infinity() : value);
+    if (end.ec == std::errc::result_out_of_range) value = beyond_double(word);
+    numbers.push_back(value);
   }
 }
 

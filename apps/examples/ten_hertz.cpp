@@ -19,7 +19,8 @@ static int fail(const Error& error) {
 static Result<std::vector<Model>> load(Scenario& scenario) {
   std::vector<Model> models;
   for (ScenarioModel& wanted : scenario.models) {
-    if (is_model_file(wanted.path)) {  // made by `crashrank compile`: nothing is parsed or built
+    // Made by `crashrank compile`, in its body's frame: nothing is parsed, turned or built.
+    if (is_model_file(wanted.path)) {
       Result<LoadedModel> loaded = load_model(wanted.path);
       if (!loaded) return loaded.error();
       const double mass_kg = loaded->stored.mass.mass_kg;

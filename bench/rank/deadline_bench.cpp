@@ -122,14 +122,17 @@ void time_deadline(Ranker& ranker, const bench::Situations& s, double deadline_m
       std::chrono::duration<double, std::milli>(deadline_ms));
   const std::chrono::duration<double, std::milli> pause(2.0 * deadline_ms * rest / (1.0 - rest));
   std::vector<double> late;
+  std::vector<double> moving;  // waits for workers that the call before left behind
   std::vector<double> spin;
   std::size_t correct = 0;
   std::size_t proved = 0;
   std::size_t complete = 0;
   for (std::size_t call = 0; call < calls; ++call) {
     const std::size_t variant = call % s.motions.size();
-    if (!ranker.move_actors(s.scenario.ego.pose, s.motions[variant])) return;
     auto start = Clock::now();
+    if (!ranker.move_actors(s.scenario.ego.pose, s.motions[variant])) return;
+    moving.push_back(micros(Clock::now() - start));
+    start = Clock::now();
     const RankerAnswer answer = ranker.rank(s.candidates, budget);
     late.push_back(std::max(0.0, micros(Clock::now() - start - deadline)));
     if (answer.ranking[0].candidate == right[variant]) ++correct;
@@ -148,6 +151,7 @@ void time_deadline(Ranker& ranker, const bench::Situations& s, double deadline_m
               s.triangles, deadline_ms, calls);
   print_quantiles(late);
   print_quantiles(spin);
+  print_quantiles(moving);
   std::printf(",%.4f,%.4f,%.4f\n", share(correct), share(proved), share(complete));
   std::fflush(stdout);
 }
@@ -172,8 +176,8 @@ int run(const Options& options) {
   std::printf(
       "processor,kernel,scheduler,load,threads,scenario,candidates,triangles,deadline_ms,"
       "calls,late_p50_us,late_p99_us,late_p999_us,late_p9999_us,late_worst_us,spin_p50_us,"
-      "spin_p99_us,spin_p999_us,spin_p9999_us,spin_worst_us,first_right,first_proved,"
-      "complete\n");
+      "spin_p99_us,spin_p999_us,spin_p9999_us,spin_worst_us,move_p50_us,move_p99_us,move_p999_us,"
+      "move_p9999_us,move_worst_us,first_right,first_proved,complete\n");
   for (const std::string& file : options.scenarios) {
     const Result<bench::Situations> s =
         bench::make_situations(file, options.triangles, options.variants, 7);

@@ -14,6 +14,15 @@ using c::refuse_null;
 
 Result<Model> import_model(const std::string& path, const ImportTransform& transform) {
   if (is_model_file(path)) {
+    const ImportTransform none;
+    if (transform.scale != none.scale || transform.up != none.up ||
+        transform.forward != none.forward || transform.origin_m != none.origin_m) {
+      return Error{ErrorCode::bad_input,
+                   path,
+                   {},
+                   "a model file has its frame already",
+                   "leave out scale, up, forward and origin: they are for crashrank compile"};
+    }
     Result<LoadedModel> loaded = load_model(path);
     if (!loaded) return loaded.error();
     return std::move(loaded->stored.model);

@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstdint>
 
-#if defined(__linux__)
+// A futex takes the kernel's own timespec, which where long has 32 bits is not the C library's.
+#if defined(__linux__) && defined(__LP64__)
+#define CRASHRANK_HAS_FUTEX 1
 #include <linux/futex.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -31,24 +33,35 @@ public:
     std::atomic_thread_fence(std::memory_order_seq_cst);
     if (!sleeps_.load(std::memory_order_seq_cst)) return;
     rung_.fetch_add(1, std::memory_order_seq_cst);
-#if defined(__linux__)
+#if defined(CRASHRANK_HAS_FUTEX)
     ::syscall(SYS_futex, &rung_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
 #endif
   }
 
-  /// Looks for at most `spin`, then sleeps, until `done()` or that time; says which.
+  /// Looks for at most `spin`, then sleeps, until `done()` or that time; says which. Being woken by
+  /// the time takes about 0.1 ms (the kernel's slack for timers is half of that): the last part is
+  /// looked through.
   template <class Done>
   bool wait_until(Clock::time_point until, std::chrono::nanoseconds spin, Done&& done) noexcept {
-    const Clock::time_point start = Clock::now();
-    const Clock::time_point awake = std::min(until, start + spin);
-    for (Clock::time_point now = start;; now = Clock::now()) {
+    constexpr std::chrono::microseconds waking{120};
+    if (look(std::min(until, Clock::now() + spin), done)) return true;
+    if (Clock::now() + waking < until && sleep_until(until - waking, done)) return true;
+    return look(until, done);
+  }
+
+private:
+  template <class Done> static bool look(Clock::time_point until, Done& done) noexcept {
+    for (;;) {
+      const bool over = Clock::now() >= until;
       for (int i = 0; i < 32; ++i) {
         if (done()) return true;
+        if (over) return false;
         pause();
       }
-      if (now >= until) return false;
-      if (now >= awake) break;
     }
+  }
+
+  template <class Done> bool sleep_until(Clock::time_point until, Done& done) noexcept {
     sleeps_.store(true, std::memory_order_seq_cst);
     bool is_done = false;
     for (;;) {
@@ -62,9 +75,8 @@ public:
     return is_done;
   }
 
-private:
   void sleep(std::uint32_t rung, Clock::time_point until) noexcept {
-#if defined(__linux__)
+#if defined(CRASHRANK_HAS_FUTEX)
     // The steady clock is CLOCK_MONOTONIC, by which FUTEX_WAIT_BITSET takes an absolute time.
     static_assert(sizeof(rung_) == sizeof(std::uint32_t));
     const auto at = std::chrono::nanoseconds(until.time_since_epoch()).count();

@@ -59,8 +59,12 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
                                          actor.motion, from, until, scratch.impact, options);
     ++work.body_pairs;
     work.impact += impact.work;
-    if (impact.state == ImpactState::undecided) decided = false;
-    if (impact.state == ImpactState::none || impact.state == ImpactState::undecided) continue;
+    if (impact.state == ImpactState::undecided) {
+      decided = false;
+      if (scratch.stop != nullptr && scratch.stop(scratch.stop_context)) break;
+      continue;
+    }
+    if (impact.state == ImpactState::none) continue;
     scratch.hits.push_back({near.actor, impact});
     if (impact.hit()) first_s = std::min(first_s, impact.time_s);
   }

@@ -114,12 +114,12 @@ Result<json> parse_json(const std::string& text) {
   } catch (const Refusal& refusal) {
     return refusal.error;
   } catch (const json::parse_error& error) {
-    if (error.byte <= 1) {
+    if (error.byte <= text.find_first_not_of(" \t\r\n") + 1) {
       return Error{ErrorCode::bad_input,
                    {},
                    line_and_column(text, error.byte),
                    "this is not JSON, which begins with {",
-                   "give the JSON file; meshes and model files are named inside it"};
+                   "give a JSON file here, not a mesh or a model file"};
     }
     return Error{ErrorCode::bad_input,
                  {},

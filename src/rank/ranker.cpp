@@ -8,11 +8,10 @@
 #include "rank/refine.hpp"
 #include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
-#include "rank/score_crash.hpp"
+#include "rank/step_rounds.hpp"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -24,25 +23,11 @@ namespace {
 
 using detail::Race;
 using detail::Refined;
-using detail::RefineQuery;
-using detail::RefineScratch;
-using detail::StepEnd;
+using detail::StepRounds;
 using detail::Watch;
 
-/// Steps that are begun together, whatever the number of workers: answers cut by work depend on it.
-constexpr std::size_t most_slots = 64;
+/// As many as wait in a race are refined together.
 constexpr std::size_t refined_together = 16;
-
-/// How much sooner time is up for workers, so that what they know by then still counts: of a
-/// hundred stretches of work between two looks at the clock 99 are shorter (bench/rank:
-/// clock_looks).
-constexpr std::chrono::microseconds ahead{30};
-
-struct Slot {
-  Refined state;
-  StepEnd end;
-  std::atomic<bool> done{false};  ///< the other two are whole
-};
 
 double seconds_between(Watch::Clock::time_point from, Watch::Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
@@ -71,108 +56,18 @@ std::uint64_t hash_of(View<const RankedCandidate> ranking) {
 
 struct CRASHRANK_HIDDEN Ranker::State {
   State(detail::Scene&& made, WorkerPool&& started)
-      : scene(std::move(made)), pool(std::move(started)) {}
+      : scene(std::move(made)), rounds(scene, bounds, std::move(started)) {}
 
   detail::Scene scene;
-  WorkerPool pool;
+  detail::ScoreBounds bounds;
+  StepRounds rounds;
   RankerLimits limits;
   RankResult bodies;  ///< what `explain` begins with
   double prepare_s = 0.0;
-  detail::ScoreBounds bounds;
-  std::vector<RefineScratch> scratch;  ///< the calling thread's first
   std::vector<Refined> states;
   std::vector<RankedCandidate> ranking;
   Race race;
-  std::array<Slot, most_slots> slots;
-  std::array<std::uint32_t, most_slots> chosen{};
-
-  // One round: set by the calling thread, read by all.
-  View<const Candidate> candidates;
-  Watch watch;
-  Watch helpers_watch;
-  double give_up_above = 0.0;
-  std::size_t count = 0;
-  std::atomic<std::size_t> next{0};
-
-  /// What workers read of candidates when they may still be at it after the call has returned. No
-  /// names.
-  std::vector<Candidate> kept;
-  bool leaves = false;  ///< the call returns at its time, whatever the workers are at
-  bool left = false;    ///< it did so: they may still be at it
-
-  ~State() { await_helpers(); }
-
-  struct Helper {
-    State* state = nullptr;
-    std::uint32_t worker = 0;
-  };
-  std::vector<Helper> helpers;
-
-  /// Before anything is changed that workers read.
-  void await_helpers() noexcept {
-    if (left) pool.wait_all();
-    left = false;
-  }
-
-  void take_part(RefineScratch& own, const Watch& until) noexcept {
-    while (!until.expired()) {
-      const std::size_t i = next.fetch_add(1, std::memory_order_relaxed);
-      if (i >= count) return;
-      Slot& slot = slots[i];
-      const RefineQuery query{scene, bounds, candidates[chosen[i]], give_up_above, until};
-      slot.end = detail::refine(query, slot.state, own);
-      slot.done.store(true, std::memory_order_release);
-    }
-  }
-
-  /// Sets the candidates of a call, and whether it may leave its workers behind: where these look
-  /// at the clock all along, and their candidates can be kept without memory.
-  void take(View<const Candidate> asked) noexcept {
-    candidates = asked;
-    leaves = watch.runs() && pool.size() > 0 && detail::scored_by_pulses(scene) &&
-             std::none_of(asked.begin(), asked.end(),
-                          [](const Candidate& c) { return c.motion.holds_poses(); });
-    helpers_watch = leaves ? Watch(watch.until() - ahead) : watch;
-    if (!leaves) return;
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      kept[i].motion = asked[i].motion;
-      kept[i].acceleration_mps2 = asked[i].acceleration_mps2;
-      kept[i].curvature_per_m = asked[i].curvature_per_m;
-    }
-    candidates = {kept.data(), asked.size()};
-  }
-
-  /// Takes the first `steps` of the chosen candidates one stage further, on all threads.
-  void run_round(std::size_t steps, double limit) noexcept {
-    give_up_above = limit;
-    count = steps;
-    next.store(0, std::memory_order_relaxed);
-    for (std::size_t i = 0; i < steps; ++i) {
-      slots[i].state = states[chosen[i]];
-      slots[i].done.store(false, std::memory_order_relaxed);
-    }
-    const std::size_t wanted = std::min(helpers.size(), steps > 0 ? steps - 1 : 0);
-    for (std::size_t i = 0; i < wanted; ++i) {
-      const WorkerPool::Task task{[](void* context, std::uint32_t) {
-                                    const Helper& helper = *static_cast<Helper*>(context);
-                                    State& s = *helper.state;
-                                    s.take_part(s.scratch[helper.worker], s.helpers_watch);
-                                  },
-                                  &helpers[i]};
-      pool.post(static_cast<std::uint32_t>(i), task);
-    }
-    take_part(scratch.front(), watch);
-    // All steps are begun by now: whoever has not woken yet need not.
-    for (std::size_t i = 0; i < wanted; ++i) {
-      WorkerPool::Task unneeded;
-      pool.recall(static_cast<std::uint32_t>(i), unneeded);
-    }
-    if (leaves) {
-      left = !pool.wait_all_until(watch.until());
-    } else {
-      pool.wait_all();
-    }
-  }
+  std::array<std::uint32_t, StepRounds::most_steps> chosen{};
 
   /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
   /// of work or time.
@@ -180,40 +75,40 @@ struct CRASHRANK_HIDDEN Ranker::State {
     bool in_time = true;
     for (std::size_t i = 0; i < steps; ++i) {
       const bool affordable = work < budget;
-      const bool done = slots[i].done.load(std::memory_order_acquire);
-      if (affordable && done) {
-        states[chosen[i]] = slots[i].state;
-        work += slots[i].end.work;
+      const StepRounds::Done done = rounds.done(i);
+      if (affordable && done.state != nullptr) {
+        states[chosen[i]] = *done.state;
+        work += done.end.work;
       }
-      in_time = in_time && affordable && done && slots[i].end.finished;
+      in_time = in_time && affordable && done.state != nullptr && done.end.finished;
       race.put_back(chosen[i], states);
     }
-    return in_time;
+    return in_time && !rounds.expired();
   }
 
   /// Everything until time, work or questions run out.
   void refine_all(const RankBudget& budget, RankerEffort& effort) noexcept {
     const auto start = Watch::Clock::now();
-    const auto all = static_cast<std::uint32_t>(candidates.size());
+    const auto all = static_cast<std::uint32_t>(rounds.candidates().size());
     bool going = budget.work > 0;
     std::uint32_t begin = 0;
     if (going && all > 1) {
-      if (detail::all_are_clear(scene, candidates, watch, effort.work)) {
+      if (detail::all_are_clear(scene, rounds.candidates(), rounds.watch(), effort.work)) {
         for (; begin < all; ++begin) {
           detail::settle_as_clear(states[begin]);
           race.put_back(begin, states);
         }
       }
-      going = effort.work < budget.work && !watch.expired();
+      going = effort.work < budget.work && !rounds.expired();
     }
     while (begin < all && going) {
-      const std::size_t steps = std::min<std::size_t>(most_slots, all - begin);
+      const std::size_t steps = std::min<std::size_t>(StepRounds::most_steps, all - begin);
       for (std::size_t i = 0; i < steps; ++i) {
         chosen[i] = begin + static_cast<std::uint32_t>(i);
       }
-      run_round(steps, std::numeric_limits<double>::infinity());
+      rounds.run(states, chosen.data(), steps, std::numeric_limits<double>::infinity());
       begin += static_cast<std::uint32_t>(steps);
-      going = take_over(steps, budget.work, effort.work) && !watch.expired();
+      going = take_over(steps, budget.work, effort.work);
     }
     const auto seen = Watch::Clock::now();
     effort.bounds_s = seconds_between(start, seen);
@@ -225,14 +120,22 @@ struct CRASHRANK_HIDDEN Ranker::State {
         if (budget.first_place_only || !race.resume(states)) break;
         continue;
       }
-      run_round(steps, limit);
-      going = take_over(steps, budget.work, effort.work) && !watch.expired();
+      rounds.run(states, chosen.data(), steps, limit);
+      going = take_over(steps, budget.work, effort.work);
     }
     effort.refining_s = seconds_between(seen, Watch::Clock::now());
   }
 
-  void tell(RankerAnswer& answer) noexcept {
-    const std::size_t all = candidates.size();
+  /// Nothing is known of any candidate but what none can exceed. Touches nothing that workers do.
+  void begin(View<const Candidate> asked) noexcept {
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      states[i] = detail::unrefined(scene, bounds, asked[i], i);
+    }
+    race.begin(states, asked.size());
+  }
+
+  /// Of the first `all` states. Touches nothing that workers do.
+  void tell(RankerAnswer& answer, std::size_t all) noexcept {
     race.mark(states);
     for (std::size_t i = 0; i < all; ++i) ranking[i] = states[i].told;
     std::sort(ranking.begin(), ranking.begin() + static_cast<std::ptrdiff_t>(all),
@@ -279,29 +182,6 @@ Status within(const RankerLimits& limits, const Scenario& scenario, View<const M
   return Success{};
 }
 
-void prepare_scratch(const detail::Scene& scene, RefineScratch& scratch) {
-  std::uint32_t deepest = scene.ego.model->tree.depth;
-  for (const detail::Body& actor : scene.actors) {
-    deepest = std::max(deepest, actor.model->tree.depth);
-    scratch.evaluate.damage.collide.prepare(*scene.ego.model, *actor.model);
-  }
-  scratch.evaluate.impact.prepare(deepest, deepest);
-  scratch.evaluate.near.reserve(scene.actors.size());
-  scratch.evaluate.place.reserve(scene.actors.size());
-  scratch.evaluate.hits.reserve(scene.actors.size());
-  scratch.near.reserve(scene.actors.size());
-  scratch.reach.prepare(scene.actors.size());
-  // Poses at which surfaces meet list their pairs; twice as many as crash poses of dense meshes
-  // have been seen to have.
-  constexpr std::size_t pairs = std::size_t{1} << 17U;
-  scratch.evaluate.damage.pairs.reserve(pairs);
-  scratch.aftermath.prepare(scene);
-  const Eigen::Vector3d size = scene.ego.model->mesh.bounds().extent().cast<double>();
-  const double longest = size.norm();
-  scratch.pulse.prepare(longest, std::min(longest, size.z() + 0.25 * longest), deepest,
-                        detail::coarse(scene.harm.friction).pulse);
-}
-
 }  // namespace
 
 Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> models,
@@ -336,20 +216,15 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->bounds.prepare(state->scene);
     state->states.resize(options.limits.candidates);
     state->ranking.resize(options.limits.candidates);
-    if (state->pool.size() > 0) state->kept.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
-    state->scratch = std::vector<RefineScratch>(state->pool.size() + 1);
-    for (RefineScratch& scratch : state->scratch) prepare_scratch(state->scene, scratch);
-    for (std::uint32_t i = 0; i < state->pool.size(); ++i) {
-      state->helpers.push_back({state.get(), i + 1});
-    }
+    state->rounds.prepare(options.limits.candidates);
     state->prepare_s = seconds_between(start, Watch::Clock::now());
     return Ranker(std::move(state));
   });
 }
 
 Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noexcept {
-  state_->await_helpers();
+  state_->rounds.await();
   detail::Scene& scene = state_->scene;
   if (actors.size() != scene.actors.size()) {
     return make_error(ErrorCode::usage, "there is not one motion for each actor",
@@ -357,7 +232,7 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
   }
   for (std::size_t i = 0; i < actors.size(); ++i) scene.actors[i].motion = actors[i];
   scene.ego_start = ego_start;
-  detail::place_actors(scene, state_->scratch.front().evaluate.impact);
+  detail::place_actors(scene, state_->rounds.own().evaluate.impact);
   state_->bounds.update(scene);
   return Success{};
 }
@@ -374,22 +249,20 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   // What is left to do after the last look at the clock: an order and a hash.
   const auto count = static_cast<double>(candidates.size());
   const double closing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);
-  s.await_helpers();
-  s.watch = Watch();
+  Watch watch;
   constexpr double longest_s = 1e6;
   if (budget.deadline_s < longest_s) {
     const double seconds = std::max(budget.deadline_s - closing_s, 0.0);
-    s.watch = Watch(start + std::chrono::duration_cast<Watch::Clock::duration>(
-                                std::chrono::duration<double>(seconds)));
+    watch = Watch(start + std::chrono::duration_cast<Watch::Clock::duration>(
+                              std::chrono::duration<double>(seconds)));
   }
   answer.effort.prepare_s = s.prepare_s;
-  s.take(candidates);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    s.states[i] = detail::unrefined(s.scene, s.bounds, candidates[i], i);
+  s.begin(candidates);
+  if (s.rounds.await(watch)) {
+    s.rounds.begin(candidates, watch);
+    s.refine_all(budget, answer.effort);
   }
-  s.race.begin(s.states, candidates.size());
-  s.refine_all(budget, answer.effort);
-  s.tell(answer);
+  s.tell(answer, candidates.size());
   answer.elapsed_s = seconds_between(start, Watch::Clock::now());
   return answer;
 }

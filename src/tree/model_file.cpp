@@ -4,6 +4,8 @@
 #include "tree/file_bytes.hpp"
 #include "tree/model_layout.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <string_view>
 #include <utility>
 
@@ -45,8 +47,10 @@ Status save_model(const StoredModel& stored, const std::string& path, bool overw
 
 bool is_model_file(const std::string& path) {
   constexpr std::string_view extension = ".crm";
-  const bool named = path.size() > extension.size() &&
-                     path.compare(path.size() - extension.size(), extension.size(), extension) == 0;
+  const auto same = [](char p, char q) { return p == std::tolower(static_cast<unsigned char>(q)); };
+  const bool named =
+      path.size() > extension.size() &&
+      std::equal(extension.begin(), extension.end(), path.end() - extension.size(), same);
   return named ||
          detail::begins_with(path, {detail::model_magic.data(), detail::model_magic.size()});
 }

@@ -96,12 +96,12 @@ struct RankerAnswer {
 /// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and `intrusion`,
 /// and harm that weighs property, whose last stage allocates.
 ///
-/// At its deadline a call returns without waiting for workers in the middle of a step: they leave it
-/// at their next look at the clock, behind the caller's back, and the next call of a member waits
-/// for that. They read nothing of the caller's but the models. Except, again, with those measures,
-/// and where a candidate's motion is a timed one: then the call waits for them.
-/// bench/rank measures how late answers are. With no deadline the scores have the bits
-/// of `crashrank::rank`, and so has the order.
+/// At its deadline a call returns without waiting for workers in the middle of a step: they leave
+/// it at their next look at the clock, behind the caller's back, reading nothing of the caller's
+/// but the models. The next call begins by waiting for them, `rank` until its own deadline at most.
+/// Except, again, with those measures, and where a candidate's motion is a timed one: then the call
+/// waits for its workers. bench/rank measures how late answers are. With no deadline the scores
+/// have the bits of `crashrank::rank`, and so has the order.
 ///
 /// One thread at a time calls the members; different Rankers are independent.
 class CRASHRANK_API Ranker {
@@ -118,8 +118,9 @@ public:
   ~Ranker();
 
   /// The situation has changed: where the ego starts, and how each actor moves from now on, in the
-  /// scenario's order. Costs some µs an actor and allocates nothing but for timed motions. Errors:
-  /// usage where their number is another.
+  /// scenario's order. Begins by waiting for workers that an answer at its deadline left behind,
+  /// then costs some µs an actor and allocates nothing but for timed motions. Errors: usage where
+  /// their number is another.
   Status move_actors(const Pose& ego_start, View<const Motion> actors) noexcept;
 
   /// Candidates have to stay until the call returns. Errors (in the answer): usage where there are

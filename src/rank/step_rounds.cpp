@@ -1,0 +1,131 @@
+#include "rank/step_rounds.hpp"
+
+#include "rank/score_crash.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace crashrank::detail {
+namespace {
+
+/// How much sooner time is up for workers, so that what they know by then still counts: most
+/// stretches of work between two looks at the clock are shorter (bench/rank: clock_looks).
+constexpr std::chrono::microseconds ahead{30};
+
+void prepare_scratch(const Scene& scene, RefineScratch& scratch) {
+  std::uint32_t deepest = scene.ego.model->tree.depth;
+  for (const Body& actor : scene.actors) {
+    deepest = std::max(deepest, actor.model->tree.depth);
+    scratch.evaluate.damage.collide.prepare(*scene.ego.model, *actor.model);
+  }
+  scratch.evaluate.impact.prepare(deepest, deepest);
+  scratch.evaluate.near.reserve(scene.actors.size());
+  scratch.evaluate.place.reserve(scene.actors.size());
+  scratch.evaluate.hits.reserve(scene.actors.size());
+  scratch.near.reserve(scene.actors.size());
+  scratch.reach.prepare(scene.actors.size());
+  // Poses at which surfaces meet list their pairs; twice as many as crash poses of dense meshes
+  // have been seen to have.
+  constexpr std::size_t pairs = std::size_t{1} << 17U;
+  scratch.evaluate.damage.pairs.reserve(pairs);
+  scratch.aftermath.prepare(scene);
+  const Eigen::Vector3d size = scene.ego.model->mesh.bounds().extent().cast<double>();
+  const double longest = size.norm();
+  scratch.pulse.prepare(longest, std::min(longest, size.z() + 0.25 * longest), deepest,
+                        coarse(scene.harm.friction).pulse);
+}
+
+}  // namespace
+
+void StepRounds::prepare(std::size_t candidates) {
+  scratch_ = std::vector<RefineScratch>(pool_.size() + 1);
+  for (RefineScratch& scratch : scratch_) prepare_scratch(scene_, scratch);
+  for (std::uint32_t i = 0; i < pool_.size(); ++i) helpers_.push_back({this, i + 1});
+  if (pool_.size() > 0) kept_.resize(candidates);
+}
+
+void StepRounds::await() noexcept {
+  if (left_) pool_.wait_all();
+  left_ = false;
+}
+
+bool StepRounds::await(const Watch& limit) noexcept {
+  if (!limit.runs()) {
+    await();
+  } else if (left_) {
+    left_ = !pool_.wait_all_until(limit.until());
+  }
+  return !left_;
+}
+
+void StepRounds::begin(View<const Candidate> candidates, const Watch& watch) noexcept {
+  candidates_ = candidates;
+  watch_ = watch;
+  const bool looks = scored_by_pulses(scene_) || scene_.measure == Measure::closing_energy;
+  leaves_ = watch.runs() && pool_.size() > 0 && looks &&
+            std::none_of(candidates.begin(), candidates.end(),
+                         [](const Candidate& c) { return c.motion.holds_poses(); });
+  helpers_watch_ = leaves_ ? Watch(watch.until() - ahead) : watch;
+  if (!leaves_) return;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    kept_[i].motion = candidates[i].motion;
+    kept_[i].acceleration_mps2 = candidates[i].acceleration_mps2;
+    kept_[i].curvature_per_m = candidates[i].curvature_per_m;
+  }
+  candidates_ = {kept_.data(), candidates.size()};
+}
+
+void StepRounds::run(const std::vector<Refined>& states, const std::uint32_t* chosen,
+                     std::size_t steps, double give_up_above) noexcept {
+  give_up_above_ = give_up_above;
+  count_ = steps;
+  next_.store(0, std::memory_order_relaxed);
+  for (std::size_t i = 0; i < steps; ++i) {
+    chosen_[i] = chosen[i];
+    slots_[i].state = states[chosen[i]];
+    slots_[i].done.store(false, std::memory_order_relaxed);
+  }
+  const std::size_t wanted = std::min(helpers_.size(), steps > 0 ? steps - 1 : 0);
+  std::size_t posted = 0;
+  // Waking many takes long, and whose time is up need not be woken.
+  for (; posted < wanted && !helpers_watch_.expired(); ++posted) {
+    const WorkerPool::Task task{[](void* context, std::uint32_t) {
+                                  const Helper& helper = *static_cast<Helper*>(context);
+                                  StepRounds& rounds = *helper.rounds;
+                                  rounds.take_part(rounds.scratch_[helper.worker],
+                                                   rounds.helpers_watch_);
+                                },
+                                &helpers_[posted]};
+    pool_.post(static_cast<std::uint32_t>(posted), task);
+  }
+  take_part(own(), watch_);
+  // All steps are begun by now: whoever has not woken yet need not.
+  for (std::size_t i = 0; i < posted; ++i) {
+    WorkerPool::Task unneeded;
+    pool_.recall(static_cast<std::uint32_t>(i), unneeded);
+  }
+  if (leaves_) {
+    left_ = !pool_.wait_all_until(watch_.until());
+  } else {
+    pool_.wait_all();
+  }
+}
+
+void StepRounds::take_part(RefineScratch& own, const Watch& until) noexcept {
+  while (!until.expired()) {
+    const std::size_t i = next_.fetch_add(1, std::memory_order_relaxed);
+    if (i >= count_) return;
+    Slot& slot = slots_[i];
+    const RefineQuery query{scene_, bounds_, candidates_[chosen_[i]], give_up_above_, until};
+    slot.end = refine(query, slot.state, own);
+    slot.done.store(true, std::memory_order_release);
+  }
+}
+
+StepRounds::Done StepRounds::done(std::size_t step) const noexcept {
+  const Slot& slot = slots_[step];
+  if (!slot.done.load(std::memory_order_acquire)) return {};
+  return {&slot.state, slot.end};
+}
+
+}  // namespace crashrank::detail
