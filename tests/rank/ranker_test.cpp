@@ -7,23 +7,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <set>
 #include <string>
-#include <thread>
 #include <vector>
-
-#if defined(__linux__)
-#include <sys/syscall.h>
-#include <unistd.h>
-#endif
 
 namespace crashrank {
 namespace {
@@ -284,62 +273,6 @@ TEST(Ranker, WorkersThatADeadlineLeavesBehindReadNothingOfTheCallers) {
     }
   }
 }
-
-#if defined(__linux__)
-std::set<pid_t> threads() {
-  std::set<pid_t> found;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) {
-    found.insert(static_cast<pid_t>(std::stol(entry.path().filename().string())));
-  }
-  return found;
-}
-
-std::atomic<bool> held{false};
-
-/// Keeps the thread that gets it where it is, as a processor that is taken away does.
-void hold(int) {
-  while (held.load()) {
-  }
-}
-
-TEST(Ranker, AWorkerThatIsHeldKeepsNoCallFromEndingAtItsDeadline) {
-  const Case c(301, Measure::harm);
-  const std::set<pid_t> before = threads();
-  Ranker ranker = c.ranker(Measure::harm, 2);
-  std::vector<pid_t> started;
-  for (const pid_t thread : threads()) {
-    if (before.count(thread) == 0) started.push_back(thread);
-  }
-  ASSERT_EQ(started.size(), 1U);
-  const std::uint64_t whole = ranker.rank(c.candidates).hash;
-  std::signal(SIGUSR1, hold);
-  RankBudget budget;
-  budget.deadline_s = 5e-3;  // the whole takes many times that
-  int left_behind = 0;
-  for (int attempt = 0; attempt < 1000 && left_behind < 3; ++attempt) {
-    held.store(true);
-    std::thread holder([&, attempt] {
-      std::this_thread::sleep_for(std::chrono::microseconds(100 * (attempt % 40)));
-      ::syscall(SYS_tgkill, ::getpid(), started.front(), SIGUSR1);
-    });
-    ranker.rank(c.candidates, budget);  // that both return is what is tested
-    holder.join();
-    const RankerAnswer next = ranker.rank(c.candidates, budget);
-    ASSERT_TRUE(next.status);
-    bool nothing_seen = true;
-    for (const RankedCandidate& told : next.ranking) {
-      nothing_seen = nothing_seen && told.stage == RankStage::unseen;
-      EXPECT_LE(told.interval.lowest, c.scores[told.candidate]);
-      EXPECT_GE(told.interval.highest, c.scores[told.candidate]);
-    }
-    held.store(false);
-    if (!nothing_seen) continue;
-    ++left_behind;
-    EXPECT_EQ(ranker.rank(c.candidates).hash, whole);
-  }
-  EXPECT_GT(left_behind, 0);
-}
-#endif
 
 TEST(Ranker, MovedActorsAreRankedAsANewScenarioWouldBe) {
   Scene scene = traffic(400);
