@@ -59,7 +59,7 @@ std::uint64_t wished(const char* variable, std::uint64_t otherwise) {
 TEST(RankerClock, TheIntervalsHoldAtWhateverLookTheTimeIsUp) {
   const std::uint64_t scenes = wished("CRASHRANK_RANKER_SCENES", 6);
   const std::uint64_t first = wished("CRASHRANK_RANKER_SEED", 300);
-  const auto most = static_cast<std::int64_t>(wished("CRASHRANK_RANKER_LOOKS", 400));
+  const auto most = static_cast<std::int64_t>(wished("CRASHRANK_RANKER_LOOKS", 120));
   RankOptions how;
   how.measure = Measure::harm;
   how.harm.emplace();
