@@ -20,10 +20,14 @@
 #endif
 
 #ifdef CRASHRANK_SANITIZED
-// A finding in the parser has to look to the caller like the crash that it is: a signal.
-extern "C" const char* __asan_default_options() { return "abort_on_error=1:detect_leaks=0"; }
-extern "C" const char* __ubsan_default_options() { return "abort_on_error=1"; }
-extern "C" const char* __tsan_default_options() { return "abort_on_error=1"; }
+// A finding in the parser has to look to the caller like the crash that it is: a signal. Visible,
+// since the sanitizer may be a shared library.
+#define CRASHRANK_VISIBLE __attribute__((visibility("default")))
+extern "C" CRASHRANK_VISIBLE const char* __asan_default_options() {
+  return "abort_on_error=1:detect_leaks=0";
+}
+extern "C" CRASHRANK_VISIBLE const char* __ubsan_default_options() { return "abort_on_error=1"; }
+extern "C" CRASHRANK_VISIBLE const char* __tsan_default_options() { return "abort_on_error=1"; }
 #endif
 
 namespace crashrank::importer {
