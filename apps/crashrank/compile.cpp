@@ -5,14 +5,17 @@
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
+#include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
 #include "crashrank/tree/model_file.hpp"
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 
 namespace crashrank::cli {
 namespace {
@@ -20,7 +23,7 @@ namespace {
 struct Options {
   std::string mesh_file;
   std::string output;
-  double mass_kg = 0.0;
+  std::optional<double> mass_kg;
   bool force = false;
   bool json = false;
   MeshArguments mesh;
@@ -32,8 +35,18 @@ Status check_options(const Options& options) {
     return make_error(ErrorCode::usage, "a model is written to a file, not to standard output",
                       "name one with -o");
   }
-  if (!std::isfinite(options.mass_kg) || options.mass_kg < 0.0) {
-    return make_error(ErrorCode::usage, "--mass-kg has to be a number above 0");
+  if (options.mass_kg && !(*options.mass_kg >= scenario_limits::min_mass_kg &&
+                           *options.mass_kg <= scenario_limits::max_mass_kg)) {
+    return make_error(ErrorCode::usage,
+                      fmt::format("--mass-kg has to be a number from {} to {}",
+                                  scenario_limits::min_mass_kg, scenario_limits::max_mass_kg),
+                      "leave it out where the mass is not known");
+  }
+  std::error_code ignored;
+  if (std::filesystem::equivalent(options.mesh_file, options.output, ignored) &&
+      !is_model_file(options.mesh_file)) {
+    return make_error(ErrorCode::usage, "the model would replace the mesh it is made from",
+                      "name another file with -o");
   }
   return Success{};
 }
@@ -46,7 +59,7 @@ int run(const Options& options) {
   // Compiling a model file writes it again, perhaps with another mass.
   const double known_mass = stored.mass.mass_kg;
   stored.mass = shell_properties(stored.model.mesh);
-  stored.mass.mass_kg = options.mass_kg > 0.0 ? options.mass_kg : known_mass;
+  stored.mass.mass_kg = options.mass_kg.value_or(known_mass);
   if (Status saved = save_model(stored, options.output, options.force); !saved) {
     Error error = saved.error();
     if (error.code == ErrorCode::usage) error.remedy = "name another file, or give --force";

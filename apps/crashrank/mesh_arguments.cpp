@@ -77,7 +77,12 @@ Result<ImportTransform> MeshArguments::transform() const {
   made.forward = *forward_axis;
   const std::optional<std::vector<double>> point = parse_numbers(origin);
   const auto finite = [](double x) { return std::isfinite(x); };
-  if (!point || point->size() != 3 || !std::all_of(point->begin(), point->end(), finite)) {
+  if (point && !std::all_of(point->begin(), point->end(), finite)) {
+    return make_error(ErrorCode::usage,
+                      "--origin " + origin + ": holds a number that is not finite",
+                      "write x,y,z in metres");
+  }
+  if (!point || point->size() != 3) {
     return make_error(ErrorCode::usage, "--origin " + origin + ": needs three numbers",
                       "write x,y,z in metres");
   }

@@ -160,6 +160,11 @@ Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario
 }
 
 int run(const Options& options) {
+  if (options.json && is_standard(options.report)) {
+    return fail(make_error(ErrorCode::usage,
+                           "--json and --report - would both write standard output",
+                           "give --report a file"));
+  }
   RankOptions how;
   how.workers = options.workers;
   const Result<Policy> policy = policy_from_name(options.policy);

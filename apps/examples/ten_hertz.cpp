@@ -72,10 +72,12 @@ int main(int argc, char** argv) {
     const Result<std::vector<Candidate>> candidates = make_candidates(*scenario, ego_length_m);
     if (!candidates) return fail(candidates.error());
 
-    if (const Status moved = ranker->move_actors(scenario->ego.pose, motions); !moved) return 1;
+    const Status moved = ranker->move_actors(scenario->ego.pose, motions);
+    if (!moved) return fail(moved.error());
     RankBudget budget;
     budget.deadline_s = 0.05;
     const RankerAnswer answer = ranker->rank(*candidates, budget);
+    if (!answer.status) return fail(answer.status.error());
     const RankedCandidate& best = answer.ranking[0];
     std::printf("%.1f s: %s, harm %.3f to %.3f%s\n", time_s,
                 (*candidates)[best.candidate].name.c_str(), best.interval.lowest,

@@ -315,7 +315,7 @@ CRASHRANK_API crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
 
 /// When a ranking ends at the latest.
 typedef struct crashrank_budget {
-  double deadline_s;         ///< counted from the call; 0: none
+  double deadline_s;         ///< counted from the call; 0: none, below: already over
   uint64_t work;             ///< in tests, deterministic; 0: none
   int32_t first_place_only;  ///< other than 0: ends as soon as the first place is proved
 } crashrank_budget;

@@ -92,7 +92,7 @@ crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank
   return guarded(error, [&]() -> crashrank_status {
     RankBudget within;
     if (budget != nullptr) {
-      if (budget->deadline_s > 0.0) within.deadline_s = budget->deadline_s;
+      if (budget->deadline_s != 0.0) within.deadline_s = budget->deadline_s;
       if (budget->work > 0) within.work = budget->work;
       within.first_place_only = budget->first_place_only != 0;
     }

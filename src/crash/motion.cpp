@@ -117,6 +117,23 @@ Result<Motion> Motion::timed(View<const TimedPose> poses) {
   return motion;
 }
 
+bool Motion::is_finite() const noexcept {
+  const auto finite = [](const Pose& pose) {
+    return pose.rotation.allFinite() && pose.translation.allFinite();
+  };
+  if (const auto* const free = std::get_if<FreeMotion>(&kind_)) {
+    return finite(free->start) && free->velocity.linear_mps.allFinite() &&
+           free->velocity.angular_radps.allFinite();
+  }
+  if (const auto* const planar = std::get_if<Planar>(&kind_)) {
+    const Profile& p = planar->profile;
+    return finite(planar->start) && std::isfinite(p.speed) && std::isfinite(p.acceleration) &&
+           !std::isnan(p.end) && !std::isnan(p.end_speed) && std::isfinite(planar->yaw_rate) &&
+           std::isfinite(planar->curvature);
+  }
+  return true;  // timed poses were checked
+}
+
 Status Motion::become_timed(View<const TimedPose> poses) {
   if (!std::holds_alternative<Timed>(kind_)) kind_ = Timed{};
   Timed& segments = *std::get_if<Timed>(&kind_);

@@ -41,6 +41,10 @@ Result<std::string> extension_of(const std::string& path) {
   }
   std::string extension = name.substr(dot + 1);
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == "crm") {
+    return make_error(ErrorCode::bad_input, "it is named as a compiled model, not as a mesh",
+                      "read it with load_model, or name the mesh that it was made from");
+  }
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
     return make_error(ErrorCode::bad_input,
                       detail::quoted(extension, 40) + " is not a supported mesh format",

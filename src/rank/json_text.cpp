@@ -102,7 +102,7 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
 
 Result<json> parse_json(const std::string& text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    return make_error(ErrorCode::bad_input, "is empty", "give a scenario in JSON");
+    return make_error(ErrorCode::bad_input, "is empty", "give a file in JSON");
   }
   Watcher watcher;
   const auto callback = [&watcher](int, json::parse_event_t event, json& parsed) {

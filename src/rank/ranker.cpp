@@ -230,6 +230,13 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
     return make_error(ErrorCode::usage, "there is not one motion for each actor",
                       "give them in the scenario's order");
   }
+  const bool finite = ego_start.rotation.allFinite() && ego_start.translation.allFinite() &&
+                      std::all_of(actors.begin(), actors.end(),
+                                  [](const Motion& motion) { return motion.is_finite(); });
+  if (!finite) {
+    return make_error(ErrorCode::bad_input, "a pose or motion is not finite",
+                      "leave out what perception does not know; NaN is nowhere");
+  }
   for (std::size_t i = 0; i < actors.size(); ++i) scene.actors[i].motion = actors[i];
   scene.ego_start = ego_start;
   detail::place_actors(scene, state_->rounds.own().evaluate.impact);
@@ -244,6 +251,18 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   if (candidates.size() > s.limits.candidates) {
     answer.status = make_error(ErrorCode::usage, "more candidates than the Ranker's limit",
                                "raise RankerLimits::candidates");
+    return answer;
+  }
+  if (std::isnan(budget.deadline_s)) {
+    answer.status = make_error(ErrorCode::usage, "the deadline is not a number",
+                               "give seconds, infinity for none");
+    return answer;
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].motion.is_finite()) continue;
+    answer.status = make_error(
+        ErrorCode::bad_input, "candidate " + std::to_string(i) + " has a motion that is not finite",
+        "check what it was made from");
     return answer;
   }
   // What is left to do after the last look at the clock: an order and a hash.

@@ -155,7 +155,9 @@ Status check_scenario(const Scenario& scenario) {
   Check check;
   for (const ScenarioModel& model : scenario.models) {
     const double mass = model.mass_kg.value_or(limits::min_mass_kg);
-    check.positive("models." + model.name + ".mass_kg", mass, limits::max_mass_kg);
+    const std::string path = "models." + model.name + ".mass_kg";
+    check.positive(path, mass, limits::max_mass_kg);
+    if (mass < limits::min_mass_kg) check.refuse(path, "is too small");
   }
   check_ego(scenario, check);
   check_candidates(scenario, check);

@@ -309,6 +309,15 @@ TEST(CApi, ARankerAnswersAsRankDoesAndWithinABudgetSoundly) {
     EXPECT_GE(ranked.highest_score, scores.at(ranked.candidate));
   }
 
+  // A deadline that is over leaves no time, not all of it.
+  crashrank_budget late{};
+  late.deadline_s = -1e-3;
+  crashrank_answer at_once{};
+  ASSERT_EQ(crashrank_ranker_rank(ranker.get(), &late, &at_once, &error), CRASHRANK_OK);
+  EXPECT_EQ(at_once.complete, 0);
+  late.deadline_s = NAN;
+  EXPECT_EQ(crashrank_ranker_rank(ranker.get(), &late, &at_once, &error), CRASHRANK_USAGE);
+
   ASSERT_EQ(crashrank_ranker_update(ranker.get(), scenario.get(), &error), CRASHRANK_OK);
   crashrank_answer again{};
   ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &again, &error), CRASHRANK_OK);

@@ -163,6 +163,14 @@ TEST(Compile, RefusesWhatMakesNoSense) {
   EXPECT_EQ(place.crashrank({"compile", "a.obj"}).code, 2);
   EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "-"}).code, 2);
   EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "x.crm", "--mass-kg", "-3"}).code, 2);
+  for (const std::string mass : {"0", "1e-10", "1e9", "nan"}) {
+    const Outcome run = place.crashrank({"compile", "a.obj", "-o", "x.crm", "--mass-kg", mass});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("from 0.1 to 1000000"), std::string::npos) << run.err;
+  }
+  const std::string mesh = place.read("a.obj");
+  EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "./a.obj", "--force"}).code, 2);
+  EXPECT_EQ(place.read("a.obj"), mesh);
   EXPECT_EQ(place.crashrank({"compile", "nowhere.obj", "-o", "x.crm"}).code, 3);
   EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "no/folder/x.crm"}).code, 3);
   EXPECT_EQ(place.crashrank({"collide", "a.crm", "b.obj", "--scale", "2"}).code, 2);

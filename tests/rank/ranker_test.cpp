@@ -297,6 +297,51 @@ TEST(Ranker, MovedActorsAreRankedAsANewScenarioWouldBe) {
   EXPECT_FALSE(ranker->move_actors(scene.scenario.ego.pose, motions));
 }
 
+TEST(Ranker, WhatIsNotFiniteIsRefusedAndNeverTakenForNothingThere) {
+  const Case c(302, Measure::harm);
+  Ranker ranker = c.ranker(Measure::harm, 2);
+  const std::uint64_t whole = ranker.rank(c.candidates).hash;
+  std::vector<Motion> motions;
+  for (const ScenarioActor& actor : c.scene.scenario.actors) motions.push_back(*make_motion(actor));
+  const Pose& start = c.scene.scenario.ego.pose;
+  for (const double wrong : {static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+    FreeMotion somewhere;
+    somewhere.start.translation.x() = wrong;
+    FreeMotion somehow;
+    somehow.velocity.angular_radps.z() = wrong;
+    TurnMotion turn;
+    turn.yaw_rate_radps = wrong;
+    ArcMotion arc;
+    arc.acceleration_mps2 = wrong;
+    ArcMotion fast;
+    fast.speed_mps = wrong;
+    for (const Motion& motion :
+         {Motion(somewhere), Motion(somehow), Motion(turn), Motion(arc), Motion(fast)}) {
+      EXPECT_FALSE(motion.is_finite());
+      std::vector<Motion> others = motions;
+      others.back() = motion;
+      const Status moved = ranker.move_actors(start, others);
+      ASSERT_FALSE(moved.ok());
+      EXPECT_EQ(moved.error().code, ErrorCode::bad_input);
+      std::vector<Candidate> candidates = c.candidates;
+      candidates.back().motion = motion;
+      const RankerAnswer answer = ranker.rank(candidates);
+      ASSERT_FALSE(answer.status.ok());
+      EXPECT_EQ(answer.status.error().code, ErrorCode::bad_input);
+      EXPECT_TRUE(answer.ranking.empty());
+      EXPECT_FALSE(answer.proved);
+    }
+    Pose nowhere = start;
+    nowhere.rotation(0, 0) = wrong;
+    EXPECT_FALSE(ranker.move_actors(nowhere, motions).ok());
+  }
+  RankBudget never;
+  never.deadline_s = NAN;
+  EXPECT_FALSE(ranker.rank(c.candidates, never).status.ok());
+  for (const Motion& motion : motions) EXPECT_TRUE(motion.is_finite());
+  EXPECT_EQ(ranker.rank(c.candidates).hash, whole);  // nothing has changed
+}
+
 TEST(Ranker, LimitsAreKept) {
   const Case c(500, Measure::harm);
   RankerOptions options;

@@ -107,6 +107,10 @@ public:
   /// Whether it is a timed motion, the one kind whose copies take memory.
   bool holds_poses() const noexcept { return std::holds_alternative<Timed>(kind_); }
 
+  /// False where a number that it was made from is NaN or infinite (a top speed may be infinite):
+  /// such a body would be nowhere.
+  bool is_finite() const noexcept;
+
   /// Body to world at time t. About 50 ns.
   Pose pose_at(double t_s) const;
 

@@ -35,7 +35,7 @@ struct RankerOptions {
 
 /// When a ranking ends at the latest.
 struct RankBudget {
-  /// Counted from the call. Infinity: all is ranked.
+  /// Counted from the call; at or below 0 it answers at once. Infinity: all is ranked.
   double deadline_s = std::numeric_limits<double>::infinity();
   /// In tests of boxes, triangles and facets; what is cut off is the same on every machine and for
   /// every number of workers.
@@ -119,12 +119,13 @@ public:
 
   /// The situation has changed: where the ego starts, and how each actor moves from now on, in the
   /// scenario's order. Begins by waiting for workers that an answer at its deadline left behind,
-  /// then costs some µs an actor and allocates nothing but for timed motions. Errors: usage where
-  /// their number is another.
+  /// then costs some µs an actor and allocates nothing but for timed motions. Errors, and nothing
+  /// changes: usage where their number is another, bad_input for what is not finite.
   Status move_actors(const Pose& ego_start, View<const Motion> actors) noexcept;
 
-  /// Candidates have to stay until the call returns. Errors (in the answer): usage where there are
-  /// more than the limits allow.
+  /// Candidates have to stay until the call returns. Errors (in the answer, which is empty then):
+  /// usage where there are more than the limits allow or the deadline is NaN; bad_input for a
+  /// candidate whose motion is not finite.
   RankerAnswer rank(View<const Candidate> candidates, const RankBudget& budget = {}) noexcept;
 
   /// What `crashrank::rank` would have told of an answer, but for the samples of what is not known
