@@ -89,7 +89,8 @@ CRASHRANK_API Status save_model(const StoredModel& stored, const std::string& pa
                                 bool overwrite = false);
 
 /// Whether a file is to be read by `load_model`: it begins as a model file does, or is named as one
-/// (`.crm`), so that what is missing or damaged is told as such. False for what else cannot be read.
+/// (`.crm`), so that what is missing or damaged is told as such. False for what else cannot be
+/// read.
 CRASHRANK_API bool is_model_file(const std::string& path);
 
 }  // namespace crashrank
