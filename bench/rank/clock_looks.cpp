@@ -77,8 +77,6 @@ std::vector<std::int64_t> stretches(Ranker& ranker, View<const Candidate> candid
 }
 
 int run(const Options& options) {
-  const Result<Measure> measure = measure_from_name(options.measure);
-  if (!measure) return 2;
   looks.reserve(std::size_t{1} << 22U);
   std::printf("scenario,situations,looks,p50_us,p99_us,p999_us,longest_us\n");
   for (const std::string& file : options.scenarios) {
@@ -88,10 +86,7 @@ int run(const Options& options) {
       std::fprintf(stderr, "%s\n", s.error().message().c_str());
       return 3;
     }
-    RankerOptions how;
-    how.rank.measure = *measure;
-    how.limits.candidates = s->candidates.size();
-    Result<Ranker> ranker = Ranker::prepare(s->scenario, s->models, how);
+    Result<Ranker> ranker = bench::prepare_ranker(*s, options.measure, 1);
     if (!ranker) {
       std::fprintf(stderr, "%s\n", ranker.error().message().c_str());
       return 3;

@@ -171,8 +171,6 @@ int run(const Options& options) {
   const std::string head = "\"" + processor() + "\"," + system.release + "," +
                            (fifo ? "fifo" : "other") + "," + options.load + "," +
                            std::to_string(options.workers);
-  const Result<Measure> measure = measure_from_name(options.measure);
-  if (!measure) return 2;
   std::printf(
       "processor,kernel,scheduler,load,threads,scenario,candidates,triangles,deadline_ms,"
       "calls,late_p50_us,late_p99_us,late_p999_us,late_p9999_us,late_worst_us,spin_p50_us,"
@@ -185,11 +183,7 @@ int run(const Options& options) {
       std::fprintf(stderr, "%s\n", s.error().message().c_str());
       return 3;
     }
-    RankerOptions how;
-    how.rank.measure = *measure;
-    how.rank.workers = options.workers;
-    how.limits.candidates = s->candidates.size();
-    Result<Ranker> ranker = Ranker::prepare(s->scenario, s->models, how);
+    Result<Ranker> ranker = bench::prepare_ranker(*s, options.measure, options.workers);
     if (!ranker) {
       std::fprintf(stderr, "%s\n", ranker.error().message().c_str());
       return 3;

@@ -73,4 +73,15 @@ Result<Situations> make_situations(const std::string& file, std::size_t triangle
   return s;
 }
 
+Result<Ranker> prepare_ranker(const Situations& situations, const std::string& measure,
+                              unsigned workers) {
+  const Result<Measure> known = measure_from_name(measure);
+  if (!known) return known.error();
+  RankerOptions how;
+  how.rank.measure = *known;
+  how.rank.workers = workers;
+  how.limits.candidates = situations.candidates.size();
+  return Ranker::prepare(situations.scenario, situations.models, how);
+}
+
 }  // namespace bench

@@ -27,4 +27,8 @@ struct Situations {
 crashrank::Result<Situations> make_situations(const std::string& file, std::size_t triangles,
                                               std::size_t variants, std::uint64_t seed);
 
+/// A Ranker of the scenario with room for its candidates.
+crashrank::Result<crashrank::Ranker> prepare_ranker(const Situations& situations,
+                                                    const std::string& measure, unsigned workers);
+
 }  // namespace bench
