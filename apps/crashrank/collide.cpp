@@ -174,6 +174,18 @@ Json to_json(const Options& options, const Body& a, const Body& b,
           {"any", options.any},           {"repeat", options.repeat}};
 }
 
+/// NaN where there was nothing to tell it from.
+std::string time_us(double seconds) {
+  return std::isfinite(seconds) ? fmt::format("{:.2f}", seconds * 1e6) : "-";
+}
+
+std::string cost_text(const Cost& cost) {
+  if (!std::isfinite(cost.cb_s)) return "Cb and Cp cannot be told from so little";
+  const std::string boxes = fmt::format("Cb = {:.2f} ns a box test", cost.cb_s * 1e9);
+  if (!std::isfinite(cost.cp_s)) return boxes;
+  return boxes + fmt::format(", Cp = {:.2f} ns a triangle test", cost.cp_s * 1e9);
+}
+
 std::string to_text(const Options& options, const std::vector<Query>& queries, const Cost& cost) {
   Table table({{"query", true},
                {"touch"},
@@ -189,13 +201,10 @@ std::string to_text(const Options& options, const std::vector<Query>& queries, c
                    std::to_string(query.answer.result.pairs),
                    std::to_string(query.answer.result.work.bv_tests),
                    std::to_string(query.answer.result.work.primitive_tests),
-                   fmt::format("{:.2f}", query.answer.seconds * 1e6),
-                   fmt::format("{:.2f}", predicted(query, cost) * 1e6), query.hash});
+                   time_us(query.answer.seconds), time_us(predicted(query, cost)), query.hash});
   }
   return table.text(colours_wanted()) +
-         fmt::format(
-             "Cb = {:.2f} ns a box test, Cp = {:.2f} ns a triangle test, measured here ({}).\n",
-             cost.cb_s * 1e9, cost.cp_s * 1e9, kernel_name(options.engine));
+         fmt::format("{}, measured here ({}).\n", cost_text(cost), kernel_name(options.engine));
 }
 
 int run(const Options& options) {
@@ -256,8 +265,9 @@ void add_collide(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("collide", "Find the triangles of two bodies that touch, exactly");
-  command->add_option("A", options->a, "Mesh file of body A; - is standard input")->required();
-  command->add_option("B", options->b, "Mesh file of body B")->required();
+  command->add_option("A", options->a, "Mesh or model file of body A; - is standard input")
+      ->required();
+  command->add_option("B", options->b, "Mesh or model file of body B")->required();
   command
       ->add_option("--pose", options->poses,
                    "x,y,z,yaw_deg,pitch_deg,roll_deg of B in A, m and degrees; may be repeated")

@@ -38,6 +38,22 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
+/// What the parser says of how often an option or its value is there, in a user's words.
+std::string of_counts(const std::string& text) {
+  const std::string option = text.substr(0, text.find_first_of(": "));
+  const auto says = [&](const char* part) { return text.find(part) != std::string::npos; };
+  if (says("disallowed flag override")) return "--" + option + " takes no value";
+  if (says("At Most 1")) return option + " is given more than once";
+  if (says("1 required")) return option + " needs a value";
+  return text;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
 /// The first line of what the parser has to say, what was meant, and where to read on. `word` is
 /// the first argument or null.
 int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word) {
@@ -47,13 +63,14 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
       named == &app ? "crashrank --help" : "crashrank " + named->get_name() + " --help";
   std::string text = problem.what();
   text.resize(std::min(text.find('\n'), text.size()));
-  if (named == &app && word != nullptr && word[0] != '-') {
-    text = "there is no command '" + std::string(word) + "'; choose";
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&problem) != nullptr) text = of_counts(text);
+  if (named == &app && (word == nullptr || word[0] != '-')) {
     std::vector<std::string> commands;
     for (const CLI::App* known : app.get_subcommands({})) commands.push_back(known->get_name());
-    for (const std::string& command : commands) text += " " + command + ",";
-    text.pop_back();
-    text += meant(word, commands);
+    text =
+        word == nullptr ? "no command is given" : "there is no command '" + std::string(word) + "'";
+    text += "; choose " + listed(commands);
+    if (word != nullptr) text += meant(word, commands);
   }
   const std::vector<std::string> strangers = named->remaining();
   if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
@@ -79,6 +96,11 @@ int run(int argc, char** argv) {
   add_rank(app, action);
   add_sweep(app, action);
   add_validate(app, action);
+  for (CLI::App* command : app.get_subcommands({})) {
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_max() == 0) option->disable_flag_override();
+    }
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

@@ -23,6 +23,9 @@ constexpr std::array<std::pair<const char*, Axis>, 6> axis_names{{{"+x", Axis::p
                                                                   {"+z", Axis::plus_z},
                                                                   {"-z", Axis::minus_z}}};
 
+/// Farther off, no earthly mesh has its vertices.
+constexpr double max_origin_m = 1e7;
+
 /// Names what the user knows in place of the file that standard input was kept in.
 void name_standard_input(std::string& text, const std::string& path) {
   const std::string shown = "standard input";
@@ -87,6 +90,10 @@ Result<ImportTransform> MeshArguments::transform() const {
                       "write x,y,z in metres");
   }
   made.origin_m = Eigen::Vector3d((*point)[0], (*point)[1], (*point)[2]);
+  if (made.origin_m.cwiseAbs().maxCoeff() > max_origin_m) {
+    return make_error(ErrorCode::usage, "--origin " + origin + ": lies farther than 1e7 m",
+                      "give metres, after turning and scaling");
+  }
   return made;
 }
 
@@ -183,9 +190,10 @@ Result<MeshOrModel> load_mesh_or_model(const std::string& path, const MeshArgume
     return read;
   }
   if (arguments.given()) {
-    return of_file(make_error(ErrorCode::usage, "a model file is in body coordinates already",
-                              "give --scale, --up, --forward and --origin to crashrank compile"),
-                   source->shown());
+    return of_file(
+        make_error(ErrorCode::usage, "a model file is in body coordinates already",
+                   "give --scale, --up, --forward and --origin when its mesh is compiled"),
+        source->shown());
   }
   Result<LoadedModel> loaded = load_model(source->path());
   if (!loaded) return of_file(loaded.error(), source->shown());
@@ -201,8 +209,8 @@ Result<LoadedBody> load_body(const std::string& path, const MeshArguments& argum
   if (is_model_file(source->path())) {
     if (arguments.given() || trees.given()) {
       return of_file(make_error(ErrorCode::usage, "a model file has its frame and trees already",
-                                "give --scale, --up, --forward, --origin, --split and --frame to "
-                                "crashrank compile"),
+                                "give --scale, --up, --forward, --origin, --split and --frame when "
+                                "its mesh is compiled"),
                      source->shown());
     }
     Result<LoadedModel> loaded = load_model(source->path());

@@ -42,6 +42,7 @@ struct Options {
   double deadline_ms = std::numeric_limits<double>::infinity();
   std::uint64_t work_budget = std::numeric_limits<std::uint64_t>::max();
   bool first_place = false;
+  bool engine_given = false;  ///< --policy or --depth
   TreeArguments tree;
 
   bool bounded() const {
@@ -159,6 +160,17 @@ Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario
   return ranker->explain(*candidates, answer);
 }
 
+/// Tells on standard error what the table or the JSON says inside, for who reads the exit code.
+void tell_end(const Options& options, const RankResult& ranked, bool answered) {
+  if (options.engine_given && options.bounded()) {
+    warn("", "--policy and --depth have no part in an answer within a budget");
+  }
+  if (answered) return;
+  warn("", std::string("the budget ended before every score was known: a partial answer, its first "
+                       "place ") +
+               (ranked.proved ? "proved" : "not proved"));
+}
+
 int run(const Options& options) {
   if (options.json && is_standard(options.report)) {
     return fail(make_error(ErrorCode::usage,
@@ -210,15 +222,17 @@ int run(const Options& options) {
     const Status written = write_report(options.report, html_report(*scenario, *models, *ranked));
     if (!written) return fail(written.error());
   }
+  // A page on standard output stands alone.
   if (options.json) {
     print(ranking_json(*scenario, *models, *ranked));
-  } else {
+  } else if (!is_standard(options.report)) {
     RankingTextOptions text;
     text.top = options.top;
     text.colours = colours_wanted();
     print(ranking_text(*scenario, *models, *ranked, text));
   }
   const bool answered = ranked->complete || (options.first_place && ranked->proved);
+  tell_end(options, *ranked, answered);
   return answered ? exit_done : exit_budget;
 }
 
@@ -276,9 +290,10 @@ void add_rank(CLI::App& app, Action& action) {
   command->add_flag(
       "--first-place", options->first_place,
       "Look closer only at those that can still be first, and answer when that is proved");
-  command->add_option("--policy", options->policy, policy_help());
-  command->add_option("--depth", options->depth,
-                      "Distribution depth at which trees are cut, 1 to 16, or auto (default)");
+  const CLI::Option* const policy = command->add_option("--policy", options->policy, policy_help());
+  const CLI::Option* const depth =
+      command->add_option("--depth", options->depth,
+                          "Distribution depth at which trees are cut, 1 to 16, or auto (default)");
   // An unset variable of a script must not lose the answer, and a folder is no stream.
   const CLI::Validator named(
       [](const std::string& text) {
@@ -290,8 +305,10 @@ void add_rank(CLI::App& app, Action& action) {
                    "Folder for GLB, PLY and PNG of the bodies with their damage in red")
       ->check(named);
   command
-      ->add_option("--report", options->report,
-                   "HTML page with table, plans, parts and a 3-D view of both bodies")
+      ->add_option(
+          "--report", options->report,
+          "HTML page with table, plans, parts and a 3-D view of both bodies; - is standard "
+          "output, without the table")
       ->check([](const std::string& text) {
         return text.empty() ? std::string("names no file") : std::string();
       });
@@ -307,7 +324,10 @@ void add_rank(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   options->tree.add_to(*command);
   command->footer(epilogue);
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback([options, policy, depth, &action] {
+    options->engine_given = policy->count() > 0 || depth->count() > 0;
+    action = [options] { return run(*options); };
+  });
 }
 
 }  // namespace crashrank::cli

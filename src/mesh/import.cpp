@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -32,6 +33,10 @@ constexpr const char* formats = "OBJ, STL, PLY, OFF, glTF, GLB, DAE, FBX, 3DS, A
 constexpr double wall_per_processor_time = 3.0;
 
 Result<std::string> extension_of(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return make_error(ErrorCode::bad_input, "it is a folder, not a mesh", "name a file in it");
+  }
   const std::size_t slash = path.find_last_of('/');
   const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
   const std::size_t dot = name.find_last_of('.');
@@ -44,6 +49,10 @@ Result<std::string> extension_of(const std::string& path) {
   if (extension == "crm") {
     return make_error(ErrorCode::bad_input, "it is named as a compiled model, not as a mesh",
                       "read it with load_model, or name the mesh that it was made from");
+  }
+  if (extension == "json") {
+    return make_error(ErrorCode::bad_input, "it is named as a scenario or profile, not as a mesh",
+                      "rank it with crashrank rank, or name a mesh");
   }
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
     return make_error(ErrorCode::bad_input,

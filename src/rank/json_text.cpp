@@ -131,8 +131,8 @@ Result<json> parse_json(const std::string& text) {
     return Error{ErrorCode::bad_input,
                  {},
                  watcher.place_in_hand(),
-                 "this number is too large",
-                 "keep to the ranges stated"};
+                 "this number is larger than a double holds",
+                 "write one below 1.8e308; the schema in data/ states each key's range"};
   }
 }
 

@@ -62,6 +62,19 @@ TEST(RankDeadline, WithoutWorkOnlyIntervalsAreKnownAndTheCodeIsThatOfABudget) {
   }
 }
 
+TEST(RankDeadline, APartialAnswerAndOptionsWithoutPartAreToldOnStandardError) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Outcome cut = ranked(place, {"--work-budget", "0"});
+  EXPECT_NE(cut.err.find("a partial answer, its first place not proved"), std::string::npos)
+      << cut.err;
+  EXPECT_TRUE(cli_test::is_one_message(cut.err)) << cut.err;
+  EXPECT_EQ(ranked(place, {"--deadline-ms", "100000"}).err, "");
+  const Outcome idle = ranked(place, {"--deadline-ms", "100000", "--policy", "random"});
+  EXPECT_EQ(idle.code, 0);
+  EXPECT_NE(idle.err.find("--policy and --depth have no part"), std::string::npos) << idle.err;
+}
+
 TEST(RankDeadline, TimeEnoughGivesThePlainScores) {
   const Workplace place;
   cli_test::write_box_scenario(place);

@@ -228,4 +228,15 @@ TEST(Rank, EveryBadScenarioIsExitThreeAndOneLineThatNamesIt) {
   EXPECT_EQ(place.crashrank({"rank", "."}).code, 3);
 }
 
+TEST(Rank, APageOnStandardOutputStandsAlone) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Outcome run = place.crashrank({"rank", "scenario.json", "--report", "-"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.out.rfind("<!DOCTYPE html>", 0), 0U) << run.out.substr(0, 100);
+  const std::string end = "</html>\n";
+  ASSERT_GT(run.out.size(), end.size());
+  EXPECT_EQ(run.out.substr(run.out.size() - end.size()), end);
+}
+
 }  // namespace

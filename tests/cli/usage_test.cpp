@@ -67,6 +67,24 @@ TEST(Usage, WhatIsNotExpectedIsToldInItsOrder) {
   EXPECT_NE(run.err.find("not expected: '--elephant' 'grey'"), std::string::npos) << run.err;
 }
 
+TEST(Usage, HowOftenAnOptionOrItsValueIsThereIsToldInPlainWords) {
+  const Workplace place;
+  place.write("a.obj", cli_test::box_obj("a", 0, 0, 0, 1, 1, 1));
+  for (const auto& [arguments, told] :
+       std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{}, "no command is given; choose inspect, compile, collide, rank, sweep, validate"},
+           {{"rank", "s.json", "--deadline-ms"}, "--deadline-ms needs a value"},
+           {{"rank", "s.json", "--top", "3", "--top", "4"}, "--top is given more than once"},
+           {{"rank", "s.json", "--first-place=3"}, "--first-place takes no value"},
+           {{"collide", "a.obj", "a.obj", "--any=5"}, "--any takes no value"},
+           {{"inspect", "a.obj", "--origin", "1e300,0,0"}, "lies farther than 1e7 m"}}) {
+    const Outcome run = place.crashrank(arguments);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find(told), std::string::npos) << run.err;
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+  }
+}
+
 TEST(Usage, ACountIsAWholeNumber) {
   const Workplace place;
   for (const std::string wrong : {"-4", "1.5", "1e3", "many", "99999999999999999999"}) {

@@ -32,7 +32,9 @@ inline TriangleMesh triangle_soup(std::size_t triangles, float size, std::uint64
   TriangleMesh mesh;
   for (std::size_t i = 0; i < triangles; ++i) {
     const Eigen::Vector3f at = unit_point(random);
-    add_triangle(mesh, at, at + size * unit_point(random), at + size * unit_point(random));
+    const Eigen::Vector3f c = at + size * unit_point(random);
+    const Eigen::Vector3f b = at + size * unit_point(random);
+    add_triangle(mesh, at, b, c);
   }
   return mesh;
 }

@@ -4,6 +4,7 @@
 #include "mesh/importer/flatten.hpp"
 #include "mesh/importer/folder_io.hpp"
 #include "mesh/importer/gltf_count.hpp"
+#include "mesh/importer/obj_fault.hpp"
 
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -19,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -108,8 +110,16 @@ Error parser_error(const std::string& text, const FolderIo& files, const Request
   if (text.find("bad_alloc") != std::string::npos || text.find("memory") != std::string::npos) {
     return out_of_memory(request);
   }
-  Error error = make_error(ErrorCode::bad_input, text.empty() ? "the parser gave up" : text,
-                           "export the file again");
+  std::string reason = text.substr(0, text.find_last_not_of(". ") + 1);
+  if (reason.empty()) reason = "the parser gave up";
+  Error error = make_error(ErrorCode::bad_input, std::move(reason), "export the file again");
+  if (request.extension == "obj") {
+    if (const std::optional<Error> fault = find_obj_fault(STDIN_FILENO)) error = *fault;
+  }
+  if (text.find("STL storage representation") != std::string::npos) {
+    error.reason = "it is neither a text nor a binary STL file, or it was cut";
+    error.remedy = "name the file after its format, or export it again";
+  }
   if (!files.refused().empty()) {
     error.reason = files.refused().front();
     error.remedy = "put every file that the mesh names into its folder";
