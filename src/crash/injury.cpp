@@ -9,24 +9,24 @@
 namespace crashrank {
 namespace {
 
-struct Entry {
+struct RiskModelEntry {
   RiskModel model;
   const char* name;
   const char* outcome;
 };
 
-constexpr std::array<Entry, 4> entries{{
+constexpr std::array<RiskModelEntry, 4> risk_models{{
     {RiskModel::tum, "tum", "MAIS3+"},
     {RiskModel::malliaris_monfort, "malliaris-monfort", "MAIS3+"},
     {RiskModel::malliaris_rosen, "malliaris-rosen", "death"},
     {RiskModel::joksch_monfort, "joksch-monfort", "death"},
 }};
 
-const Entry& entry_of(RiskModel model) noexcept {
-  for (const Entry& entry : entries) {
+const RiskModelEntry& entry_of(RiskModel model) noexcept {
+  for (const RiskModelEntry& entry : risk_models) {
     if (entry.model == model) return entry;
   }
-  return entries.front();
+  return risk_models.front();
 }
 
 enum class Side { front, side, rear };
@@ -106,7 +106,7 @@ const char* risk_outcome(RiskModel model) noexcept { return entry_of(model).outc
 
 Result<RiskModel> risk_model_from_name(const std::string& name) {
   std::string known;
-  for (const Entry& entry : entries) {
+  for (const RiskModelEntry& entry : risk_models) {
     if (name == entry.name) return entry.model;
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }

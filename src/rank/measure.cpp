@@ -5,13 +5,13 @@
 namespace crashrank {
 namespace {
 
-struct Entry {
+struct MeasureEntry {
   Measure measure;
   const char* name;
   const char* unit;
 };
 
-constexpr std::array<Entry, 7> entries{{
+constexpr std::array<MeasureEntry, 7> measures{{
     {Measure::polygons, "polygons", "triangles"},
     {Measure::area, "area", "m2"},
     {Measure::closing_energy, "closing-energy", "J"},
@@ -21,11 +21,11 @@ constexpr std::array<Entry, 7> entries{{
     {Measure::harm, "harm", "persons"},
 }};
 
-const Entry& entry_of(Measure measure) noexcept {
-  for (const Entry& entry : entries) {
+const MeasureEntry& entry_of(Measure measure) noexcept {
+  for (const MeasureEntry& entry : measures) {
     if (entry.measure == measure) return entry;
   }
-  return entries.front();
+  return measures.front();
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ bool needs_crash(Measure measure) noexcept {
 
 Result<Measure> measure_from_name(const std::string& name) {
   std::string known;
-  for (const Entry& entry : entries) {
+  for (const MeasureEntry& entry : measures) {
     if (name == entry.name) return entry.measure;
     known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
