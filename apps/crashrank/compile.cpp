@@ -43,8 +43,9 @@ Status check_options(const Options& options) {
                       "leave it out where the mass is not known");
   }
   std::error_code ignored;
-  if (std::filesystem::equivalent(options.mesh_file, options.output, ignored) &&
-      !is_model_file(options.mesh_file)) {
+  // On Linux a redirected file can be told by its descriptor's name.
+  const std::string mesh = is_standard(options.mesh_file) ? "/dev/stdin" : options.mesh_file;
+  if (std::filesystem::equivalent(mesh, options.output, ignored) && !is_model_file(mesh)) {
     return make_error(ErrorCode::usage, "the model would replace the mesh it is made from",
                       "name another file with -o");
   }

@@ -8,12 +8,14 @@ namespace crashrank::cli {
 
 namespace {
 
-/// What a number rounds to that no double holds: zero or infinity.
+/// What a number rounds to that no double holds: zero or infinity. Such a number has an exponent,
+/// or hundreds of digits before its point, or of zeros behind it.
 double beyond_double(std::string_view word) {
-  long double value = 0.0L;
-  const auto end = std::from_chars(word.data(), word.data() + word.size(), value);
-  return end.ec == std::errc{} ? static_cast<double>(value)
-                               : std::numeric_limits<double>::infinity();
+  const std::size_t exponent = word.find_first_of("eE");
+  const std::string_view digits = word.substr(0, exponent);
+  const bool small = exponent == std::string_view::npos ? digits.find('.') < 3
+                                                        : word.substr(exponent + 1, 1) == "-";
+  return small ? 0.0 : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/ranker.hpp"
 #include "crashrank/rank/scenario.hpp"
+#include "crashrank/rank/scenario_models.hpp"
 #include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/tree/model.hpp"
@@ -77,56 +78,24 @@ Result<HarmOptions> read_harm(const Options& options, const Scenario& scenario) 
   return harm;
 }
 
-/// A compiled model has its body's frame and, where it was told, its mass. False for a mesh.
-Result<bool> load_compiled(ScenarioModel& wanted, const TreeArguments& trees,
-                           std::vector<Model>& models) {
-  if (!is_model_file(wanted.path)) return false;
-  const ImportTransform& t = wanted.transform;
-  if (t.scale != 1.0 || t.up != Axis::plus_z || t.forward != Axis::plus_x ||
-      t.origin_m != Eigen::Vector3d::Zero() || trees.given()) {
-    return Error{ErrorCode::bad_input, wanted.path, "models." + wanted.name,
-                 "a model file has its frame and trees already",
-                 "leave out scale, up, forward and origin, --split and --frame: they are for "
-                 "crashrank compile"};
-  }
-  Result<LoadedModel> loaded = load_model(wanted.path);
-  if (!loaded) {
-    Error error = loaded.error();
-    error.reason += " (it is models." + wanted.name + ".mesh of the scenario)";
-    return error;
-  }
-  if (!wanted.mass_kg && loaded->stored.mass.mass_kg > 0.0) {
-    wanted.mass_kg = loaded->stored.mass.mass_kg;
-  }
-  models.push_back(std::move(loaded->stored.model));
-  return true;
-}
-
 Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& trees) {
   const Result<BuildOptions> build = trees.build_options();
   if (!build) return build.error();
+  ScenarioModelOptions how;
+  how.build = *build;
   std::vector<Model> models;
   Progress progress("reading meshes", scenario.models.size());
   for (ScenarioModel& wanted : scenario.models) {
-    const Result<bool> compiled = load_compiled(wanted, trees, models);
-    if (!compiled) return compiled.error();
-    if (*compiled) continue;
-    ImportOptions how;
-    how.transform = wanted.transform;
-    Result<ImportedMesh> imported = import_mesh(wanted.path, how);
-    if (!imported) {
-      Error error = imported.error();
-      error.reason += " (it is models." + wanted.name + ".mesh of the scenario)";
-      return error;
+    if (trees.given() && is_model_file(wanted.path)) {
+      return Error{ErrorCode::bad_input, wanted.path, "models." + wanted.name,
+                   "a model file has its trees already",
+                   "leave out --split and --frame: they are for crashrank compile"};
     }
-    for (const std::string& warning : imported->warnings) warn(wanted.path, warning);
-    Result<Model> model = make_model(std::move(imported->mesh), *build);
-    if (!model) {
-      Error error = model.error();
-      if (error.file.empty()) error.file = wanted.path;
-      return error;
-    }
-    models.push_back(std::move(*model));
+    Result<LoadedScenarioModel> read = load_scenario_model(wanted, how);
+    if (!read) return read.error();
+    for (const std::string& warning : read->warnings) warn(wanted.path, warning);
+    if (!wanted.mass_kg && read->mass_kg > 0.0) wanted.mass_kg = read->mass_kg;
+    models.push_back(std::move(read->model));
     progress.update(models.size());
   }
   return models;

@@ -1,7 +1,7 @@
 // Ranks by a harm function of one's own: what the library finds out about each crash goes in, the
 // order comes out.
 #include <crashrank/crashrank.hpp>
-#include <crashrank/mesh/import.hpp>
+#include <crashrank/rank/scenario_models.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -41,25 +41,17 @@ static double my_harm(const Scenario& scenario, const CandidateResult& candidate
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const Result<Scenario> scenario = load_scenario_file(argv[1]);
+  Result<Scenario> scenario = load_scenario_file(argv[1]);
   if (!scenario) return fail(scenario.error());
-  std::vector<Model> models;
-  for (const ScenarioModel& wanted : scenario->models) {
-    ImportOptions options;
-    options.transform = wanted.transform;
-    Result<ImportedMesh> imported = import_mesh(wanted.path, options);
-    if (!imported) return fail(imported.error());
-    Result<Model> model = make_model(std::move(imported->mesh));
-    if (!model) return fail(model.error());
-    models.push_back(std::move(*model));
-  }
+  const Result<std::vector<Model>> models = load_scenario_models(*scenario);
+  if (!models) return fail(models.error());
 
   // The library's harm, everybody counting alike but for an ego that puts itself last.
   RankOptions options;
   options.measure = Measure::harm;
   options.harm = scenario->harm;
   options.harm->weights.ego_occupant = 0.5;
-  const Result<RankResult> ranked = rank(*scenario, models, options);
+  const Result<RankResult> ranked = rank(*scenario, *models, options);
   if (!ranked) return fail(ranked.error());
 
   // And one's own, over the same simulated crashes. The sort is stable: what is equal stays in the

@@ -2,7 +2,7 @@
 // world moves on, the candidates are made anew, and the ranking ends at its deadline with what it
 // knows.
 #include <crashrank/crashrank.hpp>
-#include <crashrank/mesh/import.hpp>
+#include <crashrank/rank/scenario_models.hpp>
 
 #include <chrono>
 #include <cstdio>
@@ -16,34 +16,12 @@ static int fail(const Error& error) {
   return 3;
 }
 
-static Result<std::vector<Model>> load(Scenario& scenario) {
-  std::vector<Model> models;
-  for (ScenarioModel& wanted : scenario.models) {
-    // Made by `crashrank compile`, in its body's frame: nothing is parsed, turned or built.
-    if (is_model_file(wanted.path)) {
-      Result<LoadedModel> loaded = load_model(wanted.path);
-      if (!loaded) return loaded.error();
-      const double mass_kg = loaded->stored.mass.mass_kg;
-      if (!wanted.mass_kg && mass_kg > 0.0) wanted.mass_kg = mass_kg;
-      models.push_back(std::move(loaded->stored.model));
-      continue;
-    }
-    ImportOptions options;
-    options.transform = wanted.transform;
-    Result<ImportedMesh> imported = import_mesh(wanted.path, options);
-    if (!imported) return imported.error();
-    Result<Model> model = make_model(std::move(imported->mesh));
-    if (!model) return model.error();
-    models.push_back(std::move(*model));
-  }
-  return models;
-}
-
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   Result<Scenario> scenario = load_scenario_file(argv[1]);
   if (!scenario) return fail(scenario.error());
-  const Result<std::vector<Model>> models = load(*scenario);
+  // Model files, made by `crashrank compile`, load at once: nothing is parsed, turned or built.
+  const Result<std::vector<Model>> models = load_scenario_models(*scenario);
   if (!models) return fail(models.error());
 
   RankerOptions options;

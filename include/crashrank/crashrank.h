@@ -93,8 +93,9 @@ CRASHRANK_API crashrank_status crashrank_models_add(crashrank_models* models,
                                                     size_t triangle_count,
                                                     const crashrank_part* parts, size_t part_count,
                                                     crashrank_error* error);
-/// Adds a model file, as `crashrank compile` writes it: checked whole, and ready in about a
-/// millisecond for 100,000 triangles. Errors: not_found, bad_input, limit_exceeded.
+/// Adds a model file, as `crashrank compile` writes it: checked whole, and ready in less than ten
+/// milliseconds for 100,000 triangles. The mass that it tells counts for the shape of this index
+/// where the scenario gives none. Errors: not_found, bad_input, limit_exceeded.
 CRASHRANK_API crashrank_status crashrank_models_load(crashrank_models* models, const char* file,
                                                      crashrank_error* error);
 /// Number of models, 0 for NULL.
@@ -345,7 +346,7 @@ typedef struct crashrank_answer {
 
 /// Ranks within a budget; NULL: without end. Allocates nothing, and blocks for its own workers
 /// alone (crashrank/rank/ranker.hpp names the measures whose last stage allocates). One thread at
-/// a time for each ranker. Errors: usage.
+/// a time for each ranker. Errors: usage; bad_input for a situation that cannot be computed with.
 CRASHRANK_API crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker,
                                                      const crashrank_budget* budget,
                                                      crashrank_answer* answer,
@@ -364,7 +365,8 @@ CRASHRANK_API const char* crashrank_ranker_candidate_name(const crashrank_ranker
 CRASHRANK_API crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
                                                        crashrank_error* error);
 /// Adds the models of all shapes of a loaded scenario, in their order, read as the scenario says;
-/// none where one fails. Errors as above; usage for a shape without a path.
+/// none where one fails; model files tell masses as crashrank_models_load says. Errors as above;
+/// usage for a shape without a path.
 CRASHRANK_API crashrank_status crashrank_models_import_scenario(crashrank_models* models,
                                                                 const crashrank_scenario* scenario,
                                                                 crashrank_error* error);

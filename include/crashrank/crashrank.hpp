@@ -1,7 +1,8 @@
 #pragma once
 
 /// Everything that the targets crashrank::core and crashrank::crashrank offer. Mesh files are read
-/// by crashrank::import, whose header is crashrank/mesh/import.hpp.
+/// by crashrank::import, whose headers are crashrank/mesh/import.hpp and
+/// crashrank/rank/scenario_models.hpp.
 
 #include "crashrank/base/frames.hpp"
 #include "crashrank/base/library_version.hpp"

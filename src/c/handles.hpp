@@ -16,13 +16,22 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 // What the C interface's names stand for. Both libraries include this: it is compiled into each.
 
 struct crashrank_models {
   std::vector<crashrank::Model> list;
+  std::vector<double> mass_kg;  ///< by model, as its file tells; 0: it does not
+
+  void add(crashrank::Model model, double told_kg = 0.0) {
+    mass_kg.reserve(list.size() + 1);
+    list.push_back(std::move(model));
+    mass_kg.push_back(told_kg);
+  }
 };
 
 struct crashrank_query {
@@ -99,6 +108,16 @@ crashrank_status guarded(crashrank_error* error, const Function& function) noexc
   } catch (...) {
     return refuse(CRASHRANK_INTERNAL, "an unknown failure; report this as a defect", error);
   }
+}
+
+/// The scenario, with the masses that model files tell for shapes to which it gives none.
+inline Scenario with_masses(const crashrank_scenario& scenario, const crashrank_models& models) {
+  Scenario told = scenario.scenario;
+  for (std::size_t i = 0; i < std::min(told.models.size(), models.mass_kg.size()); ++i) {
+    std::optional<double>& mass_kg = told.models[i].mass_kg;
+    if (!mass_kg && models.mass_kg[i] > 0.0) mass_kg = models.mass_kg[i];
+  }
+  return told;
 }
 
 /// A pose from its 16 numbers. Errors: bad_input.

@@ -1,8 +1,8 @@
 #include "crashrank/mesh/import.hpp"
 #include "c/handles.hpp"
+#include "crashrank/rank/scenario_models.hpp"
 #include "crashrank/tree/model_file.hpp"
 
-#include <iterator>
 #include <utility>
 
 namespace {
@@ -12,37 +12,18 @@ using c::guarded;
 using c::refuse;
 using c::refuse_null;
 
-Result<Model> import_model(const std::string& path, const ImportTransform& transform) {
-  if (is_model_file(path)) {
-    const ImportTransform none;
-    if (transform.scale != none.scale || transform.up != none.up ||
-        transform.forward != none.forward || transform.origin_m != none.origin_m) {
-      return Error{ErrorCode::bad_input,
-                   path,
-                   {},
-                   "a model file has its frame already",
-                   "leave out scale, up, forward and origin: they are for crashrank compile"};
-    }
-    Result<LoadedModel> loaded = load_model(path);
-    if (!loaded) return loaded.error();
-    return std::move(loaded->stored.model);
-  }
-  ImportOptions options;
-  options.transform = transform;
-  Result<ImportedMesh> imported = import_mesh(path, options);
-  if (!imported) return imported.error();
-  return make_model(std::move(imported->mesh));
-}
-
 }  // namespace
 
 crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
                                          crashrank_error* error) {
   if (models == nullptr || file == nullptr) return refuse_null(error);
   return guarded(error, [&]() -> crashrank_status {
-    Result<Model> model = import_model(file, {});
+    if (is_model_file(file)) return crashrank_models_load(models, file, error);
+    Result<ImportedMesh> imported = import_mesh(file);
+    if (!imported) return refuse(imported.error(), error);
+    Result<Model> model = make_model(std::move(imported->mesh));
     if (!model) return refuse(model.error(), error);
-    models->list.push_back(std::move(*model));
+    models->add(std::move(*model));
     return CRASHRANK_OK;
   });
 }
@@ -52,17 +33,15 @@ crashrank_status crashrank_models_import_scenario(crashrank_models* models,
                                                   crashrank_error* error) {
   if (models == nullptr || scenario == nullptr) return refuse_null(error);
   return guarded(error, [&]() -> crashrank_status {
-    std::vector<Model> made;
+    std::vector<LoadedScenarioModel> made;
     for (const ScenarioModel& wanted : scenario->scenario.models) {
-      if (wanted.path.empty()) {
-        return refuse(CRASHRANK_USAGE, "a shape of the scenario names no mesh file", error);
-      }
-      Result<Model> model = import_model(wanted.path, wanted.transform);
-      if (!model) return refuse(model.error(), error);
-      made.push_back(std::move(*model));
+      Result<LoadedScenarioModel> read = load_scenario_model(wanted);
+      if (!read) return refuse(read.error(), error);
+      made.push_back(std::move(*read));
     }
-    models->list.insert(models->list.end(), std::make_move_iterator(made.begin()),
-                        std::make_move_iterator(made.end()));
+    models->list.reserve(models->list.size() + made.size());
+    models->mass_kg.reserve(models->list.size() + made.size());
+    for (LoadedScenarioModel& read : made) models->add(std::move(read.model), read.mass_kg);
     return CRASHRANK_OK;
   });
 }

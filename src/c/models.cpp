@@ -97,7 +97,7 @@ crashrank_status crashrank_models_add(crashrank_models* models, const float* ver
     }
     Result<Model> model = make_model(std::move(mesh));
     if (!model) return refuse(model.error(), error);
-    models->list.push_back(std::move(*model));
+    models->add(std::move(*model));
     return CRASHRANK_OK;
   });
 }
@@ -108,7 +108,7 @@ crashrank_status crashrank_models_load(crashrank_models* models, const char* fil
   return guarded(error, [&]() -> crashrank_status {
     Result<LoadedModel> loaded = load_model(file);
     if (!loaded) return refuse(loaded.error(), error);
-    models->list.push_back(std::move(loaded->stored.model));
+    models->add(std::move(loaded->stored.model), loaded->stored.mass.mass_kg);
     return CRASHRANK_OK;
   });
 }

@@ -1,5 +1,6 @@
 #include "crashrank/rank/ranker.hpp"
 #include "c/handles.hpp"
+#include "rank/scenario_check.hpp"
 
 #include <limits>
 #include <memory>
@@ -24,6 +25,7 @@ Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
   if (scenario.ego.model >= ranker.ego_lengths_m.size()) {
     return make_error(ErrorCode::usage, "the ego's model is not there");
   }
+  if (Status sound = detail::check_scenario(scenario); !sound) return sound;
   Result<std::vector<Candidate>> candidates =
       make_candidates(scenario, ranker.ego_lengths_m[scenario.ego.model]);
   if (!candidates) return candidates.error();
@@ -33,9 +35,9 @@ Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
     if (!motion) return motion.error();
     motions.push_back(std::move(*motion));
   }
+  ranker.told.reserve(candidates->size());
   if (Status moved = ranker.ranker.move_actors(scenario.ego.pose, motions); !moved) return moved;
   ranker.candidates = std::move(*candidates);
-  ranker.told.reserve(ranker.candidates.size());
   return Success{};
 }
 
@@ -58,7 +60,7 @@ crashrank_status crashrank_ranker_create(const crashrank_scenario* scenario,
       if (options->most_candidates > 0) how.limits.candidates = options->most_candidates;
       if (options->most_actors > 0) how.limits.actors = options->most_actors;
     }
-    Result<Ranker> made = Ranker::prepare(scenario->scenario, models->list, how);
+    Result<Ranker> made = Ranker::prepare(c::with_masses(*scenario, *models), models->list, how);
     if (!made) return refuse(made.error(), error);
     auto handle =
         std::make_unique<crashrank_ranker>(crashrank_ranker{std::move(*made), {}, {}, {}});

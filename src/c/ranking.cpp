@@ -34,12 +34,13 @@ crashrank_status crashrank_rank(const crashrank_scenario* scenario, const crashr
   return guarded(error, [&]() -> crashrank_status {
     const Result<RankOptions> how = to_options(options);
     if (!how) return refuse(how.error(), error);
-    Result<RankResult> result = rank(scenario->scenario, models->list, *how);
+    const Scenario told = c::with_masses(*scenario, *models);
+    Result<RankResult> result = rank(told, models->list, *how);
     if (!result) return refuse(result.error(), error);
     auto made = std::make_unique<crashrank_ranking>();
-    for (const ScenarioActor& actor : scenario->scenario.actors) made->actors.push_back(actor.name);
+    for (const ScenarioActor& actor : told.actors) made->actors.push_back(actor.name);
     if (options != nullptr && options->json != 0) {
-      made->json = ranking_json(scenario->scenario, models->list, *result);
+      made->json = ranking_json(told, models->list, *result);
     }
     made->result = std::move(*result);
     *ranking = made.release();

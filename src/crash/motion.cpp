@@ -11,6 +11,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// Of poses that follow each other, m/s and rad/s: what is faster has its times wrong, and beyond
+/// all measure its velocity would be infinite.
+constexpr double fastest_timed = 1e4;
+
 double sinc(double u) { return u == 0.0 ? 1.0 : std::sin(u) / u; }
 
 // (sin u - u cos u) / u^2, whose numerator cancels near 0.
@@ -82,6 +86,7 @@ Motion::Profile Motion::make_profile(double speed, double acceleration, double t
     p.end_speed = std::copysign(top_speed, acceleration);
     p.end = (p.end_speed - speed) / acceleration;
   }
+  if (std::isnan(top_speed)) p.end_speed = top_speed;  // for `is_finite` to see
   return p;
 }
 
@@ -168,6 +173,11 @@ Status Motion::become_timed(View<const TimedPose> poses) {
       const Eigen::AngleAxisd turn(
           Eigen::Matrix3d(detail::multiply(to.rotation, from.rotation.transpose())));
       segments[i].velocity.angular_radps = turn.axis() * (turn.angle() / seconds);
+    }
+    const Velocity& v = segments[i].velocity;
+    if (!(v.linear_mps.norm() <= fastest_timed && v.angular_radps.norm() <= fastest_timed)) {
+      return refuse(i + 1, "it is too far from the one before for the time between: over 10 km/s",
+                    "mend its time");
     }
   }
   return Success{};

@@ -15,6 +15,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
   std::vector<RankedCandidate> ranking;
   Race race;
   std::array<std::uint32_t, StepRounds::most_steps> chosen{};
+  std::vector<Motion> coming;  ///< of the actors, while they are copied
 
   /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
   /// of work or time.
@@ -182,6 +184,49 @@ Status within(const RankerLimits& limits, const Scenario& scenario, View<const M
   return Success{};
 }
 
+/// What scenarios within their limits can come to. Beyond it products overflow, and a body that is
+/// nowhere meets nobody.
+constexpr double fastest_mps =
+    1.000001 *
+    (scenario_limits::speed_mps + scenario_limits::acceleration_mps2 * scenario_limits::horizon_s);
+constexpr double fastest_turn_of_actors = 1.000001 * scenario_limits::yaw_rate_dps * 0.0174532925;
+/// The tangent of the largest steering angle over the shortest wheelbase, at that speed.
+constexpr double fastest_turn_of_candidates =
+    5.672 / scenario_limits::min_wheelbase_m * fastest_mps;
+static_assert(scenario_limits::steering_deg == 80.0);
+
+bool is_computable(const Pose& pose) {
+  return rigidity_error(pose) <= max_rigidity_error &&
+         pose.translation.cwiseAbs().maxCoeff() <= scenario_limits::position_m;
+}
+
+/// Poses in time were looked at as they became a motion.
+bool is_computable(const Motion& motion, double fastest_turn) {
+  if (!motion.is_finite() || !is_computable(motion.pose_at(0.0))) return false;
+  if (motion.holds_poses()) return true;
+  const MotionBound bound = motion.bound(0.0, scenario_limits::horizon_s);
+  return bound.speed_mps <= fastest_mps && bound.angular_radps <= fastest_turn;
+}
+
+Status check_call(View<const Candidate> candidates, const RankBudget& budget, std::size_t most) {
+  if (candidates.size() > most) {
+    return make_error(ErrorCode::usage, "more candidates than the Ranker's limit",
+                      "raise RankerLimits::candidates");
+  }
+  if (std::isnan(budget.deadline_s)) {
+    return make_error(ErrorCode::usage, "the deadline is not a number",
+                      "give seconds, infinity for none");
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (is_computable(candidates[i].motion, fastest_turn_of_candidates)) continue;
+    return make_error(
+        ErrorCode::bad_input,
+        "the motion of candidate " + std::to_string(i) + " is not finite, too far off or too fast",
+        "check what it was made from, and see scenario_limits");
+  }
+  return Success{};
+}
+
 }  // namespace
 
 Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> models,
@@ -218,6 +263,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->ranking.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
+    state->coming.resize(state->scene.actors.size());
     state->prepare_s = seconds_between(start, Watch::Clock::now());
     return Ranker(std::move(state));
   });
@@ -225,46 +271,42 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
 
 Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noexcept {
   state_->rounds.await();
-  detail::Scene& scene = state_->scene;
-  if (actors.size() != scene.actors.size()) {
-    return make_error(ErrorCode::usage, "there is not one motion for each actor",
-                      "give them in the scenario's order");
-  }
-  const bool finite = ego_start.rotation.allFinite() && ego_start.translation.allFinite() &&
-                      std::all_of(actors.begin(), actors.end(),
-                                  [](const Motion& motion) { return motion.is_finite(); });
-  if (!finite) {
-    return make_error(ErrorCode::bad_input, "a pose or motion is not finite",
-                      "leave out what perception does not know; NaN is nowhere");
-  }
-  for (std::size_t i = 0; i < actors.size(); ++i) scene.actors[i].motion = actors[i];
-  scene.ego_start = ego_start;
-  detail::place_actors(scene, state_->rounds.own().evaluate.impact);
-  state_->bounds.update(scene);
-  return Success{};
+  return detail::guarded([&]() -> Status {
+    detail::Scene& scene = state_->scene;
+    std::vector<Motion>& coming = state_->coming;
+    if (actors.size() != scene.actors.size()) {
+      return make_error(ErrorCode::usage, "there is not one motion for each actor",
+                        "give them in the scenario's order");
+    }
+    if (!is_computable(ego_start)) {
+      return make_error(ErrorCode::bad_input, "the ego's pose is not finite, rigid or near",
+                        "see scenario_limits");
+    }
+    for (std::size_t i = 0; i < actors.size(); ++i) {
+      if (!is_computable(actors[i], fastest_turn_of_actors)) {
+        return make_error(
+            ErrorCode::bad_input,
+            "the motion of actor " + std::to_string(i) + " is not finite, too far off or too fast",
+            "leave out what perception does not know, and see scenario_limits");
+      }
+      coming[i] = actors[i];
+    }
+    // From here on nothing can fail.
+    for (std::size_t i = 0; i < actors.size(); ++i) std::swap(scene.actors[i].motion, coming[i]);
+    scene.ego_start = ego_start;
+    detail::place_actors(scene, state_->rounds.own().evaluate.impact);
+    state_->bounds.update(scene);
+    return Success{};
+  });
 }
 
 RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& budget) noexcept {
   const auto start = Watch::Clock::now();
   State& s = *state_;
   RankerAnswer answer;
-  if (candidates.size() > s.limits.candidates) {
-    answer.status = make_error(ErrorCode::usage, "more candidates than the Ranker's limit",
-                               "raise RankerLimits::candidates");
-    return answer;
-  }
-  if (std::isnan(budget.deadline_s)) {
-    answer.status = make_error(ErrorCode::usage, "the deadline is not a number",
-                               "give seconds, infinity for none");
-    return answer;
-  }
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (candidates[i].motion.is_finite()) continue;
-    answer.status = make_error(
-        ErrorCode::bad_input, "candidate " + std::to_string(i) + " has a motion that is not finite",
-        "check what it was made from");
-    return answer;
-  }
+  answer.status =
+      detail::guarded([&] { return check_call(candidates, budget, s.limits.candidates); });
+  if (!answer.status) return answer;
   // What is left to do after the last look at the clock: an order and a hash.
   const auto count = static_cast<double>(candidates.size());
   const double closing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);

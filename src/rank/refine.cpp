@@ -135,7 +135,7 @@ bool search(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWo
 bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work,
            std::uint64_t& pulse_work) {
   const CrashScore scored = score_crash(q.scene, state.ego, state.pending,
-                                        q.give_up_above - state.sum, q.watch, scratch.pulse);
+                                        {state.sum, q.give_up_above}, q.watch, scratch.pulse);
   pulse_work += scored.work;
   narrow(state, state.sum + scored.term.least, state.sum + scored.term.most + state.after);
   if (scored.end == CrashScore::End::given_up) return true;

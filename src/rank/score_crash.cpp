@@ -48,7 +48,7 @@ bool scored_by_pulses(const Scene& scene) {
 }
 
 CrashScore score_crash(const Scene& scene, const EgoAtContact& ego, const Contact& contact,
-                       double give_up_above, const Watch& watch, PulseMemory& memory) {
+                       const GiveUp& give_up, const Watch& watch, PulseMemory& memory) {
   constexpr int steps_at_a_time = 2;
   CrashScore score;
   const CrashSetup crash = set_up_crash(scene, ego, contact);
@@ -82,7 +82,8 @@ CrashScore score_crash(const Scene& scene, const EgoAtContact& ego, const Contac
       const TermBounds now = bounds_in_pulse(scene, crash, contact, run);
       score.term.least = std::max(score.term.least, now.least);
       score.term.most = std::min(score.term.most, now.most);
-      const bool above = score.term.least > give_up_above;
+      // Rounded as the interval will be, so that whoever is given up is beaten by it, too.
+      const bool above = give_up.before + score.term.least > give_up.above;
       if (!late && !above) continue;
       score.end = above ? CrashScore::End::given_up : CrashScore::End::stopped;
       score.work += run.work();

@@ -5,12 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -348,6 +351,125 @@ TEST(CApi, AModelFileLoadsAsTheModelItWasSavedFrom) {
   EXPECT_EQ(crashrank_models_triangles(models.get(), 1), model->mesh.size());
   EXPECT_EQ(crashrank_models_load(models.get(), "no/such/model.crm", &error), CRASHRANK_NOT_FOUND);
   std::remove(file.c_str());
+}
+
+/// The ego, 10 m/s, before a wall that stands still; scores by delta-v, which hangs on its mass.
+double delta_v_of(double told_kg, double stored_kg) {
+  crashrank::TriangleMesh box;
+  for (int i = 0; i < 8; ++i) {
+    box.vertices.emplace_back((i & 1) != 0 ? 2.0F : -2.0F, (i & 2) != 0 ? 0.9F : -0.9F,
+                              (i & 4) != 0 ? 1.4F : 0.2F);
+  }
+  for (const std::array<std::uint32_t, 4> q : std::vector<std::array<std::uint32_t, 4>>{
+           {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+    box.triangles.push_back({q[0], q[1], q[2]});
+    box.triangles.push_back({q[0], q[2], q[3]});
+  }
+  crashrank::StoredModel stored;
+  stored.model = *crashrank::make_model(box);
+  stored.mass = crashrank::shell_properties(box);
+  stored.mass.mass_kg = stored_kg;
+  const std::string file = testing::TempDir() + "/c_api_mass.crm";
+  EXPECT_TRUE(crashrank::save_model(stored, file, true).ok());
+
+  crashrank_error error{};
+  crashrank_scenario* made = nullptr;
+  EXPECT_EQ(crashrank_scenario_create("mass", &made, &error), CRASHRANK_OK);
+  const Scenario scenario(made);
+  crashrank_scenario_add_model(scenario.get(), "ego", "car", told_kg, &error);
+  crashrank_scenario_add_model(scenario.get(), "other", "car", 1500.0, &error);
+  crashrank_ego ego{};
+  std::memcpy(ego.pose, identity, sizeof identity);
+  ego.speed_mps = 10.0;
+  EXPECT_EQ(crashrank_scenario_set_ego(scenario.get(), &ego, &error), CRASHRANK_OK);
+  crashrank_actor actor{};
+  actor.name = "stands";
+  actor.model = 1;
+  std::memcpy(actor.pose, identity, sizeof identity);
+  actor.pose[3] = 8.0;
+  EXPECT_EQ(crashrank_scenario_add_actor(scenario.get(), &actor, &error), CRASHRANK_OK);
+  crashrank_candidate straight{};
+  straight.name = "straight";
+  EXPECT_EQ(crashrank_scenario_add_candidate(scenario.get(), &straight, &error), CRASHRANK_OK);
+  EXPECT_EQ(crashrank_scenario_set_grid(scenario.get(), 0, 0, &error), CRASHRANK_OK);
+
+  const Models models = make_models();
+  EXPECT_EQ(crashrank_models_load(models.get(), file.c_str(), &error), CRASHRANK_OK);
+  EXPECT_EQ(crashrank_models_load(models.get(), file.c_str(), &error), CRASHRANK_OK);
+  std::remove(file.c_str());
+  crashrank_rank_options options{};
+  options.measure = "delta-v";
+  crashrank_ranking* answer = nullptr;
+  EXPECT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &answer, &error), CRASHRANK_OK)
+      << error.message;
+  const Ranking ranking(answer);
+  crashrank_choice choice{};
+  EXPECT_EQ(crashrank_ranking_get(ranking.get(), 0, &choice, &error), CRASHRANK_OK);
+
+  crashrank_ranker_options how{};
+  how.measure = "delta-v";
+  crashrank_ranker* prepared = nullptr;
+  EXPECT_EQ(crashrank_ranker_create(scenario.get(), models.get(), &how, &prepared, &error),
+            CRASHRANK_OK);
+  const Ranker ranker(prepared);
+  crashrank_answer best{};
+  EXPECT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &best, &error), CRASHRANK_OK);
+  EXPECT_EQ(best.size, 1U);
+  EXPECT_EQ(best.ranking[0].lowest_score, choice.score);
+  EXPECT_EQ(best.ranking[0].highest_score, choice.score);
+  return choice.score;
+}
+
+TEST(CApi, TheMassThatAModelFileTellsCountsWhereTheScenarioGivesNone) {
+  const double heavy = delta_v_of(0.0, 4000.0);
+  EXPECT_EQ(heavy, delta_v_of(4000.0, 0.0));
+  EXPECT_EQ(heavy, delta_v_of(4000.0, 900.0));
+  EXPECT_GT(delta_v_of(0.0, 900.0), heavy);
+}
+
+TEST(CApi, AnUpdateRefusesWhatCreateRefuses) {
+  crashrank_error error{};
+  const Models models = make_models();
+  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  const auto situation = [&](double speed, double yaw_rate) {
+    crashrank_scenario* made = nullptr;
+    EXPECT_EQ(crashrank_scenario_create("limits", &made, &error), CRASHRANK_OK);
+    crashrank_scenario_add_model(made, "car", "car", 1500.0, &error);
+    crashrank_ego ego{};
+    std::memcpy(ego.pose, identity, sizeof identity);
+    ego.speed_mps = speed;
+    crashrank_scenario_set_ego(made, &ego, &error);
+    crashrank_actor actor{};
+    actor.name = "other";
+    std::memcpy(actor.pose, identity, sizeof identity);
+    actor.pose[3] = 30.0;
+    actor.yaw_rate_radps = yaw_rate;
+    crashrank_scenario_add_actor(made, &actor, &error);
+    crashrank_candidate straight{};
+    straight.name = "straight";
+    crashrank_scenario_add_candidate(made, &straight, &error);
+    return Scenario(made);
+  };
+  const Scenario good = situation(10.0, 0.0);
+  crashrank_ranker* made = nullptr;
+  ASSERT_EQ(crashrank_ranker_create(good.get(), models.get(), nullptr, &made, &error), CRASHRANK_OK)
+      << error.message;
+  const Ranker ranker(made);
+  crashrank_answer answer{};
+  ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &answer, &error), CRASHRANK_OK);
+  const uint64_t hash = answer.hash;
+  for (const auto& [speed, yaw_rate] :
+       {std::pair(NAN, 0.0F), std::pair(1e30F, 0.0F), std::pair(10.0F, 20.0F)}) {
+    const Scenario bad = situation(static_cast<double>(speed), static_cast<double>(yaw_rate));
+    crashrank_ranker* none = nullptr;
+    EXPECT_EQ(crashrank_ranker_create(bad.get(), models.get(), nullptr, &none, &error),
+              CRASHRANK_BAD_INPUT);
+    EXPECT_EQ(crashrank_ranker_update(ranker.get(), bad.get(), &error), CRASHRANK_BAD_INPUT);
+    EXPECT_NE(std::strstr(error.message, speed == 10.0F ? "yaw_rate" : "speed"), nullptr)
+        << error.message;
+    ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &answer, &error), CRASHRANK_OK);
+    EXPECT_EQ(answer.hash, hash);
+  }
 }
 
 }  // namespace

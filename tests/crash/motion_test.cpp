@@ -135,6 +135,34 @@ TEST(Motion, TimedPosesOutOfOrderAreNamed) {
   EXPECT_FALSE(Motion::timed(View<const TimedPose>()).ok());
 }
 
+TEST(Motion, TimedPosesThatNothingCouldFollowAreRefused) {
+  for (const double seconds : {1e-310, 1e-160, 1e-12, 9e-4}) {
+    const Result<Motion> motion =
+        Motion::timed(std::vector<TimedPose>{{0.0, pose_from_angles({22, 0, 0}, 0, 0, 0)},
+                                             {seconds, pose_from_angles({12, 0, 0}, 0, 0, 0)}});
+    ASSERT_FALSE(motion.ok()) << seconds;
+    EXPECT_EQ(motion.error().code, ErrorCode::bad_input);
+    EXPECT_EQ(motion.error().place, "pose 1");
+    EXPECT_FALSE(Motion::timed(std::vector<TimedPose>{{0.0, {}},
+                                                      {1e-5, pose_from_angles({0, 0, 0}, 1, 0, 0)}})
+                     .ok());
+  }
+  EXPECT_TRUE(Motion::timed(std::vector<TimedPose>{{0.0, pose_from_angles({22, 0, 0}, 0, 0, 0)},
+                                                   {1e-2, pose_from_angles({12, 0, 0}, 0, 0, 0)}})
+                  .ok());
+}
+
+TEST(Motion, ATopSpeedThatIsNoNumberIsSeen) {
+  for (const double acceleration : {0.0, 2.0, -2.0}) {
+    TurnMotion turn;
+    turn.speed_mps = 5.0;
+    turn.acceleration_mps2 = acceleration;
+    EXPECT_TRUE(Motion(turn).is_finite());
+    turn.top_speed_mps = NAN;
+    EXPECT_FALSE(Motion(turn).is_finite()) << acceleration;
+  }
+}
+
 TEST(Motion, AStartThatIsNotQuiteARotationIsMadeOne) {
   Pose skewed = pose_from_angles({1, 2, 3}, 0.4, 0.1, 0.2);
   const Pose exact = skewed;

@@ -219,5 +219,49 @@ TEST(AllocationFailure, PreparingARanker) {
   }
 }
 
+TEST(AllocationFailure, MovingTheActorsOfARankerAndRefusingACall) {
+  const scenes::Scene scene = a_wall_ahead();
+  RankerOptions options;
+  options.rank.measure = Measure::harm;
+  Result<Ranker> prepared = Ranker::prepare(scene.scenario, scene.models, options);
+  ASSERT_TRUE(prepared.ok());
+  Ranker& ranker = *prepared;
+  const std::vector<Candidate> candidates = *make_candidates(scene.scenario, 4.0);
+  const std::vector<Motion> stands{*make_motion(scene.scenario.actors[0])};
+  Pose away = scene.scenario.actors[0].pose;
+  away.translation.x() += 40.0;
+  const auto timed = [&](double after_s) {
+    return std::vector<Motion>{*Motion::timed(
+        std::vector<TimedPose>{{0.0, scene.scenario.actors[0].pose}, {after_s, away}})};
+  };
+  const std::vector<Motion> soon = timed(1.0);
+  const Pose start;
+  ASSERT_TRUE(ranker.move_actors(start, stands).ok());
+  const std::uint64_t before = ranker.rank(candidates).hash;
+  for (long n = 0;; ++n) {
+    until_failure = n;
+    const Status moved = ranker.move_actors(start, soon);
+    if (until_failure.exchange(-1) >= 0) {
+      ASSERT_GT(n, 0);  // something was allocated, and its failing told of
+      EXPECT_TRUE(moved.ok());
+      break;
+    }
+    ASSERT_FALSE(moved.ok());
+    EXPECT_EQ(moved.error().code, ErrorCode::out_of_memory);
+    EXPECT_EQ(ranker.rank(candidates).hash, before) << "allocation " << n;
+  }
+  std::vector<Candidate> wrong = candidates;
+  FreeMotion nowhere;
+  nowhere.velocity.linear_mps.x() = NAN;
+  wrong.front().motion = nowhere;
+  for (long n = 0; n < 3; ++n) {
+    until_failure = n;
+    const RankerAnswer answer = ranker.rank(wrong);
+    const bool failed = until_failure.exchange(-1) < 0;
+    ASSERT_FALSE(answer.status.ok());
+    EXPECT_EQ(answer.status.error().code, failed ? ErrorCode::out_of_memory : ErrorCode::bad_input);
+  }
+}
+
 }  // namespace
 }  // namespace crashrank

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -340,6 +341,48 @@ TEST(Ranker, WhatIsNotFiniteIsRefusedAndNeverTakenForNothingThere) {
   EXPECT_FALSE(ranker.rank(c.candidates, never).status.ok());
   for (const Motion& motion : motions) EXPECT_TRUE(motion.is_finite());
   EXPECT_EQ(ranker.rank(c.candidates).hash, whole);  // nothing has changed
+}
+
+TEST(Ranker, WhatIsBeyondTheLimitsOfScenariosIsRefused) {
+  const Case c(303, Measure::harm);
+  Ranker ranker = c.ranker(Measure::harm, 2);
+  const std::uint64_t whole = ranker.rank(c.candidates).hash;
+  std::vector<Motion> motions;
+  for (const ScenarioActor& actor : c.scene.scenario.actors) motions.push_back(*make_motion(actor));
+  const Pose& start = c.scene.scenario.ego.pose;
+  TurnMotion spins;
+  spins.yaw_rate_radps = 1.01 * scenario_limits::yaw_rate_dps * std::numbers::pi / 180.0;
+  TurnMotion races;
+  races.speed_mps = 1e308;
+  TurnMotion gains;
+  gains.acceleration_mps2 = 1e308;
+  FreeMotion flies;
+  flies.velocity.linear_mps.z() = 1e5;
+  TurnMotion far;
+  far.start.translation.y() = 1.01 * scenario_limits::position_m;
+  const Motion teleported =
+      *Motion::timed(std::vector<TimedPose>{{0.0, far.start}, {1.0, far.start}});
+  for (const Motion& motion :
+       {Motion(spins), Motion(races), Motion(gains), Motion(flies), Motion(far), teleported}) {
+    EXPECT_TRUE(motion.is_finite());
+    std::vector<Motion> others = motions;
+    others.back() = motion;
+    const Status moved = ranker.move_actors(start, others);
+    ASSERT_FALSE(moved.ok());
+    EXPECT_EQ(moved.error().code, ErrorCode::bad_input);
+  }
+  for (const Motion& motion : {Motion(races), Motion(gains), Motion(flies), Motion(far)}) {
+    std::vector<Candidate> candidates = c.candidates;
+    candidates.back().motion = motion;
+    EXPECT_FALSE(ranker.rank(candidates).status.ok());
+  }
+  EXPECT_FALSE(ranker.move_actors(far.start, motions).ok());
+  spins.yaw_rate_radps /= 1.02;
+  std::vector<Motion> others = motions;
+  others.back() = spins;
+  EXPECT_TRUE(ranker.move_actors(start, others).ok());
+  EXPECT_TRUE(ranker.move_actors(start, motions).ok());
+  EXPECT_EQ(ranker.rank(c.candidates).hash, whole);
 }
 
 TEST(Ranker, LimitsAreKept) {

@@ -96,8 +96,8 @@ public:
 
   /// Poses at strictly increasing times, at least one. Between two of them the origin moves on a
   /// straight line and the body turns about one axis by the shorter way, both at constant speed;
-  /// before the first and after the last it rests. Errors: bad_input
-  /// naming the first pose that is out of order, not finite or not rigid.
+  /// before the first and after the last it rests. Errors: bad_input naming the first pose that is
+  /// out of order, not finite, not rigid, or over 1e4 m/s or rad/s away from the one before.
   static Result<Motion> timed(View<const TimedPose> poses);
 
   /// Becomes such a motion, in the memory that an earlier one was kept in: where it was a timed one

@@ -71,7 +71,7 @@ struct RankedCandidate {
 
 /// An answer, most promising first; it looks into the Ranker and stands until its next call.
 struct RankerAnswer {
-  Status status = Success{};  ///< usage where the call was refused; nothing is ranked then
+  Status status = Success{};            ///< why the call was refused; nothing is ranked then
   View<const RankedCandidate> ranking;  ///< every candidate once
   bool complete = false;                ///< every score is known
   bool proved = false;                  ///< no other candidate can still take the first place
@@ -120,12 +120,13 @@ public:
   /// The situation has changed: where the ego starts, and how each actor moves from now on, in the
   /// scenario's order. Begins by waiting for workers that an answer at its deadline left behind,
   /// then costs some µs an actor and allocates nothing but for timed motions. Errors, and nothing
-  /// changes: usage where their number is another, bad_input for what is not finite.
+  /// changes: usage where their number is another; bad_input for a pose or motion that is not
+  /// finite or beyond `scenario_limits` (a timed one: where it begins); out_of_memory.
   Status move_actors(const Pose& ego_start, View<const Motion> actors) noexcept;
 
   /// Candidates have to stay until the call returns. Errors (in the answer, which is empty then):
   /// usage where there are more than the limits allow or the deadline is NaN; bad_input for a
-  /// candidate whose motion is not finite.
+  /// candidate whose motion is not finite or beyond what `scenario_limits` can lead to.
   RankerAnswer rank(View<const Candidate> candidates, const RankBudget& budget = {}) noexcept;
 
   /// What `crashrank::rank` would have told of an answer, but for the samples of what is not known

@@ -13,39 +13,31 @@ namespace crashrank::importer {
 namespace {
 
 constexpr std::size_t window = 1U << 20U;
-constexpr std::size_t longest_line = 1U << 16U;  // what is longer is not looked at
+constexpr std::size_t longest_line = 1U << 16U;
 
-/// Calls `look(line, number)` for each line until it gives an error.
-template <class Look> std::optional<Error> first_fault(int descriptor, const Look& look) {
+/// Calls `look(line, number)` for each line until it answers false. False, too, where a line is too
+/// long to be looked at.
+template <class Look> bool each_line(int descriptor, const Look& look) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
   std::string rest;
   std::size_t number = 0;
-  bool skipping = false;
   for (std::size_t offset = 0;; offset += window) {
     const std::string bytes = read_at(descriptor, offset, window);
     const bool last = bytes.size() < window;
     rest += bytes;
-    std::size_t begin = 0;
+    std::size_t begin = offset == 0 && rest.compare(0, mark.size(), mark) == 0 ? mark.size() : 0;
     while (begin < rest.size()) {
       std::size_t end = rest.find('\n', begin);
       if (end == std::string::npos) {
         if (!last) break;
         end = rest.size();
       }
-      ++number;
-      if (!skipping) {
-        std::optional<Error> fault =
-            look(std::string_view(rest).substr(begin, end - begin), number);
-        if (fault) return fault;
-      }
-      skipping = false;
+      if (!look(std::string_view(rest).substr(begin, end - begin), ++number)) return false;
       begin = end + 1;
     }
-    if (last) return std::nullopt;
+    if (last) return true;
     rest.erase(0, begin);
-    if (rest.size() > longest_line) {
-      rest.clear();
-      skipping = true;
-    }
+    if (rest.size() > longest_line) return false;
   }
 }
 
@@ -61,7 +53,7 @@ std::string_view word(std::string_view& line) {
   return found;
 }
 
-/// Whether the word, or for `whole` what stands before its first slash, is a number.
+/// Whether the whole text is a number; one that no double or integer holds counts as one.
 template <class Number> bool is_number(std::string_view text, Number& value) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   const char* const end = text.data() + text.size();
@@ -80,52 +72,43 @@ Error at_line(std::size_t number, std::string reason) {
 
 std::optional<Error> find_obj_fault(int descriptor) {
   std::int64_t vertices = 0;
-  bool continued = false;  // lines that go on in the next one are left to the parser
-  const auto plain = [&](std::string_view line) {
-    const bool before = continued;
+  std::optional<Error> bad_vertex;
+  const bool plain = each_line(descriptor, [&](std::string_view line, std::size_t number) {
     while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
-    continued = !line.empty() && line.back() == '\\';
-    return !before && !continued;
-  };
-  std::optional<Error> fault =
-      first_fault(descriptor, [&](std::string_view line, std::size_t number) {
-        std::optional<Error> none;
-        std::string_view rest = line;
-        if (!plain(line) || word(rest) != "v") return none;
-        ++vertices;
-        for (int i = 0; i < 3; ++i) {
-          double value = 0.0;
-          const std::string_view text = word(rest);
-          if (is_number(text, value)) continue;
-          return std::optional<Error>(
-              at_line(number, text.empty() ? "a vertex has three numbers, this one fewer"
-                                           : detail::quoted(text, 40) + " is no number"));
-        }
-        return none;
-      });
-  if (fault) return fault;
+    if (!line.empty() && line.back() == '\\') return false;  // it goes on in the next one
+    if (word(line) != "v") return true;
+    ++vertices;
+    for (int i = 0; i < 3 && !bad_vertex; ++i) {
+      double value = 0.0;
+      const std::string_view text = word(line);
+      if (is_number(text, value)) continue;
+      bad_vertex = at_line(number, text.empty() ? "a vertex has three numbers, this one fewer"
+                                                : detail::quoted(text, 40) + " is no number");
+    }
+    return true;
+  });
+  if (!plain) return std::nullopt;
   std::int64_t defined = 0;
-  continued = false;
-  return first_fault(descriptor, [&](std::string_view line, std::size_t number) {
-    std::optional<Error> none;
-    std::string_view rest = line;
-    if (!plain(line)) return none;
-    const std::string_view kind = word(rest);
+  std::optional<Error> bad_face;
+  each_line(descriptor, [&](std::string_view line, std::size_t number) {
+    const std::string_view kind = word(line);
     if (kind == "v") ++defined;
-    if (kind != "f") return none;
-    for (std::string_view corner = word(rest); !corner.empty(); corner = word(rest)) {
+    if (kind != "f") return true;
+    for (std::string_view corner = word(line); !corner.empty(); corner = word(line)) {
       std::int64_t index = 0;
       const std::string_view name = corner.substr(0, corner.find('/'));
       if (!is_number(name, index)) {
-        return std::optional<Error>(at_line(number, detail::quoted(corner, 40) + " is no corner"));
+        bad_face = at_line(number, detail::quoted(corner, 40) + " is no corner");
+        return false;
       }
-      if (index >= 1 ? index <= vertices : index != 0 && -index <= defined) continue;
-      return std::optional<Error>(at_line(number, "vertex " + std::string(name) +
-                                                      " is out of range: there are " +
-                                                      std::to_string(vertices)));
+      if (index >= 1 ? index <= vertices : index != 0 && index >= -defined) continue;
+      bad_face = at_line(number, "vertex " + detail::quoted(name, 40) +
+                                     " is out of range: there are " + std::to_string(vertices));
+      return false;
     }
-    return none;
+    return true;
   });
+  return bad_face ? bad_face : bad_vertex;
 }
 
 }  // namespace crashrank::importer

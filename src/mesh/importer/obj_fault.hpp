@@ -6,10 +6,10 @@
 
 namespace crashrank::importer {
 
-/// The first line of an OBJ file whose corner has fewer than three numbers, or else whose face names
-/// a corner that the file does not have: its place and what is wrong there. For files that the
-/// parser refused, which names no line. Nothing where no such line is found. Reads the descriptor
-/// by position, twice at most, a window at a time.
+/// The first line of an OBJ file whose face names a corner that the file does not have, or else
+/// whose corner has fewer than three numbers: its place and what is wrong there. For files that the
+/// parser refused, which names no line. Nothing where no such line is found, or where lines go on
+/// in others or are very long. Reads the descriptor by position, twice, a window at a time.
 std::optional<Error> find_obj_fault(int descriptor);
 
 }  // namespace crashrank::importer

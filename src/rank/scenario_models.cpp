@@ -1,0 +1,87 @@
+#include "crashrank/rank/scenario_models.hpp"
+
+#include "crashrank/base/guarded.hpp"
+#include "crashrank/tree/model_file.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+namespace crashrank {
+namespace {
+
+bool changes_nothing(const ImportTransform& transform) {
+  const ImportTransform none;
+  return transform.scale == none.scale && transform.up == none.up &&
+         transform.forward == none.forward && transform.origin_m == none.origin_m;
+}
+
+Error of_model(Error error, const ScenarioModel& wanted) {
+  if (error.file.empty()) error.file = wanted.path;
+  error.reason += " (it is models." + wanted.name + ".mesh of the scenario)";
+  return error;
+}
+
+Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
+  if (!changes_nothing(wanted.transform)) {
+    return make_error(ErrorCode::bad_input, "a model file has its frame already",
+                      "leave out scale, up, forward and origin: they are for crashrank compile");
+  }
+  Result<LoadedModel> loaded = load_model(wanted.path);
+  if (!loaded) return loaded.error();
+  LoadedScenarioModel read;
+  read.model = std::move(loaded->stored.model);
+  read.mass_kg = loaded->stored.mass.mass_kg;
+  return read;
+}
+
+Result<LoadedScenarioModel> load_mesh(const ScenarioModel& wanted,
+                                      const ScenarioModelOptions& options) {
+  ImportOptions how = options.import;
+  how.transform = wanted.transform;
+  Result<ImportedMesh> imported = import_mesh(wanted.path, how);
+  if (!imported) return imported.error();
+  Result<Model> model = make_model(std::move(imported->mesh), options.build);
+  if (!model) return model.error();
+  LoadedScenarioModel read;
+  read.model = std::move(*model);
+  read.warnings = std::move(imported->warnings);
+  return read;
+}
+
+}  // namespace
+
+Result<LoadedScenarioModel> load_scenario_model(const ScenarioModel& wanted,
+                                                const ScenarioModelOptions& options) {
+  return detail::guarded([&]() -> Result<LoadedScenarioModel> {
+    if (wanted.path.empty()) {
+      return make_error(ErrorCode::usage, "model '" + wanted.name + "' names no mesh file",
+                        "set its path, or make its model from arrays");
+    }
+    Result<LoadedScenarioModel> read =
+        is_model_file(wanted.path) ? load_compiled(wanted) : load_mesh(wanted, options);
+    if (!read) return of_model(read.error(), wanted);
+    return read;
+  });
+}
+
+Result<std::vector<Model>> load_scenario_models(Scenario& scenario,
+                                                const ScenarioModelOptions& options) {
+  return detail::guarded([&]() -> Result<std::vector<Model>> {
+    std::vector<Model> models;
+    std::vector<double> masses_kg;
+    for (const ScenarioModel& wanted : scenario.models) {
+      Result<LoadedScenarioModel> read = load_scenario_model(wanted, options);
+      if (!read) return read.error();
+      models.push_back(std::move(read->model));
+      masses_kg.push_back(read->mass_kg);
+    }
+    for (std::size_t i = 0; i < masses_kg.size(); ++i) {
+      std::optional<double>& mass_kg = scenario.models[i].mass_kg;
+      if (!mass_kg && masses_kg[i] > 0.0) mass_kg = masses_kg[i];
+    }
+    return models;
+  });
+}
+
+}  // namespace crashrank

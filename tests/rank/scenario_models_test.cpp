@@ -1,0 +1,84 @@
+#include "crashrank/rank/scenario_models.hpp"
+
+#include "crashrank/mesh/shell_properties.hpp"
+#include "crashrank/tree/model_file.hpp"
+#include "mesh/scratch_dir.hpp"
+#include "rank/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using test::ScratchDir;
+
+constexpr const char* triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+std::string compiled(const ScratchDir& dir, double mass_kg) {
+  StoredModel stored;
+  stored.model = *make_model(scenes::box_mesh({2.0F, 0.9F, 0.7F}, 3));
+  stored.mass = shell_properties(stored.model.mesh);
+  stored.mass.mass_kg = mass_kg;
+  const std::string file = (dir.path() / "car.crm").string();
+  EXPECT_TRUE(save_model(stored, file, true).ok());
+  return file;
+}
+
+ScenarioModel wanted(const std::string& name, const std::string& path) {
+  ScenarioModel model;
+  model.name = name;
+  model.path = path;
+  return model;
+}
+
+TEST(ScenarioModels, MeshesAndModelFilesAreReadInOrderAndTellTheirMass) {
+  const ScratchDir dir;
+  Scenario scenario;
+  scenario.models = {wanted("mesh", dir.write("t.obj", triangle)),
+                     wanted("car", compiled(dir, 3000.0)), wanted("told", compiled(dir, 3000.0))};
+  scenario.models[0].transform.scale = 2.0;
+  scenario.models[2].mass_kg = 1200.0;
+  const Result<std::vector<Model>> models = load_scenario_models(scenario);
+  ASSERT_TRUE(models.ok()) << models.error().message();
+  ASSERT_EQ(models->size(), 3U);
+  EXPECT_EQ((*models)[0].mesh.size(), 1U);
+  EXPECT_EQ((*models)[0].mesh.bounds().extent().x(), 2.0F);
+  EXPECT_EQ((*models)[1].mesh.size(), 108U);
+  EXPECT_FALSE(scenario.models[0].mass_kg.has_value());
+  EXPECT_EQ(scenario.models[1].mass_kg, 3000.0);
+  EXPECT_EQ(scenario.models[2].mass_kg, 1200.0);
+}
+
+TEST(ScenarioModels, WhatCannotBeReadNamesItsModelAndChangesNothing) {
+  const ScratchDir dir;
+  const std::string car = compiled(dir, 3000.0);
+  ScenarioModel turned = wanted("turned", car);
+  turned.transform.up = Axis::plus_y;
+  turned.transform.forward = Axis::plus_z;
+  struct Case {
+    ScenarioModel model;
+    ErrorCode code;
+    const char* told;
+  };
+  for (const Case& bad : std::vector<Case>{
+           {wanted("gone", dir.path() / "gone.obj"), ErrorCode::not_found, "models.gone.mesh"},
+           {wanted("lost", dir.path() / "lost.crm"), ErrorCode::not_found, "models.lost.mesh"},
+           {wanted("none", dir.write("none.obj", "v 0 0 0\n")), ErrorCode::bad_input, "none.obj"},
+           {turned, ErrorCode::bad_input, "a model file has its frame already"},
+           {wanted("nowhere", ""), ErrorCode::usage, "'nowhere' names no mesh file"}}) {
+    Scenario scenario;
+    scenario.models = {wanted("car", car), bad.model};
+    const Result<std::vector<Model>> models = load_scenario_models(scenario);
+    ASSERT_FALSE(models.ok()) << bad.told;
+    EXPECT_EQ(models.error().code, bad.code) << models.error().message();
+    EXPECT_NE(models.error().message().find(bad.told), std::string::npos)
+        << models.error().message();
+    EXPECT_FALSE(scenario.models[0].mass_kg.has_value());
+  }
+}
+
+}  // namespace
+}  // namespace crashrank
