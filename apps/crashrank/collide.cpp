@@ -209,6 +209,10 @@ std::string to_text(const Options& options, const std::vector<Query>& queries, c
 
 int run(const Options& options) {
   if (const Status sound = check(options); !sound) return fail(sound.error());
+  const std::vector<std::string> inputs{options.a, options.b, options.poses_file};
+  if (const Status sound = can_be_written(options.pairs_file, inputs); !sound) {
+    return fail(sound.error());
+  }
   const Result<std::vector<Pose>> poses = load_poses(options);
   if (!poses) return fail(poses.error());
   const Result<Body> a = load_one(options.a, options);

@@ -43,6 +43,10 @@ Status check_options(const Options& options) {
                       "leave it out where the mass is not known");
   }
   std::error_code ignored;
+  if (std::filesystem::is_directory(options.output, ignored)) {
+    return make_error(ErrorCode::usage, "-o " + options.output + ": is a folder",
+                      "name a file in it");
+  }
   // On Linux a redirected file can be told by its descriptor's name.
   const std::string mesh = is_standard(options.mesh_file) ? "/dev/stdin" : options.mesh_file;
   if (std::filesystem::equivalent(mesh, options.output, ignored) && !is_model_file(mesh)) {

@@ -84,6 +84,19 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
   return fail(make_error(ErrorCode::usage, text, "see " + help));
 }
 
+/// An unset variable of a script must not pass for an option left out.
+Status no_empty_values(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (value.empty()) {
+        return make_error(ErrorCode::usage, option->get_name() + ": its value is empty",
+                          "leave the option out, or give it a value");
+      }
+    }
+  }
+  return Success{};
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Ranks the crashes a vehicle can still choose, least harmful first.", "crashrank");
   app.set_version_flag("--version", std::string("crashrank ") + library_version());
@@ -112,6 +125,9 @@ int run(int argc, char** argv) {
     return finish(exit_done);
   } catch (const CLI::ParseError& problem) {
     return usage(app, problem, argc > 1 ? argv[1] : nullptr);
+  }
+  if (const Status sound = no_empty_values(*app.get_subcommands().front()); !sound) {
+    return fail(sound.error());
   }
   return finish(action());
 }

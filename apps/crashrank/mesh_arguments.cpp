@@ -4,6 +4,7 @@
 #include "numbers.hpp"
 #include "streams.hpp"
 
+#include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
 
 #include <algorithm>
@@ -61,8 +62,8 @@ void MeshArguments::add_to(CLI::App& command) {
 Result<ImportTransform> MeshArguments::transform() const {
   ImportTransform made;
   made.scale = scale;
-  if (!std::isfinite(scale) || scale <= 0.0) {
-    return make_error(ErrorCode::usage, "--scale has to be a number above 0",
+  if (!(scale >= scenario_limits::min_scale && scale <= scenario_limits::max_scale)) {
+    return make_error(ErrorCode::usage, "--scale has to be a number from 1e-6 to 1e6",
                       "give metres per file unit, such as 0.001 for millimetres");
   }
   const std::optional<Axis> up_axis = parse_axis(up);

@@ -16,6 +16,7 @@
 #include "crashrank/tree/model.hpp"
 #include "crashrank/tree/model_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -129,6 +130,25 @@ Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario
   return ranker->explain(*candidates, answer);
 }
 
+/// Above this closing speed simulated bodies pass through each other (docs/guide/crash-model.md).
+constexpr double crash_model_ends_mps = 100.0;
+
+void warn_of_speed(const Options& options, const RankResult& ranked) {
+  if (!needs_crash(ranked.measure)) return;
+  const auto too_fast =
+      std::count_if(ranked.ranking.begin(), ranked.ranking.end(), [](const CandidateResult& c) {
+        return std::any_of(c.contacts.begin(), c.contacts.end(), [](const Contact& contact) {
+          return contact.closing_speed_mps > crash_model_ends_mps;
+        });
+      });
+  if (too_fast == 0) return;
+  warn(
+      options.scenario,
+      std::to_string(too_fast) + (too_fast == 1 ? " candidate meets" : " candidates meet") +
+          " somebody at more than 100 m/s, where the crash model does not hold: its scores fall as "
+          "speed rises; rank by closing-energy");
+}
+
 /// Tells on standard error what the table or the JSON says inside, for who reads the exit code.
 void tell_end(const Options& options, const RankResult& ranked, bool answered) {
   if (options.engine_given && options.bounded()) {
@@ -171,7 +191,11 @@ int run(const Options& options) {
   if (!options.damage_folder.empty()) {
     if (const Status made = make_folder(options.damage_folder); !made) return fail(made.error());
   }
-  if (const Status status = can_be_written(options.report); !status) return fail(status.error());
+  std::vector<std::string> inputs{options.scenario, options.profile};
+  for (const ScenarioModel& model : scenario->models) inputs.push_back(model.path);
+  if (const Status sound = can_be_written(options.report, inputs); !sound) {
+    return fail(sound.error());
+  }
   const Result<std::vector<Model>> models = load_models(*scenario, options.tree);
   if (!models) return fail(models.error());
   const Result<RankResult> ranked = options.bounded()
@@ -201,6 +225,7 @@ int run(const Options& options) {
     print(ranking_text(*scenario, *models, *ranked, text));
   }
   const bool answered = ranked->complete || (options.first_place && ranked->proved);
+  warn_of_speed(options, *ranked);
   tell_end(options, *ranked, answered);
   return answered ? exit_done : exit_budget;
 }

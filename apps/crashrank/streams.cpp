@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace crashrank::cli {
@@ -107,8 +108,16 @@ Result<StandardInputFile> StandardInputFile::receive(std::size_t limit,
 
 void OutputFile::Close::operator()(std::FILE* file) const { std::fclose(file); }
 
-Status can_be_written(const std::string& path) {
+Status can_be_written(const std::string& path, const std::vector<std::string>& inputs) {
   if (path.empty() || is_standard(path)) return Success{};
+  for (const std::string& input : inputs) {
+    std::error_code ignored;
+    // On Linux a redirected file can be told by its descriptor's name.
+    if (std::filesystem::equivalent(is_standard(input) ? "/dev/stdin" : input, path, ignored)) {
+      return file_error(ErrorCode::usage, path, "would be written over what is read",
+                        "name another file");
+    }
+  }
   const bool there = access(path.c_str(), F_OK) == 0;
   const std::size_t slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace crashrank::cli {
 
@@ -31,8 +32,8 @@ private:
 };
 
 /// Whether a file could be written there, before the work for it is begun; an empty name and
-/// standard output can. Errors: not_found.
-Status can_be_written(const std::string& path);
+/// standard output can. Errors: not_found; usage where it is one of the inputs.
+Status can_be_written(const std::string& path, const std::vector<std::string>& inputs);
 
 /// A text file being written, or standard output for "-".
 class OutputFile {

@@ -238,6 +238,10 @@ int run(const Options& options) {
   if (const Result<ImportTransform> transform = options.mesh.transform(); !transform) {
     return fail(transform.error());
   }
+  const std::vector<std::string> inputs{options.a, options.b, options.poses_file};
+  if (const Status sound = can_be_written(options.plot, inputs); !sound) {
+    return fail(sound.error());
+  }
   const Result<std::vector<Pose>> poses = read_poses(options.poses_file);
   if (!poses) return fail(poses.error());
   const Result<Model> a = load_one(options.a, options);

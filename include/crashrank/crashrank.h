@@ -308,8 +308,8 @@ CRASHRANK_API crashrank_status crashrank_ranker_create(const crashrank_scenario*
 /// Ends it, and its workers; NULL is left alone.
 CRASHRANK_API void crashrank_ranker_free(crashrank_ranker* ranker);
 /// The situation has changed: takes the ego, the motions of the actors (the same, in the same
-/// order) and the candidates from a scenario over the same shapes. Allocates. Errors: usage,
-/// bad_input; the ranker then keeps its candidates.
+/// order) and the candidates from a scenario over the same shapes. Allocates. Errors: usage, also
+/// for more candidates than the limit; bad_input. The ranker then keeps its situation.
 CRASHRANK_API crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
                                                        const crashrank_scenario* scenario,
                                                        crashrank_error* error);

@@ -2,12 +2,15 @@
 #include "c/handles.hpp"
 #include "rank/scenario_check.hpp"
 
+#include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 
 struct crashrank_ranker {
   crashrank::Ranker ranker;
+  std::size_t most_candidates = 0;
   std::vector<double> ego_lengths_m;  ///< by model
   std::vector<crashrank::Candidate> candidates;
   std::vector<crashrank_ranked> told;
@@ -29,6 +32,12 @@ Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
   Result<std::vector<Candidate>> candidates =
       make_candidates(scenario, ranker.ego_lengths_m[scenario.ego.model]);
   if (!candidates) return candidates.error();
+  if (candidates->size() > ranker.most_candidates) {
+    return make_error(ErrorCode::usage,
+                      "the scenario leaves " + std::to_string(candidates->size()) +
+                          " candidates, more than the ranker's most_candidates",
+                      "raise it, or leave fewer");
+  }
   std::vector<Motion> motions;
   for (const ScenarioActor& actor : scenario.actors) {
     Result<Motion> motion = make_motion(actor);
@@ -62,8 +71,8 @@ crashrank_status crashrank_ranker_create(const crashrank_scenario* scenario,
     }
     Result<Ranker> made = Ranker::prepare(c::with_masses(*scenario, *models), models->list, how);
     if (!made) return refuse(made.error(), error);
-    auto handle =
-        std::make_unique<crashrank_ranker>(crashrank_ranker{std::move(*made), {}, {}, {}});
+    auto handle = std::make_unique<crashrank_ranker>(
+        crashrank_ranker{std::move(*made), how.limits.candidates, {}, {}, {}});
     for (const Model& model : models->list) {
       handle->ego_lengths_m.push_back(static_cast<double>(model.mesh.bounds().extent().x()));
     }

@@ -176,8 +176,11 @@ Status Motion::become_timed(View<const TimedPose> poses) {
     }
     const Velocity& v = segments[i].velocity;
     if (!(v.linear_mps.norm() <= fastest_timed && v.angular_radps.norm() <= fastest_timed)) {
-      return refuse(i + 1, "it is too far from the one before for the time between: over 10 km/s",
-                    "mend its time");
+      return refuse(
+          i + 1,
+          "it moves or turns too far from the one before for the time between: over 10 km/s or "
+          "10,000 rad/s",
+          "mend its time");
     }
   }
   return Success{};

@@ -14,6 +14,9 @@ constexpr double max_yaw_rate_radps = limits::yaw_rate_dps * rad_per_deg;
 // Conversion from degrees rounds; the limits are meant in degrees.
 constexpr double rounding = 1.0 + 1e-12;
 
+/// Of a listed candidate's poses from the ego: what is farther was written in another frame.
+constexpr double farthest_beginning_m = 1.0;
+
 class Check {
 public:
   Status status = Success{};
@@ -84,6 +87,12 @@ void check_candidates(const Scenario& scenario, Check& check) {
     check.at_most(path + ".yaw_rate_dps", candidate.yaw_rate_radps.value_or(0.0),
                   max_yaw_rate_radps);
     check.poses(path + ".poses", candidate.poses);
+    if (candidate.poses.empty()) continue;
+    const Eigen::Vector3d& begins = candidate.poses.front().pose.translation;
+    if (!((begins - scenario.ego.pose.translation).norm() <= farthest_beginning_m)) {
+      check.refuse(path + ".poses[0]",
+                   "is more than 1 m from the ego's pose, where every manoeuvre begins");
+    }
   }
   if (!scenario.grid) {
     if (scenario.listed.empty() && !scenario.add_straight_braking) {

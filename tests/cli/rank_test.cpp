@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -237,6 +238,46 @@ TEST(Rank, APageOnStandardOutputStandsAlone) {
   const std::string end = "</html>\n";
   ASSERT_GT(run.out.size(), end.size());
   EXPECT_EQ(run.out.substr(run.out.size() - end.size()), end);
+}
+
+TEST(Rank, NothingThatIsReadIsWrittenOver) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  for (const char* input : {"scenario.json", "./block.obj"}) {
+    const std::string before = place.read(input);
+    const Outcome run = place.crashrank({"rank", "scenario.json", "--report", input});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("over what is read"), std::string::npos) << run.err;
+    EXPECT_EQ(place.read(input), before);
+  }
+}
+
+TEST(Rank, AManoeuvreThatBeginsElsewhereIsRefusedAndOneTooFastIsTold) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const std::string text = place.read("scenario.json");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    return changed;
+  };
+  const std::string steering =
+      "{\"name\": \"swerve\", \"acceleration_mps2\": 0, \"steering_deg\": 12}";
+  for (const auto& [x, code] : {std::pair("0.9", 0), std::pair("1.1", 3)}) {
+    place.write("s.json",
+                with(steering, std::string("{\"name\": \"swerve\", \"poses\": [{\"t_s\": 0, "
+                                           "\"x_m\": ") +
+                                   x + "}]}"));
+    const Outcome run = place.crashrank({"rank", "s.json"});
+    EXPECT_EQ(run.code, code) << run.err;
+    EXPECT_EQ(run.err.find("candidates.listed[2].poses[0]") != std::string::npos, code == 3)
+        << run.err;
+  }
+  place.write("s.json", with("\"speed_mps\": 10", "\"speed_mps\": 120"));
+  const Outcome fast = place.crashrank({"rank", "s.json"});
+  EXPECT_EQ(fast.code, 0);
+  EXPECT_NE(fast.err.find("at more than 100 m/s"), std::string::npos) << fast.err;
+  EXPECT_EQ(place.crashrank({"rank", "s.json", "--measure", "area"}).err, "");
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ CRASHRANK_API Result<LoadedScenarioModel> load_scenario_model(
     const ScenarioModel& wanted, const ScenarioModelOptions& options = {});
 
 /// Reads all models of a scenario, in its order, as `rank` and `Ranker::prepare` take them. Gives
-/// models without a mass the one that their model file tells. Errors: as above, and then the
-/// scenario is as it was.
+/// models without a mass the one that their model file tells; from then on it is the scenario's,
+/// also where another file is read later. Errors: as above, and then the scenario is as it was.
 CRASHRANK_API Result<std::vector<Model>> load_scenario_models(
     Scenario& scenario, const ScenarioModelOptions& options = {});
 

@@ -111,4 +111,15 @@ std::optional<Error> find_obj_fault(int descriptor) {
   return bad_face ? bad_face : bad_vertex;
 }
 
+std::uint64_t obj_face_lines(int descriptor) {
+  std::uint64_t faces = 0;
+  const bool plain = each_line(descriptor, [&](std::string_view line, std::size_t) {
+    if (!line.empty() && line.back() == '\\') return false;
+    const std::string_view kind = word(line);
+    if (kind == "f" || kind == "F") ++faces;
+    return true;
+  });
+  return plain ? faces : 0;
+}
+
 }  // namespace crashrank::importer

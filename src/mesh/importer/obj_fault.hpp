@@ -2,6 +2,7 @@
 
 #include "crashrank/base/result.hpp"
 
+#include <cstdint>
 #include <optional>
 
 namespace crashrank::importer {
@@ -11,5 +12,10 @@ namespace crashrank::importer {
 /// parser refused, which names no line. Nothing where no such line is found, or where lines go on
 /// in others or are very long. Reads the descriptor by position, twice, a window at a time.
 std::optional<Error> find_obj_fault(int descriptor);
+
+/// Lines of an OBJ file that mean a face, whether the parser reads them or not: it passes over
+/// those that are indented, written F, or have fewer than three corners. 0 where lines go on in
+/// others.
+std::uint64_t obj_face_lines(int descriptor);
 
 }  // namespace crashrank::importer

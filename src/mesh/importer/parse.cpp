@@ -67,6 +67,28 @@ std::uint64_t faces_in(const aiScene& scene) {
   return faces;
 }
 
+std::uint64_t polygons_in(const aiScene& scene) {
+  std::uint64_t polygons = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      polygons += mesh.mFaces[f].mNumIndices >= 3 ? 1 : 0;
+    }
+  }
+  return polygons;
+}
+
+// Told where lines of faces in an OBJ file came to nothing.
+std::string passed_over(const aiScene& scene, const Request& request) {
+  if (request.extension != "obj") return {};
+  const std::uint64_t lines = obj_face_lines(STDIN_FILENO);
+  const std::uint64_t read = polygons_in(scene);
+  if (lines <= read) return {};
+  return std::to_string(lines - read) + " of " + std::to_string(lines) +
+         " lines of faces were passed over: they are indented, cut or have fewer than three "
+         "corners, and the surface lacks them";
+}
+
 void configure(Assimp::Importer& importer) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
 #ifdef AI_CONFIG_IMPORT_FBX_IGNORE_UP_DIRECTION
@@ -157,6 +179,7 @@ Result<Parsed> parse(const Request& request) {
     const std::uint64_t promised = gltf_triangles(STDIN_FILENO, request.file_bytes);
     left_out = std::max(promised, faces_in(*scene) + 1) - faces_in(*scene);
   }
+  const std::string holes = passed_over(*scene, request);
   Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
   if (!dropped) return dropped.error();
   *dropped += left_out;
@@ -180,6 +203,7 @@ Result<Parsed> parse(const Request& request) {
                                              : " faces that name missing vertices were left out") +
                               "; triangles are numbered without");
   }
+  if (!holes.empty()) parsed.warnings.push_back(holes);
   for (const std::string& file : files.refused()) parsed.warnings.push_back(file);
   return parsed;
 }
