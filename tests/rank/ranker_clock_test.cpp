@@ -156,7 +156,7 @@ TEST(RankerClock, AWorkerThatIsHeldKeepsNoCallFromEndingAtItsDeadline) {
     ++caught;
     EXPECT_EQ(ranker->rank(plain.candidates).hash, whole);
   }
-  if (caught == 0) GTEST_SKIP() << "other programs left the workers no processor";
+  EXPECT_GT(caught, 0);
 }
 
 }  // namespace
