@@ -3,6 +3,7 @@
 #include "damage_folder.hpp"
 #include "engine.hpp"
 #include "mesh_arguments.hpp"
+#include "rank_warnings.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
@@ -130,25 +131,6 @@ Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario
   return ranker->explain(*candidates, answer);
 }
 
-/// Above this closing speed simulated bodies pass through each other (docs/guide/crash-model.md).
-constexpr double crash_model_ends_mps = 100.0;
-
-void warn_of_speed(const Options& options, const RankResult& ranked) {
-  if (!needs_crash(ranked.measure)) return;
-  const auto too_fast =
-      std::count_if(ranked.ranking.begin(), ranked.ranking.end(), [](const CandidateResult& c) {
-        return std::any_of(c.contacts.begin(), c.contacts.end(), [](const Contact& contact) {
-          return contact.closing_speed_mps > crash_model_ends_mps;
-        });
-      });
-  if (too_fast == 0) return;
-  warn(
-      options.scenario,
-      std::to_string(too_fast) + (too_fast == 1 ? " candidate meets" : " candidates meet") +
-          " somebody at more than 100 m/s, where the crash model does not hold: its scores fall as "
-          "speed rises; rank by closing-energy");
-}
-
 /// Tells on standard error what the table or the JSON says inside, for who reads the exit code.
 void tell_end(const Options& options, const RankResult& ranked, bool answered) {
   if (options.engine_given && options.bounded()) {
@@ -225,7 +207,7 @@ int run(const Options& options) {
     print(ranking_text(*scenario, *models, *ranked, text));
   }
   const bool answered = ranked->complete || (options.first_place && ranked->proved);
-  warn_of_speed(options, *ranked);
+  warn_of_doubts(options.scenario, *scenario, *ranked);
   tell_end(options, *ranked, answered);
   return answered ? exit_done : exit_budget;
 }

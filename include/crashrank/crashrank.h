@@ -254,6 +254,10 @@ CRASHRANK_API crashrank_status crashrank_rank(const crashrank_scenario* scenario
 /// Ends it; NULL is left alone.
 CRASHRANK_API void crashrank_ranking_free(crashrank_ranking* ranking);
 
+/// Above this closing speed no crash can be simulated, m/s: the measures harm, delta-v, energy and
+/// intrusion do not hold there, closing-energy does.
+#define CRASHRANK_FASTEST_CRASH_MPS 100.0
+
 /// What choosing a candidate leads to. Of contacts the first is told; without one its numbers are
 /// NaN.
 typedef struct crashrank_choice {
@@ -264,7 +268,7 @@ typedef struct crashrank_choice {
   double lowest_score;         ///< the interval that contains the score
   double highest_score;        ///< and its upper end
   double time_of_impact_s;     ///< from now
-  double closing_speed_mps;    ///< of the points that meet
+  double closing_speed_mps;    ///< of the points that meet; see CRASHRANK_FASTEST_CRASH_MPS
   double delta_v_mps;          ///< the ego's change of velocity, magnitude
   double other_delta_v_mps;    ///< and that of who is hit
   double pdof_deg;             ///< where the force on the ego comes from, clockwise from ahead
@@ -328,7 +332,7 @@ typedef struct crashrank_ranked {
   double lowest_score;       ///< the interval contains the final score, whatever was left undone
   double highest_score;      ///< and its upper end
   double time_of_impact_s;   ///< from now
-  double closing_speed_mps;  ///< of the points that meet
+  double closing_speed_mps;  ///< of the points that meet; see CRASHRANK_FASTEST_CRASH_MPS
   int32_t in_race;           ///< can still be first
   int32_t collides;          ///< as far as it is known
 } crashrank_ranked;

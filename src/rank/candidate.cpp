@@ -199,6 +199,18 @@ Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_len
 
 }  // namespace
 
+std::optional<double> grip_demand(const Candidate& candidate, const Scenario& scenario,
+                                  double until_s) noexcept {
+  if (candidate.motion.holds_poses()) return std::nullopt;
+  // Speed rises or falls all the way: it is highest at one of the ends.
+  double across = 0.0;
+  for (const double time_s : {0.0, until_s}) {
+    const Velocity v = candidate.motion.velocity_at(time_s);
+    across = std::max(across, std::abs(v.angular_radps.z()) * v.linear_mps.norm());
+  }
+  return std::hypot(candidate.acceleration_mps2, across) / full_grip_mps2(scenario);
+}
+
 Result<std::vector<Candidate>> make_candidates(const Scenario& scenario, double ego_length_m) {
   return detail::guarded([&] { return make_all(scenario, ego_length_m); });
 }

@@ -46,28 +46,16 @@ Error told_of(const std::string& file, Error error) {
   return error;
 }
 
-std::string number_text(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  return text;
-}
-
 double checked_number(const nlohmann::json& value, const std::string& path, NumberRange range,
                       Status& status, double otherwise) {
-  const auto bounds = [&range] {
-    return (range.above ? "more than " : "from ") + number_text(range.lowest) +
-           (range.above ? ", at most " : " to ") + number_text(range.highest);
-  };
   if (!value.is_number()) {
     refuse_at(status, path, std::string("is ") + value.type_name() + ", not a number",
-              "give a number " + bounds());
+              give_one_in(range));
     return otherwise;
   }
   const double number = value.get<double>();
-  const bool low = range.above ? number > range.lowest : number >= range.lowest;
-  if (!(low && number <= range.highest)) {
-    refuse_at(status, path, "is " + number_text(number) + ", out of range",
-              "give a number " + bounds());
+  if (!range.holds(number)) {
+    refuse_at(status, path, out_of_range(number), give_one_in(range));
     return otherwise;
   }
   return number;

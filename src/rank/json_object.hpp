@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/base/result.hpp"
+#include "rank/number_range.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -10,13 +11,6 @@
 #include <string>
 
 namespace crashrank::detail {
-
-/// A closed range of numbers; `above` excludes the lower end.
-struct NumberRange {
-  double lowest;
-  double highest;
-  bool above = false;
-};
 
 /// Reads one JSON object with every key accounted for. The first trouble met stays in the Status
 /// shared by a whole document; once it is there, reads return what they were given as default, so
@@ -64,9 +58,6 @@ Error told_of(const std::string& file, Error error);
 /// Puts an error into a status that has none yet.
 void refuse_at(Status& status, const std::string& path, const std::string& reason,
                const std::string& remedy, ErrorCode code = ErrorCode::bad_input);
-
-/// A number as short text that still tells it from its neighbours in a message.
-std::string number_text(double number);
 
 double checked_number(const nlohmann::json& value, const std::string& path, NumberRange range,
                       Status& status, double otherwise);

@@ -1,7 +1,11 @@
 #include "rank/scenario_check.hpp"
 
+#include "rank/number_range.hpp"
+
 #include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crashrank::detail {
@@ -10,9 +14,8 @@ namespace {
 namespace limits = scenario_limits;
 
 constexpr double rad_per_deg = 0.017453292519943295;
-constexpr double max_yaw_rate_radps = limits::yaw_rate_dps * rad_per_deg;
-// Conversion from degrees rounds; the limits are meant in degrees.
-constexpr double rounding = 1.0 + 1e-12;
+// Conversion from degrees and back rounds.
+constexpr double rounding = 1.0 - 1e-12;
 
 /// Of a listed candidate's poses from the ego: what is farther was written in another frame.
 constexpr double farthest_beginning_m = 1.0;
@@ -21,27 +24,35 @@ class Check {
 public:
   Status status = Success{};
 
-  void at_most(const std::string& path, double number, double limit) {
-    if (std::abs(number) <= limit * rounding) return;
-    refuse(path, std::isfinite(number) ? "is out of range" : "is not a finite number");
+  /// `unit`: what a number as scenarios have it is multiplied by to be the library's.
+  void within(const std::string& path, double number, NumberRange range, double unit = 1.0) {
+    const double told = number / unit;
+    if (!std::isfinite(number)) {
+      refuse(path, "is not a finite number", give_one_in(range));
+    } else if (!range.holds(told) && !range.holds(told * rounding)) {
+      refuse(path, out_of_range(told), give_one_in(range));
+    }
   }
 
-  void positive(const std::string& path, double number, double limit) {
-    at_most(path, number, limit);
-    if (!(number > 0.0)) refuse(path, "is not positive");
+  void at_most(const std::string& path, double number, double limit, double unit = 1.0) {
+    within(path, number, {-limit, limit}, unit);
   }
 
-  void not_negative(const std::string& path, double number, double limit) {
-    at_most(path, number, limit);
-    if (number < 0.0) refuse(path, "is negative");
+  void not_negative(const std::string& path, double number, double limit, double unit = 1.0) {
+    within(path, number, {0.0, limit}, unit);
   }
 
   void range(const std::string& path, double least, double most, double lowest, double highest) {
-    if (!(least >= lowest && least <= most && most <= highest)) refuse(path, "is out of range");
+    const NumberRange range{lowest, highest};
+    within(path, least, range);
+    within(path, most, range);
+    if (least > most) refuse(path, "begins above its end", "give the lower end first");
   }
 
   void pose(const std::string& path, const Pose& pose) {
-    if (!(rigidity_error(pose) <= max_rigidity_error)) refuse(path, "is not a rigid pose");
+    if (!(rigidity_error(pose) <= max_rigidity_error)) {
+      refuse(path, "is not a rigid pose", "give a rotation, without scale or mirror");
+    }
     for (int axis = 0; axis < 3; ++axis) {
       at_most(path, pose.translation[axis], limits::position_m);
     }
@@ -54,25 +65,38 @@ public:
     }
   }
 
-  void refuse(const std::string& path, const char* reason) {
+  void refuse(const std::string& path, std::string reason, std::string remedy) {
     if (status.ok()) {
-      status = Error{ErrorCode::bad_input, {}, path, reason, "see scenario_limits and harm_limits"};
+      status = Error{ErrorCode::bad_input, {}, path, std::move(reason), std::move(remedy)};
     }
   }
 };
 
+template <class Named>
+void check_names(const std::vector<Named>& named, const char* path, Check& check) {
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (named[i].name.empty() || taken.insert(named[i].name).second) continue;
+    check.refuse(std::string(path) + "[" + std::to_string(i) + "].name",
+                 "is taken by an earlier one", "choose another name");
+  }
+}
+
 void check_ego(const Scenario& scenario, Check& check) {
   const ScenarioEgo& ego = scenario.ego;
-  if (ego.model >= scenario.models.size()) check.refuse("ego.model", "is not among the models");
+  if (ego.model >= scenario.models.size()) {
+    check.refuse("ego.model", "is not among the models", "add the model first");
+  }
   check.pose("ego.pose", ego.pose);
   check.at_most("ego.speed_mps", ego.speed_mps, limits::speed_mps);
-  check.at_most("ego.yaw_rate_dps", ego.yaw_rate_radps, max_yaw_rate_radps);
+  check.at_most("ego.yaw_rate_dps", ego.yaw_rate_radps, limits::yaw_rate_dps, rad_per_deg);
   check.not_negative("ego.max_acceleration_mps2", ego.max_acceleration_mps2,
                      limits::acceleration_mps2);
-  check.not_negative("ego.max_steering_deg", ego.max_steering_rad,
-                     limits::steering_deg * rad_per_deg);
+  check.not_negative("ego.max_steering_deg", ego.max_steering_rad, limits::steering_deg,
+                     rad_per_deg);
   if (ego.wheelbase_m) {
-    check.positive("ego.wheelbase_m", *ego.wheelbase_m, limits::max_wheelbase_m);
+    check.within("ego.wheelbase_m", *ego.wheelbase_m,
+                 {limits::min_wheelbase_m, limits::max_wheelbase_m});
   }
 }
 
@@ -83,27 +107,30 @@ void check_candidates(const Scenario& scenario, Check& check) {
     check.at_most(path + ".acceleration_mps2", candidate.acceleration_mps2,
                   limits::acceleration_mps2);
     check.at_most(path + ".steering_deg", candidate.steering_rad.value_or(0.0),
-                  limits::steering_deg * rad_per_deg);
+                  limits::steering_deg, rad_per_deg);
     check.at_most(path + ".yaw_rate_dps", candidate.yaw_rate_radps.value_or(0.0),
-                  max_yaw_rate_radps);
+                  limits::yaw_rate_dps, rad_per_deg);
     check.poses(path + ".poses", candidate.poses);
     if (candidate.poses.empty()) continue;
     const Eigen::Vector3d& begins = candidate.poses.front().pose.translation;
     if (!((begins - scenario.ego.pose.translation).norm() <= farthest_beginning_m)) {
       check.refuse(path + ".poses[0]",
-                   "is more than 1 m from the ego's pose, where every manoeuvre begins");
+                   "is more than 1 m from the ego's pose, where every manoeuvre begins",
+                   "write the poses in the frame of the ego's pose");
     }
   }
   if (!scenario.grid) {
     if (scenario.listed.empty() && !scenario.add_straight_braking) {
-      check.refuse("candidates", "leaves no manoeuvre to rank; list one, or let the grid be made");
+      check.refuse("candidates", "leaves no manoeuvre to rank",
+                   "list one, or let the grid be made");
     }
     return;
   }
   const CandidateGrid& grid = *scenario.grid;
   if (grid.accelerations < 1 || grid.accelerations > limits::grid_side || grid.steerings < 1 ||
       grid.steerings > limits::grid_side) {
-    check.refuse("candidates.grid", "is empty or too fine");
+    check.refuse("candidates.grid", "is empty or too fine",
+                 "let each side have 1 to " + std::to_string(limits::grid_side));
   }
 }
 
@@ -112,12 +139,12 @@ void check_actors(const Scenario& scenario, Check& check) {
     const ScenarioActor& actor = scenario.actors[i];
     const std::string path = "actors[" + std::to_string(i) + "]";
     if (actor.model >= scenario.models.size()) {
-      check.refuse(path + ".model", "is not among the models");
+      check.refuse(path + ".model", "is not among the models", "add the model first");
     }
     check.pose(path + ".pose", actor.pose);
     check.at_most(path + ".speed_mps", actor.speed_mps, limits::speed_mps);
     check.at_most(path + ".acceleration_mps2", actor.acceleration_mps2, limits::acceleration_mps2);
-    check.at_most(path + ".yaw_rate_dps", actor.yaw_rate_radps, max_yaw_rate_radps);
+    check.at_most(path + ".yaw_rate_dps", actor.yaw_rate_radps, limits::yaw_rate_dps, rad_per_deg);
     check.poses(path + ".poses", actor.poses);
   }
 }
@@ -147,7 +174,8 @@ void check_harm(const HarmOptions& harm, const std::string& path, Check& check) 
                      bounds::deceleration_mps2);
   check.not_negative(path + ".after_impact.longest_s", harm.after.longest_s, bounds::after_s);
   if (harm.after.most_contacts < 1 || harm.after.most_contacts > bounds::contacts) {
-    check.refuse(path + ".after_impact.most_contacts", "is out of range");
+    check.refuse(path + ".after_impact.most_contacts", "is out of range",
+                 "follow 1 to " + std::to_string(bounds::contacts));
   }
   check.not_negative(path + ".least_struck_share", harm.least_struck_share, 1.0);
 }
@@ -160,20 +188,27 @@ Status check_harm(const HarmOptions& harm, const std::string& path) {
   return check.status;
 }
 
+Status check_names(const Scenario& scenario) {
+  Check check;
+  check_names(scenario.listed, "candidates.listed", check);
+  check_names(scenario.actors, "actors", check);
+  return check.status;
+}
+
 Status check_scenario(const Scenario& scenario) {
+  if (Status named = check_names(scenario); !named) return named;
   Check check;
   for (const ScenarioModel& model : scenario.models) {
-    const double mass = model.mass_kg.value_or(limits::min_mass_kg);
-    const std::string path = "models." + model.name + ".mass_kg";
-    check.positive(path, mass, limits::max_mass_kg);
-    if (mass < limits::min_mass_kg) check.refuse(path, "is too small");
+    if (!model.mass_kg) continue;
+    check.within("models." + model.name + ".mass_kg", *model.mass_kg,
+                 {limits::min_mass_kg, limits::max_mass_kg});
   }
   check_ego(scenario, check);
   check_candidates(scenario, check);
   check_actors(scenario, check);
-  check.positive("horizon_s", scenario.horizon_s, limits::horizon_s);
+  check.within("horizon_s", scenario.horizon_s, {0.0, limits::horizon_s, true});
   check_harm(scenario.harm, "harm", check);
-  check.positive("grip", scenario.grip, limits::max_grip);
+  check.within("grip", scenario.grip, {limits::min_grip, limits::max_grip});
   check.not_negative("crush.time_s", scenario.crush.time_s, limits::crush_time_s);
   check.not_negative("crush.depth_m", scenario.crush.depth_m.value_or(0.0), limits::crush_depth_m);
   return check.status;

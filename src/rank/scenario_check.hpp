@@ -11,6 +11,10 @@ namespace crashrank::detail {
 /// ranges of `scenario_limits`, rigid poses, models that are there. The error names the key path.
 Status check_scenario(const Scenario& scenario);
 
+/// Whether the names of actors, and those of listed candidates, differ: they tell what an answer is
+/// about. Those without one cannot be mistaken for each other. A part of `check_scenario`.
+Status check_names(const Scenario& scenario);
+
 /// The same for harm that a program made: the ranges of `harm_limits`. `path` goes before its keys.
 Status check_harm(const HarmOptions& harm, const std::string& path);
 

@@ -3,11 +3,11 @@
 #include "rank/json_object.hpp"
 #include "rank/json_text.hpp"
 #include "rank/read_harm.hpp"
+#include "rank/scenario_check.hpp"
 
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <set>
 #include <utility>
 
 namespace crashrank {
@@ -212,15 +212,10 @@ void read_candidates(const JsonObject& root, Scenario& scenario) {
   Status& status = root.status();
   const JsonObject object(root.at("candidates"), "candidates", status,
                           {"listed", "grid", "add_straight_braking"});
-  std::set<std::string> names;
   if (const json* listed = object.array("listed", 0, limits::listed_candidates)) {
     for (std::size_t i = 0; i < listed->size() && status.ok(); ++i) {
       const std::string path = object.path_of(indexed("listed", i).c_str());
       scenario.listed.push_back(read_candidate((*listed)[i], path, status));
-      if (!names.insert(scenario.listed.back().name).second) {
-        detail::refuse_at(status, path + ".name", "is taken by an earlier candidate",
-                          "choose another name");
-      }
     }
   }
   if (!scenario.listed.empty()) scenario.grid.reset();
@@ -238,15 +233,10 @@ void read_candidates(const JsonObject& root, Scenario& scenario) {
 void read_actors(const JsonObject& root, Scenario& scenario) {
   const json* actors = root.array("actors", 0, limits::actors);
   if (actors == nullptr) return;
-  std::set<std::string> names;
   scenario.actors.reserve(actors->size());
   for (std::size_t i = 0; i < actors->size() && root.status().ok(); ++i) {
     const std::string path = indexed("actors", i);
     scenario.actors.push_back(read_actor((*actors)[i], path, scenario.models, root.status()));
-    if (!names.insert(scenario.actors.back().name).second) {
-      detail::refuse_at(root.status(), path + ".name", "is taken by an earlier actor",
-                        "choose another name");
-    }
   }
 }
 
@@ -327,6 +317,7 @@ Result<Scenario> parse(const std::string& text, const std::string& file) {
   if (!document) return detail::told_of(file, document.error());
   Status status = Success{};
   Scenario scenario = read_scenario(*document, status);
+  if (status.ok()) status = detail::check_names(scenario);
   if (!status.ok()) return detail::told_of(file, status.error());
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
   return scenario;

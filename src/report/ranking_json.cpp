@@ -1,4 +1,7 @@
 #include "crashrank/report/ranking.hpp"
+
+#include "crashrank/crash/pulse.hpp"
+#include "crashrank/rank/candidate.hpp"
 #include "report/damage_summary.hpp"
 
 #include <nlohmann/json.hpp>
@@ -127,6 +130,7 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
              {"state", state_name(contact.state)},
              {"time_of_impact_s", contact.time_of_impact_s},
              {"closing_speed_mps", contact.closing_speed_mps},
+             {"beyond_crash_model", contact.closing_speed_mps > fastest_pulse_mps},
              {"normal_speed_mps", contact.normal_speed_mps},
              {"closing_energy_j", contact.closing_energy_j},
              {"gap_m", contact.gap_m},
@@ -146,6 +150,9 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
                     std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
   const Candidate& candidate = result.candidates[ranked.candidate];
+  const double until_s =
+      ranked.contacts.empty() ? scenario.horizon_s : ranked.contacts.front().time_of_impact_s;
+  const std::optional<double> demand = grip_demand(candidate, scenario, until_s);
   const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
   Json contacts = Json::array();
   for (const Contact& contact : ranked.contacts) {
@@ -157,6 +164,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
   }
   Json entry{{"rank", place + 1},
              {"candidate", candidate.name},
+             {"grip_demand", demand ? Json(*demand) : Json(nullptr)},
              {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
              {"score_interval",
               Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},

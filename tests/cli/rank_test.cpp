@@ -277,7 +277,32 @@ TEST(Rank, AManoeuvreThatBeginsElsewhereIsRefusedAndOneTooFastIsTold) {
   const Outcome fast = place.crashrank({"rank", "s.json"});
   EXPECT_EQ(fast.code, 0);
   EXPECT_NE(fast.err.find("at more than 100 m/s"), std::string::npos) << fast.err;
-  EXPECT_EQ(place.crashrank({"rank", "s.json", "--measure", "area"}).err, "");
+  EXPECT_EQ(place.crashrank({"rank", "s.json", "--measure", "area"}).err.find("100 m/s"),
+            std::string::npos);
+}
+
+TEST(Rank, ManoeuvresBeyondTheGripAreTold) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const std::string text = place.read("scenario.json");
+  const std::string gentle = "\"steering_deg\": 12";
+  const auto with_steering = [&](const std::string& deg) {
+    std::string changed = text;
+    changed.replace(changed.find(gentle), gentle.size(), "\"steering_deg\": " + deg);
+    place.write("s.json", changed);
+    return place.crashrank({"rank", "s.json", "--json"});
+  };
+  const Outcome within = with_steering("2");
+  EXPECT_EQ(within.err, "");
+  for (const Json& one : Json::parse(within.out).at("ranking")) {
+    EXPECT_LE(one.at("grip_demand").get<double>(), 1.0);
+  }
+  const Outcome beyond = with_steering("40");
+  EXPECT_EQ(beyond.code, 0);
+  EXPECT_NE(beyond.err.find("1 listed manoeuvre lies beyond the tyres' grip (0.8)"),
+            std::string::npos)
+      << beyond.err;
+  EXPECT_NE(beyond.err.find("'swerve', in place "), std::string::npos) << beyond.err;
 }
 
 }  // namespace

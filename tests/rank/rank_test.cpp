@@ -322,6 +322,33 @@ TEST(Rank, TroubleIsAnErrorThatNamesItsPlace) {
   EXPECT_EQ(rank(scene.scenario, scene.models).error().code, ErrorCode::bad_input);
 }
 
+TEST(Rank, WhatIsOutOfRangeIsToldWithTheRange) {
+  Scene scene = car_and_wall();
+  scene.add_candidate("keep going", 0.0);
+  scene.scenario.actors[0].yaw_rate_radps = 20.0;
+  const Result<RankResult> result = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().place, "actors[0].yaw_rate_dps");
+  EXPECT_EQ(result.error().reason, "is 1145.91559, out of range");
+  EXPECT_EQ(result.error().remedy, "give a number from -720 to 720");
+}
+
+TEST(Rank, TwoOfOneNameAreRefusedAndThoseWithoutAreNot) {
+  Scene scene = car_and_wall();
+  scene.add_candidate("keep going", 0.0);
+  scene.add_candidate("keep going", -1.0);
+  Result<RankResult> result = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().place, "candidates.listed[1].name");
+  for (ListedCandidate& candidate : scene.scenario.listed) candidate.name.clear();
+  scene.scenario.actors.push_back(scene.scenario.actors[0]);
+  result = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().place, "actors[1].name");
+  for (ScenarioActor& actor : scene.scenario.actors) actor.name.clear();
+  EXPECT_TRUE(rank(scene.scenario, scene.models).ok());
+}
+
 TEST(Rank, NumbersThatNobodyCanComputeWithAreRefused) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double inf = std::numeric_limits<double>::infinity();

@@ -14,6 +14,10 @@
 
 namespace crashrank {
 
+/// Above this closing speed pulses do not hold, m/s: the bodies' structure is used up, they pass
+/// through each other, and what the crash does falls as speed rises (docs/guide/crash-model.md).
+inline constexpr double fastest_pulse_mps = 100.0;
+
 /// A body at first contact, as the pulse needs it. Mesh and tree have to outlive the call.
 struct PulseBody {
   const TriangleMesh* mesh = nullptr;  ///< its surface; has to outlive the call

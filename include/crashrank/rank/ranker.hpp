@@ -63,10 +63,12 @@ struct RankedCandidate {
   ScoreInterval interval;               ///< holds the final score, whatever was left undone
   /// From the stage `searched` on: its first contact.
   bool collides = false;
-  bool grazes = false;             ///< passes something within the tolerance before that
-  std::size_t actor = 0;           ///< index into Scenario::actors
-  double time_of_impact_s = 0.0;   ///< from the decision
-  double closing_speed_mps = 0.0;  ///< of the points that meet
+  bool grazes = false;            ///< passes something within the tolerance before that
+  std::size_t actor = 0;          ///< index into Scenario::actors
+  double time_of_impact_s = 0.0;  ///< from the decision
+  /// Of the points that meet. Measures that simulate the crash do not hold above
+  /// `fastest_pulse_mps`.
+  double closing_speed_mps = 0.0;
 };
 
 /// An answer, most promising first; it looks into the Ranker and stands until its next call.
