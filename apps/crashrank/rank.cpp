@@ -137,8 +137,9 @@ void tell_end(const Options& options, const RankResult& ranked, bool answered) {
     warn("", "--policy and --depth have no part in an answer within a budget");
   }
   if (answered) return;
-  warn("", std::string("the budget ended before every score was known: a partial answer, its first "
-                       "place ") +
+  const char* const why = options.bounded() ? "the budget ended before every score was known"
+                                            : "a search for a contact came to no end";
+  warn("", std::string(why) + ": a partial answer, its first place " +
                (ranked.proved ? "proved" : "not proved"));
 }
 

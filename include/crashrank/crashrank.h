@@ -311,9 +311,10 @@ CRASHRANK_API crashrank_status crashrank_ranker_create(const crashrank_scenario*
                                                        crashrank_error* error);
 /// Ends it, and its workers; NULL is left alone.
 CRASHRANK_API void crashrank_ranker_free(crashrank_ranker* ranker);
-/// The situation has changed: takes the ego, the motions of the actors (the same, in the same
-/// order) and the candidates from a scenario over the same shapes. Allocates. Errors: usage, also
-/// for more candidates than the limit; bad_input. The ranker then keeps its situation.
+/// The situation has changed: takes the ego's pose and speed, the motions of the actors and the
+/// candidates from a scenario. Allocates. Errors: usage for more candidates than the limit, and
+/// where shapes, their kinds or masses, the ego's or an actor's shape, their number or the horizon
+/// is not what the ranker was created with; bad_input. The ranker then keeps its situation.
 CRASHRANK_API crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
                                                        const crashrank_scenario* scenario,
                                                        crashrank_error* error);

@@ -2,6 +2,7 @@
 #include "c/handles.hpp"
 #include "rank/scenario_check.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -11,6 +12,7 @@
 struct crashrank_ranker {
   crashrank::Ranker ranker;
   std::size_t most_candidates = 0;
+  crashrank::Scenario prepared;       ///< what an update cannot change is compared with it
   std::vector<double> ego_lengths_m;  ///< by model
   std::vector<crashrank::Candidate> candidates;
   std::vector<crashrank_ranked> told;
@@ -23,11 +25,37 @@ using c::guarded;
 using c::refuse;
 using c::refuse_null;
 
-/// The candidates and motions of a scenario. Errors: bad_input.
-Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
-  if (scenario.ego.model >= ranker.ego_lengths_m.size()) {
-    return make_error(ErrorCode::usage, "the ego's model is not there");
+/// A Ranker's scene holds the bodies and the horizon that it was prepared with.
+Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
+  const auto other = [](const char* place) {
+    Error error =
+        make_error(ErrorCode::usage, "is not what the ranker was created with",
+                   "create a ranker anew; an update changes poses, motions and candidates");
+    error.place = place;
+    return error;
+  };
+  if (scenario.horizon_s != prepared.horizon_s) return other("horizon_s");
+  const auto same_model = [](const ScenarioModel& a, const ScenarioModel& b) {
+    return a.kind == b.kind && (!a.mass_kg || a.mass_kg == b.mass_kg);
+  };
+  if (!std::equal(scenario.models.begin(), scenario.models.end(), prepared.models.begin(),
+                  prepared.models.end(), same_model)) {
+    return other("models");
   }
+  if (scenario.ego.model != prepared.ego.model) return other("ego.model");
+  const auto same_actor = [](const ScenarioActor& a, const ScenarioActor& b) {
+    return a.model == b.model;
+  };
+  if (!std::equal(scenario.actors.begin(), scenario.actors.end(), prepared.actors.begin(),
+                  prepared.actors.end(), same_actor)) {
+    return other("actors");
+  }
+  return Success{};
+}
+
+/// The candidates and motions of a scenario. Errors: bad_input; usage for other bodies.
+Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
+  if (Status same = same_bodies(ranker.prepared, scenario); !same) return same;
   if (Status sound = detail::check_scenario(scenario); !sound) return sound;
   Result<std::vector<Candidate>> candidates =
       make_candidates(scenario, ranker.ego_lengths_m[scenario.ego.model]);
@@ -69,10 +97,11 @@ crashrank_status crashrank_ranker_create(const crashrank_scenario* scenario,
       if (options->most_candidates > 0) how.limits.candidates = options->most_candidates;
       if (options->most_actors > 0) how.limits.actors = options->most_actors;
     }
-    Result<Ranker> made = Ranker::prepare(c::with_masses(*scenario, *models), models->list, how);
+    Scenario with_masses = c::with_masses(*scenario, *models);
+    Result<Ranker> made = Ranker::prepare(with_masses, models->list, how);
     if (!made) return refuse(made.error(), error);
-    auto handle = std::make_unique<crashrank_ranker>(
-        crashrank_ranker{std::move(*made), how.limits.candidates, {}, {}, {}});
+    auto handle = std::make_unique<crashrank_ranker>(crashrank_ranker{
+        std::move(*made), how.limits.candidates, std::move(with_masses), {}, {}, {}});
     for (const Model& model : models->list) {
       handle->ego_lengths_m.push_back(static_cast<double>(model.mesh.bounds().extent().x()));
     }

@@ -1,6 +1,7 @@
 #include "crashrank/rank/candidate.hpp"
 
 #include "crashrank/base/guarded.hpp"
+#include "rank/motion_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,10 @@ namespace {
 constexpr double wheelbase_per_length = 0.6;
 
 double full_grip_mps2(const Scenario& scenario) { return scenario.grip * standard_gravity_mps2; }
+
+// Of an ego this slow the measured yaw rate says nothing of the path: a thousandth of a metre a
+// second and a tenth of a degree would make a circle smaller than the car.
+constexpr double least_curving_mps = 0.5;
 
 double direction_of(double speed_mps) { return speed_mps < 0.0 ? -1.0 : 1.0; }
 
@@ -51,19 +56,21 @@ Result<Candidate> listed_candidate(const Scenario& scenario, std::size_t index, 
     if (!motion) return motion.error();
     return Candidate{listed.name, CandidateOrigin::listed, std::move(*motion), 0.0, 0.0};
   }
-  if (listed.yaw_rate_radps || (!listed.steering_rad && ego.speed_mps == 0.0)) {
+  const bool crawls = std::abs(ego.speed_mps) < least_curving_mps;
+  if (listed.yaw_rate_radps || (!listed.steering_rad && crawls)) {
     TurnMotion turn;
     turn.start = ego.pose;
     turn.speed_mps = ego.speed_mps;
     turn.yaw_rate_radps = listed.yaw_rate_radps.value_or(ego.yaw_rate_radps);
     turn.acceleration_mps2 = listed.acceleration_mps2;
-    const double curvature = ego.speed_mps == 0.0 ? 0.0 : turn.yaw_rate_radps / ego.speed_mps;
+    const double curvature = crawls ? 0.0 : turn.yaw_rate_radps / ego.speed_mps;
     return Candidate{listed.name, CandidateOrigin::listed, turn, listed.acceleration_mps2,
                      curvature};
   }
-  const double curvature = listed.steering_rad
-                               ? curvature_from_steering(*listed.steering_rad, wheelbase)
-                               : ego.yaw_rate_radps / ego.speed_mps;
+  const double tightest = curvature_from_steering(ego.max_steering_rad, wheelbase);
+  const double curvature =
+      listed.steering_rad ? curvature_from_steering(*listed.steering_rad, wheelbase)
+                          : std::clamp(ego.yaw_rate_radps / ego.speed_mps, -tightest, tightest);
   return arc_candidate(ego, listed.name, CandidateOrigin::listed, listed.acceleration_mps2,
                        curvature);
 }
@@ -194,6 +201,11 @@ Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_len
   for (Candidate& candidate : grid) candidate.name = free_name(names, candidate.name);
   candidates.insert(candidates.end(), std::make_move_iterator(grid.begin()),
                     std::make_move_iterator(grid.end()));
+  for (const Candidate& candidate : candidates) {
+    if (const char* const fault = detail::motion_fault(candidate.motion, scenario.horizon_s)) {
+      return detail::refused_motion("candidate '" + candidate.name + "'", "its motion", fault);
+    }
+  }
   return candidates;
 }
 

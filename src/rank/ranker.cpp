@@ -3,6 +3,7 @@
 #include "base/hidden.hpp"
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
+#include "rank/motion_check.hpp"
 #include "rank/near.hpp"
 #include "rank/race.hpp"
 #include "rank/refine.hpp"
@@ -184,31 +185,13 @@ Status within(const RankerLimits& limits, const Scenario& scenario, View<const M
   return Success{};
 }
 
-/// What scenarios within their limits can come to. Beyond it products overflow, and a body that is
-/// nowhere meets nobody.
-constexpr double fastest_mps =
-    1.000001 *
-    (scenario_limits::speed_mps + scenario_limits::acceleration_mps2 * scenario_limits::horizon_s);
-constexpr double fastest_turn_of_actors = 1.000001 * scenario_limits::yaw_rate_dps * 0.0174532925;
-/// The tangent of the largest steering angle over the shortest wheelbase, at that speed.
-constexpr double fastest_turn_of_candidates =
-    5.672 / scenario_limits::min_wheelbase_m * fastest_mps;
-static_assert(scenario_limits::steering_deg == 80.0);
-
-bool is_computable(const Pose& pose) {
-  return rigidity_error(pose) <= max_rigidity_error &&
-         pose.translation.cwiseAbs().maxCoeff() <= scenario_limits::position_m;
+Error refused(const char* whose, std::size_t index, const char* fault) {
+  return detail::refused_motion(whose + std::string("[") + std::to_string(index) + "]",
+                                "its motion", fault);
 }
 
-/// Poses in time were looked at as they became a motion.
-bool is_computable(const Motion& motion, double fastest_turn) {
-  if (!motion.is_finite() || !is_computable(motion.pose_at(0.0))) return false;
-  if (motion.holds_poses()) return true;
-  const MotionBound bound = motion.bound(0.0, scenario_limits::horizon_s);
-  return bound.speed_mps <= fastest_mps && bound.angular_radps <= fastest_turn;
-}
-
-Status check_call(View<const Candidate> candidates, const RankBudget& budget, std::size_t most) {
+Status check_call(View<const Candidate> candidates, const RankBudget& budget,
+                  const detail::Scene& scene, std::size_t most) {
   if (candidates.size() > most) {
     return make_error(ErrorCode::usage, "more candidates than the Ranker's limit",
                       "raise RankerLimits::candidates");
@@ -218,11 +201,17 @@ Status check_call(View<const Candidate> candidates, const RankBudget& budget, st
                       "give seconds, infinity for none");
   }
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (is_computable(candidates[i].motion, fastest_turn_of_candidates)) continue;
-    return make_error(
-        ErrorCode::bad_input,
-        "the motion of candidate " + std::to_string(i) + " is not finite, too far off or too fast",
-        "check what it was made from, and see scenario_limits");
+    const Candidate& candidate = candidates[i];
+    if (const char* const fault = detail::motion_fault(candidate.motion, scene.slice_s.back())) {
+      return refused("candidates", i, fault);
+    }
+    if (!detail::begins_at(candidate.motion.pose_at(0.0), scene.ego_start)) {
+      return refused("candidates", i, "does not begin at the ego's pose");
+    }
+    // They decide between equals.
+    if (!std::isfinite(candidate.acceleration_mps2) || !std::isfinite(candidate.curvature_per_m)) {
+      return refused("candidates", i, "is told with numbers that are not finite");
+    }
   }
   return Success{};
 }
@@ -278,16 +267,12 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
       return make_error(ErrorCode::usage, "there is not one motion for each actor",
                         "give them in the scenario's order");
     }
-    if (!is_computable(ego_start)) {
-      return make_error(ErrorCode::bad_input, "the ego's pose is not finite, rigid or near",
-                        "see scenario_limits");
+    if (const char* const fault = detail::pose_fault(ego_start)) {
+      return detail::refused_motion("ego", "its pose", fault);
     }
     for (std::size_t i = 0; i < actors.size(); ++i) {
-      if (!is_computable(actors[i], fastest_turn_of_actors)) {
-        return make_error(
-            ErrorCode::bad_input,
-            "the motion of actor " + std::to_string(i) + " is not finite, too far off or too fast",
-            "leave out what perception does not know, and see scenario_limits");
+      if (const char* const fault = detail::motion_fault(actors[i], scene.slice_s.back())) {
+        return refused("actors", i, fault);
       }
       coming[i] = actors[i];
     }
@@ -305,7 +290,7 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   State& s = *state_;
   RankerAnswer answer;
   answer.status =
-      detail::guarded([&] { return check_call(candidates, budget, s.limits.candidates); });
+      detail::guarded([&] { return check_call(candidates, budget, s.scene, s.limits.candidates); });
   if (!answer.status) return answer;
   // What is left to do after the last look at the clock: an order and a hash.
   const auto count = static_cast<double>(candidates.size());

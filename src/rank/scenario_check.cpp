@@ -1,5 +1,6 @@
 #include "rank/scenario_check.hpp"
 
+#include "rank/motion_check.hpp"
 #include "rank/number_range.hpp"
 
 #include <cmath>
@@ -16,9 +17,6 @@ namespace limits = scenario_limits;
 constexpr double rad_per_deg = 0.017453292519943295;
 // Conversion from degrees and back rounds.
 constexpr double rounding = 1.0 - 1e-12;
-
-/// Of a listed candidate's poses from the ego: what is farther was written in another frame.
-constexpr double farthest_beginning_m = 1.0;
 
 class Check {
 public:
@@ -112,10 +110,10 @@ void check_candidates(const Scenario& scenario, Check& check) {
                   limits::yaw_rate_dps, rad_per_deg);
     check.poses(path + ".poses", candidate.poses);
     if (candidate.poses.empty()) continue;
-    const Eigen::Vector3d& begins = candidate.poses.front().pose.translation;
-    if (!((begins - scenario.ego.pose.translation).norm() <= farthest_beginning_m)) {
+    if (!begins_at(candidate.poses.front().pose, scenario.ego.pose)) {
       check.refuse(path + ".poses[0]",
-                   "is more than 1 m from the ego's pose, where every manoeuvre begins",
+                   "is more than 1 m or 30 degrees from the ego's pose, where every manoeuvre "
+                   "begins",
                    "write the poses in the frame of the ego's pose");
     }
   }

@@ -1,10 +1,12 @@
 #include "rank/scene.hpp"
 
 #include "rank/contact_severity.hpp"
+#include "rank/motion_check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 namespace crashrank::detail {
@@ -112,6 +114,9 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     if (!body) return body.error();
     Result<Motion> motion = make_motion(actor);
     if (!motion) return motion.error();
+    if (const char* const fault = motion_fault(*motion, scenario.horizon_s)) {
+      return refused_motion("actors." + actor.name, "its motion", fault);
+    }
     result.actors.push_back(*body);
     scene.actors.push_back(make_body(models[body->model], body->mass_kg, std::move(*motion)));
     prepare_body(scenario.models[body->model], scene.actors.back());

@@ -289,4 +289,63 @@ TEST(CApi, AnUpdateRefusesWhatCreateRefuses) {
   }
 }
 
+TEST(CApi, AnUpdateChangesMotionsAndNotBodies) {
+  crashrank_error error{};
+  const Models models = make_models();
+  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  struct Told {
+    double horizon_s = 2.0;
+    double mass_kg = 1500.0;
+    const char* kind = "car";
+    std::size_t actor_model = 0;
+    std::size_t ego_model = 0;
+    int actors = 1;
+  };
+  const auto situation = [&](const Told& told) {
+    crashrank_scenario* made = nullptr;
+    EXPECT_EQ(crashrank_scenario_create("bodies", &made, &error), CRASHRANK_OK);
+    crashrank_scenario_add_model(made, "first", "car", 1500.0, &error);
+    crashrank_scenario_add_model(made, "second", told.kind, told.mass_kg, &error);
+    crashrank_ego ego{};
+    ego.model = told.ego_model;
+    std::memcpy(ego.pose, identity, sizeof identity);
+    ego.speed_mps = 10.0;
+    crashrank_scenario_set_ego(made, &ego, &error);
+    for (int i = 0; i < told.actors; ++i) {
+      const std::string name = "other " + std::to_string(i);
+      crashrank_actor actor{};
+      actor.name = name.c_str();
+      actor.model = told.actor_model;
+      std::memcpy(actor.pose, identity, sizeof identity);
+      actor.pose[3] = 30.0 + 20.0 * i;
+      crashrank_scenario_add_actor(made, &actor, &error);
+    }
+    crashrank_candidate straight{};
+    straight.name = "straight";
+    crashrank_scenario_add_candidate(made, &straight, &error);
+    EXPECT_EQ(crashrank_scenario_set_horizon(made, told.horizon_s, 0.8, &error), CRASHRANK_OK);
+    return Scenario(made);
+  };
+  const Scenario good = situation({});
+  crashrank_ranker* made = nullptr;
+  ASSERT_EQ(crashrank_ranker_create(good.get(), models.get(), nullptr, &made, &error), CRASHRANK_OK)
+      << error.message;
+  const Ranker ranker(made);
+  EXPECT_EQ(crashrank_ranker_update(ranker.get(), good.get(), &error), CRASHRANK_OK);
+  const std::vector<std::pair<Told, const char*>> others{
+      {{4.0}, "horizon_s"},
+      {{2.0, 900.0}, "models"},
+      {{2.0, 1500.0, "pedestrian"}, "models"},
+      {{2.0, 1500.0, "car", 1}, "actors"},
+      {{2.0, 1500.0, "car", 0, 1}, "ego.model"},
+      {{2.0, 1500.0, "car", 0, 0, 2}, "actors"},
+  };
+  for (const auto& [told, place] : others) {
+    const Scenario other = situation(told);
+    EXPECT_EQ(crashrank_ranker_update(ranker.get(), other.get(), &error), CRASHRANK_USAGE) << place;
+    EXPECT_NE(std::strstr(error.message, place), nullptr) << error.message;
+  }
+}
+
 }  // namespace

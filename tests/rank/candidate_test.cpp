@@ -207,6 +207,41 @@ TEST(ListedCandidate, SteeringHoldsTheCurvatureAndYawRateTheRate) {
   }
 }
 
+TEST(ListedCandidate, APathFromTheYawRateIsOneThatTheSteeringCanHold) {
+  Scenario scenario = scenario_at(0.0);
+  scenario.grid.reset();
+  scenario.add_straight_braking = false;
+  scenario.ego.yaw_rate_radps = 0.002;
+  scenario.listed = {listed("go", 2.0)};
+  // A sensor's noise while the ego stands: the turn that is measured, held.
+  for (const double speed : {0.0, 1e-310, 1e-6, 0.001, 0.49}) {
+    scenario.ego.speed_mps = speed;
+    const std::vector<Candidate> c = candidates_of(scenario);
+    ASSERT_EQ(c.size(), 1U);
+    EXPECT_NEAR(c[0].motion.velocity_at(3.0).angular_radps.z(), 0.002, 1e-12) << speed;
+    EXPECT_EQ(c[0].curvature_per_m, 0.0);
+  }
+  // Moving, no path is tighter than the steering makes it.
+  scenario.ego.speed_mps = 1.0;
+  const double tightest = std::tan(scenario.ego.max_steering_rad) / (0.6 * length_m);
+  for (const double yaw_rate : {-5.0, 5.0}) {
+    scenario.ego.yaw_rate_radps = yaw_rate;
+    const std::vector<Candidate> c = candidates_of(scenario);
+    ASSERT_EQ(c.size(), 1U);
+    EXPECT_NEAR(c[0].curvature_per_m, std::copysign(tightest, yaw_rate), 1e-12);
+  }
+}
+
+TEST(ListedCandidate, WhatNoVehicleFollowsIsRefused) {
+  Scenario scenario = scenario_at(60.0);
+  scenario.listed = {listed("spins", 0.0)};
+  scenario.listed[0].steering_rad = 1.2;
+  const Result<std::vector<Candidate>> bad = make_candidates(scenario, length_m);
+  ASSERT_FALSE(bad.ok());
+  EXPECT_EQ(bad.error().place, "candidate 'spins'");
+  EXPECT_EQ(bad.error().reason, "its motion turns faster than 720 deg/s");
+}
+
 TEST(ListedCandidate, TimedPosesAreFollowedAndChecked) {
   Scenario scenario = scenario_at(10.0);
   scenario.grid.reset();

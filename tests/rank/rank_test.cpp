@@ -333,6 +333,22 @@ TEST(Rank, WhatIsOutOfRangeIsToldWithTheRange) {
   EXPECT_EQ(result.error().remedy, "give a number from -720 to 720");
 }
 
+TEST(Rank, AnActorThatNobodyCanBeIsRefusedHoweverItsMotionIsTold) {
+  Scene scene = car_and_wall();
+  scene.add_candidate("keep going", 0.0);
+  ScenarioActor& actor = scene.scenario.actors[0];
+  Pose away = actor.pose;
+  away.translation.x() -= 400.0;
+  // 400 m in a tenth of a second: milliseconds taken for seconds, or two bodies taken for one.
+  actor.poses = {{0.0, actor.pose}, {0.1, away}};
+  Result<RankResult> result = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().place, "actors." + actor.name);
+  EXPECT_EQ(result.error().reason, "its motion is faster than 300 m/s");
+  actor.poses[1].time_s = 2.0;
+  EXPECT_TRUE(rank(scene.scenario, scene.models).ok());
+}
+
 TEST(Rank, TwoOfOneNameAreRefusedAndThoseWithoutAreNot) {
   Scene scene = car_and_wall();
   scene.add_candidate("keep going", 0.0);

@@ -1,6 +1,6 @@
 #include "crashrank/rank/ranker.hpp"
 
-#include "rank/random_scene.hpp"
+#include "rank/ranker_case.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -20,42 +20,6 @@ namespace {
 
 using scenes::Scene;
 using scenes::traffic;
-
-RankOptions options_of(Measure measure, unsigned workers = 1) {
-  RankOptions options;
-  options.measure = measure;
-  options.workers = workers;
-  options.harm.emplace();
-  options.harm->intervals = false;
-  return options;
-}
-
-/// A Ranker of a scene, its candidates, and the answer that it is held against.
-struct Case {
-  Scene scene;
-  RankResult plain;
-  std::vector<Candidate> candidates;
-  std::vector<double> scores;  ///< by candidate
-
-  Case(std::uint64_t seed, Measure measure) : scene(traffic(seed)) {
-    plain = scene.ranked(options_of(measure));
-    candidates = plain.candidates;
-    scores.assign(candidates.size(), -1.0);
-    for (const CandidateResult& c : plain.ranking) {
-      EXPECT_TRUE(c.score.has_value());
-      scores[c.candidate] = c.score.value_or(-1.0);
-    }
-  }
-
-  Ranker ranker(Measure measure, unsigned workers = 1) const {
-    RankerOptions options;
-    options.rank = options_of(measure, workers);
-    options.limits.candidates = 64;
-    Result<Ranker> made = Ranker::prepare(scene.scenario, scene.models, options);
-    EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().message());
-    return std::move(*made);
-  }
-};
 
 constexpr std::array<Measure, 7> measures{
     Measure::harm,     Measure::delta_v, Measure::energy,   Measure::closing_energy,
@@ -248,8 +212,7 @@ TEST(Ranker, AnyDeadlineGivesASoundAnswer) {
 
 TEST(Ranker, WorkersThatADeadlineLeavesBehindReadNothingOfTheCallers) {
   const Case c(301, Measure::harm);
-  std::vector<Motion> motions;
-  for (const ScenarioActor& actor : c.scene.scenario.actors) motions.push_back(*make_motion(actor));
+  const std::vector<Motion> motions = c.motions();
   const Pose& start = c.scene.scenario.ego.pose;
   Ranker ranker = c.ranker(Measure::harm, 4);
   const std::uint64_t whole = ranker.rank(c.candidates).hash;
@@ -296,93 +259,6 @@ TEST(Ranker, MovedActorsAreRankedAsANewScenarioWouldBe) {
   }
   motions.pop_back();
   EXPECT_FALSE(ranker->move_actors(scene.scenario.ego.pose, motions));
-}
-
-TEST(Ranker, WhatIsNotFiniteIsRefusedAndNeverTakenForNothingThere) {
-  const Case c(302, Measure::harm);
-  Ranker ranker = c.ranker(Measure::harm, 2);
-  const std::uint64_t whole = ranker.rank(c.candidates).hash;
-  std::vector<Motion> motions;
-  for (const ScenarioActor& actor : c.scene.scenario.actors) motions.push_back(*make_motion(actor));
-  const Pose& start = c.scene.scenario.ego.pose;
-  for (const double wrong : {static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
-    FreeMotion somewhere;
-    somewhere.start.translation.x() = wrong;
-    FreeMotion somehow;
-    somehow.velocity.angular_radps.z() = wrong;
-    TurnMotion turn;
-    turn.yaw_rate_radps = wrong;
-    ArcMotion arc;
-    arc.acceleration_mps2 = wrong;
-    ArcMotion fast;
-    fast.speed_mps = wrong;
-    for (const Motion& motion :
-         {Motion(somewhere), Motion(somehow), Motion(turn), Motion(arc), Motion(fast)}) {
-      EXPECT_FALSE(motion.is_finite());
-      std::vector<Motion> others = motions;
-      others.back() = motion;
-      const Status moved = ranker.move_actors(start, others);
-      ASSERT_FALSE(moved.ok());
-      EXPECT_EQ(moved.error().code, ErrorCode::bad_input);
-      std::vector<Candidate> candidates = c.candidates;
-      candidates.back().motion = motion;
-      const RankerAnswer answer = ranker.rank(candidates);
-      ASSERT_FALSE(answer.status.ok());
-      EXPECT_EQ(answer.status.error().code, ErrorCode::bad_input);
-      EXPECT_TRUE(answer.ranking.empty());
-      EXPECT_FALSE(answer.proved);
-    }
-    Pose nowhere = start;
-    nowhere.rotation(0, 0) = wrong;
-    EXPECT_FALSE(ranker.move_actors(nowhere, motions).ok());
-  }
-  RankBudget never;
-  never.deadline_s = NAN;
-  EXPECT_FALSE(ranker.rank(c.candidates, never).status.ok());
-  for (const Motion& motion : motions) EXPECT_TRUE(motion.is_finite());
-  EXPECT_EQ(ranker.rank(c.candidates).hash, whole);  // nothing has changed
-}
-
-TEST(Ranker, WhatIsBeyondTheLimitsOfScenariosIsRefused) {
-  const Case c(303, Measure::harm);
-  Ranker ranker = c.ranker(Measure::harm, 2);
-  const std::uint64_t whole = ranker.rank(c.candidates).hash;
-  std::vector<Motion> motions;
-  for (const ScenarioActor& actor : c.scene.scenario.actors) motions.push_back(*make_motion(actor));
-  const Pose& start = c.scene.scenario.ego.pose;
-  TurnMotion spins;
-  spins.yaw_rate_radps = 1.01 * scenario_limits::yaw_rate_dps * std::numbers::pi / 180.0;
-  TurnMotion races;
-  races.speed_mps = 1e308;
-  TurnMotion gains;
-  gains.acceleration_mps2 = 1e308;
-  FreeMotion flies;
-  flies.velocity.linear_mps.z() = 1e5;
-  TurnMotion far;
-  far.start.translation.y() = 1.01 * scenario_limits::position_m;
-  const Motion teleported =
-      *Motion::timed(std::vector<TimedPose>{{0.0, far.start}, {1.0, far.start}});
-  for (const Motion& motion :
-       {Motion(spins), Motion(races), Motion(gains), Motion(flies), Motion(far), teleported}) {
-    EXPECT_TRUE(motion.is_finite());
-    std::vector<Motion> others = motions;
-    others.back() = motion;
-    const Status moved = ranker.move_actors(start, others);
-    ASSERT_FALSE(moved.ok());
-    EXPECT_EQ(moved.error().code, ErrorCode::bad_input);
-  }
-  for (const Motion& motion : {Motion(races), Motion(gains), Motion(flies), Motion(far)}) {
-    std::vector<Candidate> candidates = c.candidates;
-    candidates.back().motion = motion;
-    EXPECT_FALSE(ranker.rank(candidates).status.ok());
-  }
-  EXPECT_FALSE(ranker.move_actors(far.start, motions).ok());
-  spins.yaw_rate_radps /= 1.02;
-  std::vector<Motion> others = motions;
-  others.back() = spins;
-  EXPECT_TRUE(ranker.move_actors(start, others).ok());
-  EXPECT_TRUE(ranker.move_actors(start, motions).ok());
-  EXPECT_EQ(ranker.rank(c.candidates).hash, whole);
 }
 
 TEST(Ranker, LimitsAreKept) {

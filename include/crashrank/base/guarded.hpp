@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <new>
+#include <stdexcept>
 
 namespace crashrank::detail {
 
@@ -15,6 +16,8 @@ template <class Function> auto guarded(const Function& function) -> decltype(fun
       return function();
     } catch (const std::bad_alloc&) {
       return out_of_memory();
+    } catch (const std::length_error&) {
+      return out_of_memory();  // more than any memory holds was asked for
     } catch (const std::exception& error) {
       return make_error(ErrorCode::internal, error.what(), "report this as a defect");
     }

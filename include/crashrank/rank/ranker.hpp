@@ -123,12 +123,14 @@ public:
   /// scenario's order. Begins by waiting for workers that an answer at its deadline left behind,
   /// then costs some µs an actor and allocates nothing but for timed motions. Errors, and nothing
   /// changes: usage where their number is another; bad_input for a pose or motion that is not
-  /// finite or beyond `scenario_limits` (a timed one: where it begins); out_of_memory.
+  /// finite or beyond `scenario_limits` within the horizon; out_of_memory.
   Status move_actors(const Pose& ego_start, View<const Motion> actors) noexcept;
 
   /// Candidates have to stay until the call returns. Errors (in the answer, which is empty then):
   /// usage where there are more than the limits allow or the deadline is NaN; bad_input for a
-  /// candidate whose motion is not finite or beyond what `scenario_limits` can lead to.
+  /// candidate whose motion is not finite, beyond `scenario_limits` within the horizon, or does not
+  /// begin at the ego's pose (1 m, 30°): made before `move_actors`, say; out_of_memory where there
+  /// is no room for the words of an error.
   RankerAnswer rank(View<const Candidate> candidates, const RankBudget& budget = {}) noexcept;
 
   /// What `crashrank::rank` would have told of an answer, but for the samples of what is not known

@@ -107,19 +107,20 @@ inline constexpr double horizon_s = 60.0;                         ///< most, s
 inline constexpr double position_m = 1e5;                         ///< most, each way, m
 inline constexpr double angle_deg = 360.0;                        ///< most, each way
 inline constexpr double speed_mps = 150.0;                        ///< most, each way, m/s
-inline constexpr double acceleration_mps2 = 50.0;                 ///< most, each way, m/s²
-inline constexpr double yaw_rate_dps = 720.0;                     ///< most, each way
-inline constexpr double steering_deg = 80.0;                      ///< most, each way
-inline constexpr double min_wheelbase_m = 0.1;                    ///< m
-inline constexpr double max_wheelbase_m = 30.0;                   ///< m
-inline constexpr double min_mass_kg = 0.1;                        ///< kg
-inline constexpr double max_mass_kg = 1e6;                        ///< kg
-inline constexpr double min_scale = 1e-6;                         ///< metres per file unit
-inline constexpr double max_scale = 1e6;                          ///< metres per file unit
-inline constexpr double min_grip = 0.01;                          ///< least friction
-inline constexpr double max_grip = 3.0;                           ///< most friction
-inline constexpr double crush_time_s = 1.0;                       ///< most, s
-inline constexpr double crush_depth_m = 5.0;                      ///< most, m
+inline constexpr double fastest_mps = 300.0;       ///< most, of any motion within the horizon, m/s
+inline constexpr double acceleration_mps2 = 50.0;  ///< most, each way, m/s²
+inline constexpr double yaw_rate_dps = 720.0;      ///< most, each way
+inline constexpr double steering_deg = 80.0;       ///< most, each way
+inline constexpr double min_wheelbase_m = 0.1;     ///< m
+inline constexpr double max_wheelbase_m = 30.0;    ///< m
+inline constexpr double min_mass_kg = 0.1;         ///< kg
+inline constexpr double max_mass_kg = 1e6;         ///< kg
+inline constexpr double min_scale = 1e-6;          ///< metres per file unit
+inline constexpr double max_scale = 1e6;           ///< metres per file unit
+inline constexpr double min_grip = 0.01;           ///< least friction
+inline constexpr double max_grip = 3.0;            ///< most friction
+inline constexpr double crush_time_s = 1.0;        ///< most, s
+inline constexpr double crush_depth_m = 5.0;       ///< most, m
 }  // namespace scenario_limits
 
 /// Reads a scenario from its text; `file` only names it in errors and lends it its name when the

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "crashrank/rank/ranker.hpp"
+
+#include "rank/random_scene.hpp"
+#include "rank/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace crashrank {
+
+inline RankOptions options_of(Measure measure, unsigned workers = 1) {
+  RankOptions options;
+  options.measure = measure;
+  options.workers = workers;
+  options.harm.emplace();
+  options.harm->intervals = false;
+  return options;
+}
+
+/// A Ranker of a scene, its candidates, and the answer that it is held against.
+struct Case {
+  scenes::Scene scene;
+  RankResult plain;
+  std::vector<Candidate> candidates;
+  std::vector<double> scores;  ///< by candidate
+
+  Case(std::uint64_t seed, Measure measure) : scene(scenes::traffic(seed)) {
+    plain = scene.ranked(options_of(measure));
+    candidates = plain.candidates;
+    scores.assign(candidates.size(), -1.0);
+    for (const CandidateResult& c : plain.ranking) {
+      EXPECT_TRUE(c.score.has_value());
+      scores[c.candidate] = c.score.value_or(-1.0);
+    }
+  }
+
+  std::vector<Motion> motions() const {
+    std::vector<Motion> all;
+    for (const ScenarioActor& actor : scene.scenario.actors) all.push_back(*make_motion(actor));
+    return all;
+  }
+
+  Ranker ranker(Measure measure, unsigned workers = 1) const {
+    RankerOptions options;
+    options.rank = options_of(measure, workers);
+    options.limits.candidates = 64;
+    Result<Ranker> made = Ranker::prepare(scene.scenario, scene.models, options);
+    EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().message());
+    return std::move(*made);
+  }
+};
+
+}  // namespace crashrank
