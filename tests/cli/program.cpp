@@ -112,7 +112,8 @@ void write_box_scenario(const Workplace& place) {
     "add_straight_braking": false
   },
   "actors": [{"name": "stone", "model": "block", "pose": {"x_m": 10}}],
-  "horizon_s": 3
+  "horizon_s": 3,
+  "grip": 0.95
 })");
 }
 

@@ -299,7 +299,7 @@ TEST(Rank, ManoeuvresBeyondTheGripAreTold) {
   }
   const Outcome beyond = with_steering("40");
   EXPECT_EQ(beyond.code, 0);
-  EXPECT_NE(beyond.err.find("1 listed manoeuvre lies beyond the tyres' grip (0.8)"),
+  EXPECT_NE(beyond.err.find("1 listed manoeuvre lies beyond the tyres' grip (0.95)"),
             std::string::npos)
       << beyond.err;
   EXPECT_NE(beyond.err.find("'swerve', in place "), std::string::npos) << beyond.err;
