@@ -102,6 +102,12 @@ std::string glb_with_index(std::uint32_t value) {
   return test::glb(json, buffer);
 }
 
+// In place of the line of the cube's seventh vertex. One more vertex stands at the end, so that no
+// index is out of range where the seventh is lost.
+std::string with_vertex(const std::string& line) {
+  return replaced(cube("", "v 9 9 9\n"), "v 1 1 1", line);
+}
+
 struct Case {
   std::string name;
   std::string bytes;
@@ -128,6 +134,24 @@ std::vector<Case> cases() {
       {"far_back.obj", cube("", "f -9223372036854775808 2 3\n"), "out of range"},
       {"word.obj", "v 0 0 0\r\nv 1 zero 0\nv 0 1 0\nf 1 2 3\n", "line 2: 'zero' is no number"},
       {"short.obj", "# c\nv 0 0\nv 1 0\nv 0 1\nf 1 2 3\n", "line 2: a vertex has three numbers"},
+      {"indented_vertex.obj", with_vertex("  v 1 1 1"), "line 7: the vertex is lost"},
+      {"tabbed_vertex.obj", with_vertex("\tv 1 1 1"), "line 7: the vertex is lost"},
+      {"capital_vertex.obj", with_vertex("V 1 1 1"), "line 7: the vertex is lost"},
+      {"marked_vertex.obj", with_vertex("\xef\xbb\xbfv 1 1 1"), "line 7: the vertex is lost"},
+      {"close_vertex.obj", with_vertex("v1 1 1"), "line 7: the vertex is lost"},
+      {"five.obj", with_vertex("v 1 1 1 1 1"),
+       "line 7: a vertex has 3, 4 or 6 numbers, this line 5"},
+      {"point.obj", with_vertex("v 1 1 .5"), "line 7: '.5' has no digit before its point"},
+      {"point_in_colour.obj", with_vertex("v 1 1 1 0.5 .5 .5"), "line 7: '.5' has no digit"},
+      {"form_feed.obj", with_vertex("v 1 1\f 1"), "line 7: a vertex has three numbers"},
+      {"commented_vertex.obj", with_vertex("v 1 1 1 # 7"), "line 7: the numbers after '#'"},
+      {"curve.obj", with_vertex("cstype bezier\nv 1 1 1\nend"), "line 8: the vertex is lost"},
+      {"joined.obj", with_vertex("# C:\\cars\\\nv 1 1 1"), "line 8: the vertex or face is lost"},
+      {"joined_crlf.obj", with_vertex("# C:\\cars\\\r\nv 1 1 1"), "line 8: the vertex or face"},
+      {"joined_over.obj", with_vertex("# C:\\cars\\\n\nv 1 1 1"), "line 9: the vertex or face"},
+      {"joined_face.obj", replaced(cube(), "f 5 6", "g C:\\cars\\\nf 5 6"), "line 11: the vertex"},
+      {"joined_numbers.obj", with_vertex("v 1 1\\\n1"), "line 7: a vertex has three numbers"},
+      {"far_index.obj", cube("", "f 1 \\\n 2 99\n"), "line 15: vertex '99' is out of range"},
       {"corner.obj", cube("", "f 1 x 3\n"), "'x' is no corner"},
       {"cube.stl", cube(), "neither a text nor a binary STL"},
       {"flat.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nv 3 3 3\nf 1 2 3\nf 2 3 4\n", "degenerate"},
@@ -258,6 +282,54 @@ TEST(BadFile, TheByteOrderMarkCostsNoVertex) {
   ASSERT_TRUE(plain.ok() && marked.ok());
   EXPECT_EQ(plain->mesh.triangles, marked->mesh.triangles);
   EXPECT_EQ(plain->mesh.vertices, marked->mesh.vertices);
+}
+
+// However the line of a vertex is written: the cube, or no mesh.
+TEST(BadFile, LinesOfVerticesThatTheParserReadsLoadAsTheCube) {
+  const ScratchDir dir;
+  const Result<ImportedMesh> plain = import_mesh(dir.write("plain.obj", cube()));
+  ASSERT_TRUE(plain.ok());
+  const std::vector<std::string> lines{"v\t1 1\t1",
+                                       "v  1 1 1 ",
+                                       "v +1 1.0 1e0",
+                                       "v 1 1 1 1",
+                                       "v 1 1 1 0 0.5 1",
+                                       "v 1 1 1\r",
+                                       "v 1 1 1 # the seventh",
+                                       "v 1 1 \\\n1",
+                                       "v 1 1 \\\r\n 1",
+                                       "v \\\n1 1 1",
+                                       "v 1 1 1 .5 .5 .5",
+                                       "\fv 1 1 1",
+                                       "# C:\\a\nv 1 1 1",
+                                       "# a \\\n# b\nv 1 1 1",
+                                       "# a\\\r\n\r\nv 1 1 1",
+                                       "# a\\ \nv 1 1 1",
+                                       "vt 0.5 0.5\nv 1 1 1",
+                                       "  vn 0 0 1\nv 1 1 1",
+                                       "cstype bezier\nend\nv 1 1 1"};
+  for (const std::string& line : lines) {
+    SCOPED_TRACE(line);
+    const Result<ImportedMesh> imported = import_mesh(dir.write("a.obj", with_vertex(line)));
+    ASSERT_TRUE(imported.ok()) << imported.error().message();
+    EXPECT_EQ(imported->mesh.triangles, plain->mesh.triangles);
+    EXPECT_EQ(imported->mesh.vertices, plain->mesh.vertices);
+  }
+}
+
+TEST(BadFile, LinesAreTheSameWhereverAReadOfTheFileEnds) {
+  const ScratchDir dir;
+  for (std::size_t spare = (1U << 20U) - 8; spare < (1U << 20U) + 8; ++spare) {
+    SCOPED_TRACE(spare);
+    // The comment's line ends, or its backslash stands, where the first mebibyte does.
+    const std::string comment = "#" + std::string(spare - 2, 'c');
+    const Result<ImportedMesh> good = import_mesh(dir.write("a.obj", cube(comment + "\r\n")));
+    ASSERT_TRUE(good.ok()) << good.error().message();
+    EXPECT_EQ(good->mesh.size(), 12U);
+    const Result<ImportedMesh> bad = import_mesh(dir.write("b.obj", cube(comment + "\\\r\n")));
+    ASSERT_FALSE(bad.ok());
+    EXPECT_EQ(bad.error().place, "line 2") << bad.error().message();
+  }
 }
 
 TEST(BadFile, LimitsAreKept) {

@@ -79,9 +79,7 @@ std::uint64_t polygons_in(const aiScene& scene) {
 }
 
 // Told where lines of faces in an OBJ file came to nothing.
-std::string passed_over(const aiScene& scene, const Request& request) {
-  if (request.extension != "obj") return {};
-  const std::uint64_t lines = obj_face_lines(STDIN_FILENO);
+std::string passed_over(const aiScene& scene, std::uint64_t lines) {
   const std::uint64_t read = polygons_in(scene);
   if (lines <= read) return {};
   return std::to_string(lines - read) + " of " + std::to_string(lines) +
@@ -154,6 +152,10 @@ Error parser_error(const std::string& text, const FolderIo& files, const Request
 Result<Parsed> parse(const Request& request) {
   const Result<Content> content = look_at(STDIN_FILENO, request.extension);
   if (!content) return content.error();
+  const Result<std::uint64_t> face_lines = request.extension == "obj"
+                                               ? check_obj_lines(STDIN_FILENO)
+                                               : Result<std::uint64_t>(std::uint64_t{0});
+  if (!face_lines) return face_lines.error();
 
   // Never destroyed: the process ends soon, and the destructor of a very deep node tree recurses.
   Assimp::Importer& importer = *std::make_unique<Assimp::Importer>().release();
@@ -179,7 +181,7 @@ Result<Parsed> parse(const Request& request) {
     const std::uint64_t promised = gltf_triangles(STDIN_FILENO, request.file_bytes);
     left_out = std::max(promised, faces_in(*scene) + 1) - faces_in(*scene);
   }
-  const std::string holes = passed_over(*scene, request);
+  const std::string holes = passed_over(*scene, *face_lines);
   Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
   if (!dropped) return dropped.error();
   *dropped += left_out;
