@@ -29,6 +29,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr OutputKind pair_list{"a list of pairs", "query,a,b\n"};
+
 struct Options {
   std::string a;
   std::string b;
@@ -210,7 +212,7 @@ std::string to_text(const Options& options, const std::vector<Query>& queries, c
 int run(const Options& options) {
   if (const Status sound = check(options); !sound) return fail(sound.error());
   const std::vector<std::string> inputs{options.a, options.b, options.poses_file};
-  if (const Status sound = can_be_written(options.pairs_file, inputs); !sound) {
+  if (const Status sound = can_be_written(options.pairs_file, pair_list, inputs); !sound) {
     return fail(sound.error());
   }
   const Result<std::vector<Pose>> poses = load_poses(options);
@@ -221,10 +223,10 @@ int run(const Options& options) {
   if (!b) return fail(b.error());
   std::optional<OutputFile> pairs_out;
   if (!options.pairs_file.empty()) {
-    Result<OutputFile> out = OutputFile::open(options.pairs_file);
+    Result<OutputFile> out = OutputFile::open(options.pairs_file, pair_list);
     if (!out) return fail(out.error());
     pairs_out = std::move(*out);
-    pairs_out->write("query,a,b\n");
+    pairs_out->write(std::string(pair_list.begins));
   }
 
   const Result<Engine> engine = make_engine(options.engine, a->model, b->model);

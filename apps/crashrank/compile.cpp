@@ -15,10 +15,18 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace crashrank::cli {
 namespace {
+
+using namespace std::string_view_literals;
+
+constexpr OutputKind model_file{"a model file",
+                                "\x93"
+                                "CRM\r\n\x1a\n"sv};
 
 struct Options {
   std::string mesh_file;
@@ -43,17 +51,16 @@ Status check_options(const Options& options) {
                       "leave it out where the mass is not known");
   }
   std::error_code ignored;
-  if (std::filesystem::is_directory(options.output, ignored)) {
-    return make_error(ErrorCode::usage, "-o " + options.output + ": is a folder",
-                      "name a file in it");
+  if (std::filesystem::exists(options.output, ignored) &&
+      !std::filesystem::is_regular_file(options.output, ignored)) {
+    return make_error(ErrorCode::usage, "-o " + options.output + ": is a folder or device",
+                      "name another file");
   }
-  // On Linux a redirected file can be told by its descriptor's name.
+  // A model file that is compiled again, with another mass, may take its own place.
+  std::vector<std::string> inputs;
   const std::string mesh = is_standard(options.mesh_file) ? "/dev/stdin" : options.mesh_file;
-  if (std::filesystem::equivalent(mesh, options.output, ignored) && !is_model_file(mesh)) {
-    return make_error(ErrorCode::usage, "the model would replace the mesh it is made from",
-                      "name another file with -o");
-  }
-  return Success{};
+  if (!is_model_file(mesh)) inputs.push_back(mesh);
+  return can_be_written(options.output, model_file, inputs);
 }
 
 int run(const Options& options) {
@@ -67,7 +74,9 @@ int run(const Options& options) {
   stored.mass.mass_kg = options.mass_kg.value_or(known_mass);
   if (Status saved = save_model(stored, options.output, options.force); !saved) {
     Error error = saved.error();
-    if (error.code == ErrorCode::usage) error.remedy = "name another file, or give --force";
+    if (error.code == ErrorCode::usage && !options.force) {
+      error.remedy = "name another file, or give --force";
+    }
     return fail(error);
   }
   // What was written is what counts.

@@ -9,7 +9,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -20,18 +23,75 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status write_file(const fs::path& path, const std::string& bytes) {
-  Result<OutputFile> out = OutputFile::open(path.string(), false);
+// Who writes into a folder wants the file to be in that folder.
+constexpr OutputKind glb_file{"a GLB mesh", "glTF", false};
+constexpr OutputKind ply_file{"a PLY mesh", "ply\n", false};
+constexpr OutputKind png_file{"a PNG picture", "\x89PNG", false};
+
+/// A candidate whose damage is written.
+struct Picked {
+  const CandidateResult* ranked;
+  std::string stem;  ///< of its files, with the folder
+};
+
+std::vector<Picked> pick(const DamageOptions& options, const RankResult& result) {
+  std::vector<Picked> picked;
+  for (std::size_t place = 0; place < result.ranking.size(); ++place) {
+    const CandidateResult& ranked = result.ranking[place];
+    if (ranked.contacts.empty()) continue;
+    if (options.top > 0 && picked.size() == options.top) break;
+    const std::string name = escape_file_name(result.candidates[ranked.candidate].name);
+    picked.push_back(
+        {&ranked, fs::path(options.folder) / fmt::format("{:03}-{}", place + 1, name)});
+  }
+  return picked;
+}
+
+std::string ego_stem(const Picked& picked) { return picked.stem + "-ego"; }
+
+std::string other_stem(const Picked& picked, std::size_t contact, const Scenario& scenario) {
+  const ScenarioActor& actor = scenario.actors[picked.ranked->contacts[contact].actor];
+  return fmt::format("{}-{}-{}", picked.stem, contact + 1, escape_file_name(actor.name));
+}
+
+Status check_file(const std::string& path, const OutputKind& kind, const DamageOptions& options) {
+  if (same_place(path, options.report)) {
+    return Error{ErrorCode::usage,
+                 path,
+                 {},
+                 "is a file of --damage and the one of --report",
+                 "name another file with --report"};
+  }
+  return can_be_written(path, kind, options.inputs, options.folder);
+}
+
+Status check_files(const Picked& picked, const Scenario& scenario, const DamageOptions& options) {
+  std::vector<std::string> bodies{ego_stem(picked)};
+  for (std::size_t i = 0; i < picked.ranked->contacts.size(); ++i) {
+    bodies.push_back(other_stem(picked, i, scenario));
+  }
+  for (const std::string& body : bodies) {
+    if (Status sound = check_file(body + ".glb", glb_file, options); !sound) return sound;
+    if (Status sound = check_file(body + ".ply", ply_file, options); !sound) return sound;
+  }
+  for (const std::string& picture : {ego_stem(picked), picked.stem}) {
+    if (Status sound = check_file(picture + ".png", png_file, options); !sound) return sound;
+  }
+  return Success{};
+}
+
+Status write_file(const std::string& path, const OutputKind& kind, const std::string& bytes) {
+  Result<OutputFile> out = OutputFile::open(path, kind);
   if (!out) return out.error();
   out->write(bytes);
   return out->close();
 }
 
-Status write_body(const fs::path& stem, const TriangleMesh& mesh, const BodyDamage& damage) {
+Status write_body(const std::string& stem, const TriangleMesh& mesh, const BodyDamage& damage) {
   const Result<std::string> glb = damage_glb(mesh, damage.triangles);
   if (!glb) return glb.error();
-  if (Status written = write_file(stem.string() + ".glb", *glb); !written) return written;
-  return write_file(stem.string() + ".ply", damage_ply(mesh, damage.triangles));
+  if (Status written = write_file(stem + ".glb", glb_file, *glb); !written) return written;
+  return write_file(stem + ".ply", ply_file, damage_ply(mesh, damage.triangles));
 }
 
 // Of a few places around the scene the one from which a small picture shows most damage; what
@@ -55,7 +115,7 @@ Result<double> best_azimuth_deg(View<const PictureBody> bodies, double azimuth_d
   return best;
 }
 
-Status write_picture(const fs::path& path, View<const PictureBody> bodies, double azimuth_deg) {
+Status write_picture(const std::string& path, View<const PictureBody> bodies, double azimuth_deg) {
   const Result<double> best = best_azimuth_deg(bodies, azimuth_deg);
   if (!best) return best.error();
   PictureOptions options;
@@ -64,62 +124,73 @@ Status write_picture(const fs::path& path, View<const PictureBody> bodies, doubl
   if (!image) return image.error();
   const Result<std::string> bytes = png(*image);
   if (!bytes) return bytes.error();
-  return write_file(path, *bytes);
+  return write_file(path, png_file, *bytes);
 }
 
-Status write_candidate(const fs::path& stem, const Scenario& scenario, View<const Model> models,
-                       const CandidateResult& ranked) {
+Status write_candidate(const Picked& picked, const Scenario& scenario, View<const Model> models) {
+  const CandidateResult& ranked = *picked.ranked;
   const TriangleMesh& ego = models[scenario.ego.model].mesh;
-  if (Status written = write_body(stem.string() + "-ego", ego, ranked.ego); !written) {
+  if (Status written = write_body(ego_stem(picked), ego, ranked.ego); !written) {
     return written;
   }
   std::vector<PictureBody> bodies{{&ego, ranked.contacts.front().ego.pose, ranked.ego.triangles}};
   for (std::size_t i = 0; i < ranked.contacts.size(); ++i) {
     const Contact& contact = ranked.contacts[i];
-    const ScenarioActor& actor = scenario.actors[contact.actor];
-    const TriangleMesh& mesh = models[actor.model].mesh;
-    const std::string name =
-        fmt::format("{}-{}-{}", stem.string(), i + 1, escape_file_name(actor.name));
-    if (Status written = write_body(name, mesh, contact.other); !written) return written;
+    const TriangleMesh& mesh = models[scenario.actors[contact.actor].model].mesh;
+    const std::string stem = other_stem(picked, i, scenario);
+    if (Status written = write_body(stem, mesh, contact.other); !written) return written;
     bodies.push_back({&mesh, contact.other.pose, contact.other.triangles});
   }
   const double side = azimuth_of_damage_deg(bodies.front());
-  Status drawn = write_picture(stem.string() + "-ego.png", {bodies.data(), 1}, side);
+  Status drawn = write_picture(ego_stem(picked) + ".png", {bodies.data(), 1}, side);
   if (!drawn) return drawn;
-  return write_picture(stem.string() + ".png", bodies, side);
+  return write_picture(picked.stem + ".png", bodies, side);
+}
+
+Error cannot_make(const std::string& folder, const std::string& why) {
+  return Error{ErrorCode::not_found,
+               folder,
+               {},
+               "cannot make this folder: " + why,
+               "name a new folder, or one that can be written to"};
 }
 
 }  // namespace
 
-Status make_folder(const std::string& folder) {
+Status check_damage_folder(const DamageOptions& options) {
+  if (same_place(options.folder, options.report)) {
+    return Error{ErrorCode::usage,
+                 options.report,
+                 {},
+                 "is the folder of --damage",
+                 "name another file with --report"};
+  }
   std::error_code failure;
-  fs::create_directories(folder, failure);
-  std::error_code ignored;
-  if (fs::is_directory(folder, ignored)) return Success{};
-  const bool taken = fs::exists(folder, ignored);
-  return Error{ErrorCode::not_found,
-               folder,
-               {},
-               "cannot make this folder: " +
-                   (taken ? std::string("a file has its name") : failure.message()),
-               "name a new folder, or one that can be written to"};
+  fs::path there = fs::absolute(options.folder, failure);
+  while (!fs::exists(there, failure) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, failure)) {
+    return cannot_make(options.folder, "a file has its name, or that of a folder above");
+  }
+  if (access(there.c_str(), W_OK | X_OK) == 0) return Success{};
+  return cannot_make(options.folder, strerror(errno));
 }
 
-Status write_damage(const std::string& folder, std::size_t top, const Scenario& scenario,
+Status write_damage(const DamageOptions& options, const Scenario& scenario,
                     View<const Model> models, const RankResult& result) {
-  if (Status made = make_folder(folder); !made) return made;
-  const auto colliding = static_cast<std::size_t>(
-      std::count_if(result.ranking.begin(), result.ranking.end(),
-                    [](const CandidateResult& ranked) { return !ranked.contacts.empty(); }));
-  const std::size_t wanted = top == 0 ? colliding : std::min(top, colliding);
+  const std::vector<Picked> picked = pick(options, result);
+  for (const Picked& one : picked) {
+    if (Status sound = check_files(one, scenario, options); !sound) return sound;
+  }
+  std::error_code failure;
+  fs::create_directories(options.folder, failure);
+  std::error_code ignored;
+  if (!fs::is_directory(options.folder, ignored)) {
+    return cannot_make(options.folder, failure.message());
+  }
   std::size_t written = 0;
-  Progress progress("drawing", wanted);
-  for (std::size_t place = 0; written < wanted; ++place) {
-    const CandidateResult& ranked = result.ranking[place];
-    if (ranked.contacts.empty()) continue;
-    const std::string name = escape_file_name(result.candidates[ranked.candidate].name);
-    const fs::path stem = fs::path(folder) / fmt::format("{:03}-{}", place + 1, name);
-    if (Status done = write_candidate(stem, scenario, models, ranked); !done) return done;
+  Progress progress("drawing", picked.size());
+  for (const Picked& one : picked) {
+    if (Status done = write_candidate(one, scenario, models); !done) return done;
     progress.update(++written);
   }
   return Success{};

@@ -8,18 +8,28 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace crashrank::cli {
 
-/// Makes the folder when it is missing. Errors: not_found.
-Status make_folder(const std::string& folder);
+struct DamageOptions {
+  std::string folder;
+  std::size_t top = 5;              ///< colliding candidates, best first; 0: all
+  std::vector<std::string> inputs;  ///< files that must not be replaced
+  std::string report;               ///< where a page will be written; may be empty
+};
 
-/// Writes, for the first `top` candidates that collide (0: all), into `folder`, made when missing:
+/// Whether the folder is there or can be made, before the work for it is begun; nothing is made.
+/// Errors: not_found; usage where the report has its name.
+Status check_damage_folder(const DamageOptions& options);
+
+/// Writes, for the first candidates that collide, into the folder, made when missing:
 /// RRR-CANDIDATE.png with all bodies at first contact, RRR-CANDIDATE-ego.png, .glb and .ply of the
 /// ego alone, and RRR-CANDIDATE-N-OTHER.glb and .ply for each body hit; RRR is the rank. Names are
-/// made safe, so that nothing is written outside the folder. Errors: not_found or internal, naming
-/// the file.
-Status write_damage(const std::string& folder, std::size_t top, const Scenario& scenario,
+/// made safe, so that nothing is written outside the folder. Errors: usage where one of the files
+/// would replace an input, the report or a file of another kind, and then nothing is written;
+/// not_found or internal, naming the file.
+Status write_damage(const DamageOptions& options, const Scenario& scenario,
                     View<const Model> models, const RankResult& result);
 
 }  // namespace crashrank::cli

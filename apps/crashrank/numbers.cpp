@@ -1,24 +1,11 @@
 #include "numbers.hpp"
 
 #include <charconv>
-#include <limits>
+#include <cstdlib>
+#include <string>
 #include <system_error>
 
 namespace crashrank::cli {
-
-namespace {
-
-/// What a number rounds to that no double holds: zero or infinity. Such a number has an exponent,
-/// or hundreds of digits before its point, or of zeros behind it.
-double beyond_double(std::string_view word) {
-  const std::size_t exponent = word.find_first_of("eE");
-  const std::string_view digits = word.substr(0, exponent);
-  const bool small = exponent == std::string_view::npos ? digits.find('.') < 3
-                                                        : word.substr(exponent + 1, 1) == "-";
-  return small ? 0.0 : std::numeric_limits<double>::infinity();
-}
-
-}  // namespace
 
 std::optional<std::vector<double>> parse_numbers(std::string_view line) {
   constexpr std::string_view separators = " \t,\r";
@@ -36,7 +23,11 @@ std::optional<std::vector<double>> parse_numbers(std::string_view line) {
     if (end.ec == std::errc::invalid_argument || end.ptr != word.data() + word.size()) {
       return std::nullopt;
     }
-    if (end.ec == std::errc::result_out_of_range) value = beyond_double(word);
+    if (end.ec == std::errc::result_out_of_range) {
+      // Says only that no double holds the number; strtod tells infinity from zero, and the sign.
+      // Its locale is the C one: the program sets none.
+      value = std::strtod(std::string(word).c_str(), nullptr);
+    }
     numbers.push_back(value);
   }
 }

@@ -29,6 +29,8 @@
 namespace crashrank::cli {
 namespace {
 
+constexpr OutputKind html_page{"an HTML page", "<!DOCTYPE html"};
+
 struct Options {
   std::string scenario;
   std::string measure;
@@ -104,7 +106,7 @@ Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& 
 }
 
 Status write_report(const std::string& path, const std::string& page) {
-  Result<OutputFile> file = OutputFile::open(path);
+  Result<OutputFile> file = OutputFile::open(path, html_page);
   if (!file) return file.error();
   file->write(page);
   return file->close();
@@ -171,13 +173,15 @@ int run(const Options& options) {
   if (!harm) return fail(harm.error());
   how.harm = *harm;
   // Where the answer goes is seen to before the work.
-  if (!options.damage_folder.empty()) {
-    if (const Status made = make_folder(options.damage_folder); !made) return fail(made.error());
-  }
   std::vector<std::string> inputs{options.scenario, options.profile};
   for (const ScenarioModel& model : scenario->models) inputs.push_back(model.path);
-  if (const Status sound = can_be_written(options.report, inputs); !sound) {
+  if (const Status sound = can_be_written(options.report, html_page, inputs, options.damage_folder);
+      !sound) {
     return fail(sound.error());
+  }
+  const DamageOptions damage{options.damage_folder, options.damage_top, inputs, options.report};
+  if (!options.damage_folder.empty()) {
+    if (const Status sound = check_damage_folder(damage); !sound) return fail(sound.error());
   }
   const Result<std::vector<Model>> models = load_models(*scenario, options.tree);
   if (!models) return fail(models.error());
@@ -190,8 +194,7 @@ int run(const Options& options) {
     return fail(error);
   }
   if (!options.damage_folder.empty()) {
-    const Status written =
-        write_damage(options.damage_folder, options.damage_top, *scenario, *models, *ranked);
+    const Status written = write_damage(damage, *scenario, *models, *ranked);
     if (!written) return fail(written.error());
   }
   if (!options.report.empty()) {

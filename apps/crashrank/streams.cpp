@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -61,6 +62,46 @@ template <class Take> Status read_pieces(const std::string& path, std::size_t li
   return Success{};
 }
 
+bool begins_with(const std::string& path, std::string_view beginning) {
+  std::string head(beginning.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == beginning;
+}
+
+/// Refuses what is there where it must not be replaced; devices and pipes only take the bytes.
+Status can_be_replaced(const std::string& path, const OutputKind& kind) {
+  std::error_code ignored;
+  if (!kind.follow_links && fs::is_symlink(path, ignored)) {
+    return file_error(ErrorCode::not_found, path, "cannot write: it is a symbolic link",
+                      "remove it first, or name another folder");
+  }
+  if (fs::is_directory(path, ignored)) {
+    return file_error(ErrorCode::usage, path, "is a folder", "name a file in it");
+  }
+  if (fs::is_regular_file(path, ignored) && !fs::is_empty(path, ignored) &&
+      !begins_with(path, kind.begins)) {
+    return file_error(
+        ErrorCode::usage, path,
+        "holds something else than " + std::string(kind.name) + ", which would replace it",
+        "remove it first, or name another file");
+  }
+  return Success{};
+}
+
+/// The path without links, "..", or a slash at its end; the file need not be there.
+fs::path plain(const std::string& path) {
+  std::error_code ignored;
+  const fs::path found = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+  return found.has_filename() ? found : found.parent_path();
+}
+
+/// Whether making a folder makes this one, too.
+bool comes_with(const std::string& folder, const std::string& made) {
+  const fs::path relative = plain(made).lexically_relative(plain(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
 }  // namespace
 
 Result<std::string> read_text(const std::string& path, std::size_t limit) {
@@ -108,31 +149,41 @@ Result<StandardInputFile> StandardInputFile::receive(std::size_t limit,
 
 void OutputFile::Close::operator()(std::FILE* file) const { std::fclose(file); }
 
-Status can_be_written(const std::string& path, const std::vector<std::string>& inputs) {
+bool same_place(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  if (a.empty() || b.empty()) return false;
+  return fs::equivalent(a, b, ignored) || plain(a) == plain(b);
+}
+
+Status can_be_written(const std::string& path, const OutputKind& kind,
+                      const std::vector<std::string>& inputs, const std::string& folder_to_make) {
   if (path.empty() || is_standard(path)) return Success{};
   for (const std::string& input : inputs) {
-    std::error_code ignored;
     // On Linux a redirected file can be told by its descriptor's name.
-    if (std::filesystem::equivalent(is_standard(input) ? "/dev/stdin" : input, path, ignored)) {
+    if (same_place(is_standard(input) ? "/dev/stdin" : input, path)) {
       return file_error(ErrorCode::usage, path, "would be written over what is read",
                         "name another file");
     }
   }
+  if (Status free = can_be_replaced(path, kind); !free) return free;
   const bool there = access(path.c_str(), F_OK) == 0;
   const std::size_t slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
   if (there ? access(path.c_str(), W_OK) == 0 : access(folder.c_str(), W_OK | X_OK) == 0) {
     return Success{};
   }
-  return file_error(ErrorCode::not_found, path, std::string("cannot write: ") + strerror(errno),
+  const int reason = errno;
+  if (!there && !folder_to_make.empty() && comes_with(folder, folder_to_make)) return Success{};
+  return file_error(ErrorCode::not_found, path, std::string("cannot write: ") + strerror(reason),
                     "name a file in a folder that can be written to");
 }
 
-Result<OutputFile> OutputFile::open(const std::string& path, bool follow_links) {
+Result<OutputFile> OutputFile::open(const std::string& path, const OutputKind& kind) {
   OutputFile out;
   out.path_ = path;
   if (is_standard(path)) return out;
-  const int links = follow_links ? 0 : O_NOFOLLOW;
+  if (const Status free = can_be_replaced(path, kind); !free) return free.error();
+  const int links = kind.follow_links ? 0 : O_NOFOLLOW;
   const int descriptor =
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | links, 0666);
   if (descriptor >= 0) out.file_.reset(fdopen(descriptor, "wb"));

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace crashrank::cli {
@@ -31,16 +32,29 @@ private:
   std::unique_ptr<const std::string, Remove> path_;
 };
 
+/// A kind of file that is written. A regular file that does not begin so is never replaced: it may
+/// be anything, the buffer beside a glTF file, which no list of inputs holds, among it.
+struct OutputKind {
+  std::string_view name;     ///< such as "an HTML page"
+  std::string_view begins;   ///< how each file of it begins
+  bool follow_links = true;  ///< unset: symbolic links are refused, it has to be in its folder
+};
+
+/// Whether both are, or would be, the same file or folder; links are followed.
+bool same_place(const std::string& a, const std::string& b);
+
 /// Whether a file could be written there, before the work for it is begun; an empty name and
-/// standard output can. Errors: not_found; usage where it is one of the inputs.
-Status can_be_written(const std::string& path, const std::vector<std::string>& inputs);
+/// standard output can, and what lies where a folder comes with `folder_to_make`.
+/// Errors: not_found; usage where it is one of the inputs, a folder or a file of another kind.
+Status can_be_written(const std::string& path, const OutputKind& kind,
+                      const std::vector<std::string>& inputs,
+                      const std::string& folder_to_make = {});
 
 /// A text file being written, or standard output for "-".
 class OutputFile {
 public:
-  /// Errors: not_found. With `follow_links` unset a symbolic link is refused: who opens a file in a
-  /// folder wants it to be in that folder.
-  static Result<OutputFile> open(const std::string& path, bool follow_links = true);
+  /// Errors: not_found; usage for a file of another kind.
+  static Result<OutputFile> open(const std::string& path, const OutputKind& kind);
 
   void write(const std::string& text);
   /// Says whether everything arrived; nothing may be written after.

@@ -25,6 +25,8 @@
 namespace crashrank::cli {
 namespace {
 
+constexpr OutputKind svg_picture{"an SVG picture", "<svg "};
+
 struct Options {
   std::string a;
   std::string b;
@@ -239,7 +241,7 @@ int run(const Options& options) {
     return fail(transform.error());
   }
   const std::vector<std::string> inputs{options.a, options.b, options.poses_file};
-  if (const Status sound = can_be_written(options.plot, inputs); !sound) {
+  if (const Status sound = can_be_written(options.plot, svg_picture, inputs); !sound) {
     return fail(sound.error());
   }
   const Result<std::vector<Pose>> poses = read_poses(options.poses_file);
@@ -253,7 +255,7 @@ int run(const Options& options) {
   const Result<Sweep> swept = sweep(*a, *b, *poses, *how);
   if (!swept) return fail(swept.error());
   if (!options.plot.empty()) {
-    Result<OutputFile> out = OutputFile::open(options.plot);
+    Result<OutputFile> out = OutputFile::open(options.plot, svg_picture);
     if (!out) return fail(out.error());
     const auto name = [](const std::string& path) {
       return std::filesystem::path(path).filename().string();

@@ -2,6 +2,7 @@
 
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/tree/model_file.hpp"
+#include "rank/number_range.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -30,8 +31,16 @@ Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
   Result<LoadedModel> loaded = load_model(wanted.path);
   if (!loaded) return loaded.error();
   LoadedScenarioModel read;
-  read.model = std::move(loaded->stored.model);
   read.mass_kg = loaded->stored.mass.mass_kg;
+  constexpr detail::NumberRange allowed{scenario_limits::min_mass_kg, scenario_limits::max_mass_kg};
+  if (!wanted.mass_kg && read.mass_kg > 0.0 && !allowed.holds(read.mass_kg)) {
+    return make_error(ErrorCode::bad_input,
+                      "its mass of " + detail::number_text(read.mass_kg) + " kg is not from " +
+                          detail::number_text(allowed.lowest) + " to " +
+                          detail::number_text(allowed.highest) + " kg",
+                      "compile it again with --mass-kg, or give mass_kg in the scenario");
+  }
+  read.model = std::move(loaded->stored.model);
   return read;
 }
 

@@ -162,6 +162,11 @@ bool begins_with(const std::string& path, View<const unsigned char> head) noexce
 }
 
 Status write_whole(const std::string& path, View<const unsigned char> bytes, bool overwrite) {
+  struct stat facts {};
+  // A name given over a pipe or a device takes it from those who use it.
+  if (overwrite && ::stat(path.c_str(), &facts) == 0 && !S_ISREG(facts.st_mode)) {
+    return file_error(ErrorCode::usage, path, "is no regular file, and stays", "name another file");
+  }
   std::string name;
   int number = -1;
   for (int attempt = 0; number < 0 && attempt < 100; ++attempt) {

@@ -23,7 +23,8 @@ Result<FileBytes> file_bytes(const std::string& path, const LoadModelOptions& op
 bool begins_with(const std::string& path, View<const unsigned char> head) noexcept;
 
 /// Writes a file beside its place, brings it to the disk and gives it its name.
-/// Errors: usage when something has that name and `overwrite` is not set; not_found, internal.
+/// Errors: usage when something has that name and `overwrite` is not set, or is no regular file;
+/// not_found, internal.
 Status write_whole(const std::string& path, View<const unsigned char> bytes, bool overwrite);
 
 }  // namespace crashrank::detail

@@ -80,5 +80,27 @@ TEST(ScenarioModels, WhatCannotBeReadNamesItsModelAndChangesNothing) {
   }
 }
 
+TEST(ScenarioModels, AMassThatNoScenarioMayGiveIsTheFilesFaultUnlessTheScenarioGivesOne) {
+  const ScratchDir dir;
+  for (const double mass_kg : {1e9, 0.01}) {
+    SCOPED_TRACE(mass_kg);
+    const std::string car = compiled(dir, mass_kg);
+    ScenarioModel model = wanted("car", car);
+    const Result<LoadedScenarioModel> refused = load_scenario_model(model);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, ErrorCode::bad_input);
+    EXPECT_EQ(refused.error().file, car);
+    for (const char* told : {"0.1", "1000000", "--mass-kg", "give mass_kg in the scenario"}) {
+      EXPECT_NE(refused.error().message().find(told), std::string::npos)
+          << refused.error().message();
+    }
+    model.mass_kg = 1200.0;
+    EXPECT_TRUE(load_scenario_model(model).ok());
+  }
+  for (const double mass_kg : {0.0, 0.1, 1e6}) {
+    EXPECT_TRUE(load_scenario_model(wanted("car", compiled(dir, mass_kg))).ok()) << mass_kg;
+  }
+}
+
 }  // namespace
 }  // namespace crashrank

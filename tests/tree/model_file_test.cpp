@@ -233,8 +233,13 @@ TEST_F(ModelFile, IsReplacedWholeOrNotAtAll) {
   ASSERT_FALSE(nowhere.ok());
   EXPECT_EQ(nowhere.error().code, ErrorCode::not_found);
   ::mkdir(path("folder").c_str(), 0700);
-  EXPECT_FALSE(save_model(first, path("folder"), true).ok());
-  EXPECT_EQ(files(), 2U);
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  for (const char* name : {"folder", "pipe"}) {
+    const Status kept = save_model(first, path(name), true);
+    ASSERT_FALSE(kept.ok()) << name;
+    EXPECT_EQ(kept.error().code, ErrorCode::usage) << kept.error().message();
+  }
+  EXPECT_EQ(files(), 3U);
 }
 
 TEST_F(ModelFile, RefusesWhatCannotBeLoadedAgain) {

@@ -28,7 +28,8 @@ struct LoadedScenarioModel {
 /// Reads one model: a mesh as `import_mesh` does and builds its trees, or a model file as
 /// `load_model` does. In crashrank::import. Blocks; safe from any thread.
 /// Errors: those of the two, naming file and model; bad_input for a model file that the scenario
-/// wants scaled, turned or moved; usage for a model without a path.
+/// wants scaled, turned or moved, or whose mass is outside `scenario_limits` where the scenario
+/// gives none; usage for a model without a path.
 CRASHRANK_API Result<LoadedScenarioModel> load_scenario_model(
     const ScenarioModel& wanted, const ScenarioModelOptions& options = {});
 

@@ -83,8 +83,9 @@ CRASHRANK_API Result<std::vector<unsigned char>> encode_model(const StoredModel&
 
 /// Writes a model file, as a whole or not at all: it is written beside its place under another
 /// name, brought to the disk and renamed. Blocks on the file system.
-/// Errors: as `encode_model`; usage when there is something at `path` and `overwrite` is not set;
-/// not_found when the folder cannot be written to; internal when the disk is full.
+/// Errors: as `encode_model`; usage when there is something at `path` and `overwrite` is not set,
+/// or it is a folder, device or pipe; not_found when the folder cannot be written to; internal when
+/// the disk is full.
 CRASHRANK_API Status save_model(const StoredModel& stored, const std::string& path,
                                 bool overwrite = false);
 
