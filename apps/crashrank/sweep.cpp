@@ -293,8 +293,9 @@ void add_sweep(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "sweep", "Compare the policies that hand a query's node pairs to cores, depth by depth");
-  command->add_option("A", options->a, "Mesh file of body A; - is standard input")->required();
-  command->add_option("B", options->b, "Mesh file of body B")->required();
+  command->add_option("A", options->a, "Mesh or model file of body A; - is standard input")
+      ->required();
+  command->add_option("B", options->b, "Mesh or model file of body B")->required();
   command
       ->add_option("--poses", options->poses_file,
                    "File with one row-major 4x4 matrix of B in A a line; - is standard input")

@@ -12,8 +12,9 @@ namespace {
 namespace limits = scenario_limits;
 
 // Conversions and bounds round.
-constexpr double rounding = 1.0 + 1e-6;
-constexpr double fastest_turn_radps = rounding * limits::yaw_rate_dps * std::numbers::pi / 180.0;
+constexpr double a_little_more = 1.0 + 1e-6;
+constexpr double fastest_turn_radps =
+    a_little_more * limits::yaw_rate_dps * std::numbers::pi / 180.0;
 
 }  // namespace
 
@@ -32,11 +33,11 @@ const char* motion_fault(const Motion& motion, double horizon_s) {
   if (!motion.is_finite()) return "is not finite";
   if (const char* const fault = pose_fault(motion.pose_at(0.0))) return fault;
   const MotionBound bound = motion.bound(0.0, horizon_s);
-  if (!(bound.speed_mps <= rounding * limits::fastest_mps)) return "is faster than 300 m/s";
+  if (!(bound.speed_mps <= a_little_more * limits::fastest_mps)) return "is faster than 300 m/s";
   if (!(bound.angular_radps <= fastest_turn_radps)) return "turns faster than 720 deg/s";
   // The bound adds what keeps the body on its curve.
   const double gains = std::hypot(limits::acceleration_mps2, bound.speed_mps * bound.angular_radps);
-  if (!(bound.acceleration_mps2 <= rounding * gains)) {
+  if (!(bound.acceleration_mps2 <= a_little_more * gains)) {
     return "gains or loses more than 50 m/s in a second";
   }
   return nullptr;

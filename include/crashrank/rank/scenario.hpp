@@ -52,13 +52,13 @@ struct ScenarioActor {
 };
 
 /// A manoeuvre written out: acceleration with steering or yaw rate, or timed poses when there are
-/// any. With neither steering nor yaw rate the ego's path keeps its curvature.
+/// any. With neither of the two the path keeps the ego's curvature, below 0.5 m/s its yaw rate.
 struct ListedCandidate {
   std::string name;                      ///< unique
   double acceleration_mps2 = 0.0;        ///< along the forward axis; against the speed it brakes
   std::optional<double> steering_rad;    ///< of the road wheels, left positive
   std::optional<double> yaw_rate_radps;  ///< held while it moves
-  std::vector<TimedPose> poses;          ///< where there are any, they say all
+  std::vector<TimedPose> poses;          ///< begin within 1 m and 30 degrees of the ego's
 };
 
 /// Size of a generated grid of manoeuvres.
