@@ -16,7 +16,7 @@ namespace {
 constexpr const char* epilogue =
     R"(Data goes to standard output, messages to standard error; - names a standard stream.
 Exit codes: 0 done, 1 internal failure, 2 usage, 3 bad input, 4 a budget ended it with a
-partial answer.
+partial answer, or the memory.
 
 Examples:
   crashrank inspect car.obj --json

@@ -3,7 +3,6 @@
 #include "damage_folder.hpp"
 #include "engine.hpp"
 #include "mesh_arguments.hpp"
-#include "rank_warnings.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
@@ -211,7 +210,9 @@ int run(const Options& options) {
     print(ranking_text(*scenario, *models, *ranked, text));
   }
   const bool answered = ranked->complete || (options.first_place && ranked->proved);
-  warn_of_doubts(options.scenario, *scenario, *ranked);
+  for (const std::string& doubt : ranking_doubts(*scenario, *ranked)) {
+    warn(options.scenario, doubt);
+  }
   tell_end(options, *ranked, answered);
   return answered ? exit_done : exit_budget;
 }

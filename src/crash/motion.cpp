@@ -45,9 +45,14 @@ Eigen::Matrix3d yawed(const Eigen::Matrix3d& rotation, double angle) {
 }
 
 // Poses are accepted up to 1e-6 off a rotation, which 100 m away is as much as the tolerance of a
-// contact; what is a rotation to rounding keeps its bits.
+// contact; what is a rotation to rounding keeps its bits. A mirrored or scaled pose has no heading
+// that could be told: the motion is not finite, which whoever ranks with it refuses.
 Pose rigid(const Pose& pose) {
-  if (rigidity_error(pose) <= 1e-12) return pose;
+  const double error = rigidity_error(pose);
+  if (error <= 1e-12) return pose;
+  if (!(error <= max_rigidity_error)) {
+    return {pose.rotation, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
+  }
   return {Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix(), pose.translation};
 }
 

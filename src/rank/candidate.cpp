@@ -2,6 +2,7 @@
 
 #include "crashrank/base/guarded.hpp"
 #include "rank/motion_check.hpp"
+#include "rank/scenario_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -175,6 +176,7 @@ std::string free_name(std::set<std::string>& taken, const std::string& wish) {
 }
 
 Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_length_m) {
+  if (Status sound = detail::check_scenario(scenario); !sound) return sound.error();
   const double wheelbase = wheelbase_m(scenario, ego_length_m);
   std::vector<Candidate> candidates;
   std::set<std::string> names;

@@ -3,6 +3,7 @@
 #include "crashrank/rank/scenario.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -30,8 +31,12 @@ const char* pose_fault(const Pose& pose) {
 const char* motion_fault(const Motion& motion, double horizon_s) {
   static_assert(limits::position_m == 1e5 && limits::fastest_mps == 300.0 &&
                 limits::yaw_rate_dps == 720.0 && limits::acceleration_mps2 == 50.0);
-  if (!motion.is_finite()) return "is not finite";
+  if (!motion.is_finite()) return "is not finite, or begins at a pose that is not rigid";
   if (const char* const fault = pose_fault(motion.pose_at(0.0))) return fault;
+  // The first kink of all is where timed poses begin.
+  if (motion.holds_poses() && motion.next_kink(-std::numeric_limits<double>::infinity()) > 0.0) {
+    return "begins after time 0";
+  }
   const MotionBound bound = motion.bound(0.0, horizon_s);
   if (!(bound.speed_mps <= a_little_more * limits::fastest_mps)) return "is faster than 300 m/s";
   if (!(bound.angular_radps <= fastest_turn_radps)) return "turns faster than 720 deg/s";
@@ -53,10 +58,8 @@ bool begins_at(const Pose& begins, const Pose& ego) {
 }
 
 Error refused_motion(std::string place, const char* what, const char* fault) {
-  Error error =
-      make_error(ErrorCode::bad_input, std::string(what) + " " + fault,
-                 "check what it was made from, its units and its times; scenario_limits has the "
-                 "bounds");
+  Error error = make_error(ErrorCode::bad_input, std::string(what) + " " + fault,
+                           "check what it was made from: its units, its times, its frame");
   error.place = std::move(place);
   return error;
 }

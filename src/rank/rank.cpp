@@ -15,6 +15,7 @@ namespace {
 
 Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> models,
                                  const RankOptions& options) {
+  if (Status shared = detail::check_workers(options.workers); !shared) return shared.error();
   const Status sound = detail::check_scenario(scenario);
   if (!sound) return sound.error();
   if (options.harm) {

@@ -206,7 +206,10 @@ Status check_call(View<const Candidate> candidates, const RankBudget& budget,
       return refused("candidates", i, fault);
     }
     if (!detail::begins_at(candidate.motion.pose_at(0.0), scene.ego_start)) {
-      return refused("candidates", i, "does not begin at the ego's pose");
+      Error error =
+          refused("candidates", i, "begins more than 1 m or 30 degrees from the ego's pose");
+      error.remedy = "make the candidates anew after each move_actors";
+      return error;
     }
     // They decide between equals.
     if (!std::isfinite(candidate.acceleration_mps2) || !std::isfinite(candidate.curvature_per_m)) {
@@ -222,6 +225,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
                                const RankerOptions& options) {
   const auto start = Watch::Clock::now();
   return detail::guarded([&]() -> Result<Ranker> {
+    if (Status shared = detail::check_workers(options.rank.workers); !shared) return shared.error();
     const Status sound = detail::check_scenario(scenario);
     if (!sound) return sound.error();
     const Status fits = within(options.limits, scenario, models);

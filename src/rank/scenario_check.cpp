@@ -1,5 +1,6 @@
 #include "rank/scenario_check.hpp"
 
+#include "crashrank/dispatch/worker_pool.hpp"
 #include "rank/motion_check.hpp"
 #include "rank/number_range.hpp"
 
@@ -51,15 +52,17 @@ public:
     if (!(rigidity_error(pose) <= max_rigidity_error)) {
       refuse(path, "is not a rigid pose", "give a rotation, without scale or mirror");
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      at_most(path, pose.translation[axis], limits::position_m);
+    for (const auto& [axis, key] :
+         {std::pair(0, ".x_m"), std::pair(1, ".y_m"), std::pair(2, ".z_m")}) {
+      at_most(path + key, pose.translation[axis], limits::position_m);
     }
   }
 
   void poses(const std::string& path, const std::vector<TimedPose>& poses) {
-    for (const TimedPose& timed : poses) {
-      not_negative(path, timed.time_s, limits::horizon_s);
-      pose(path, timed.pose);
+    for (std::size_t i = 0; i < poses.size() && status.ok(); ++i) {
+      const std::string at = path + "[" + std::to_string(i) + "]";
+      not_negative(at + ".t_s", poses[i].time_s, limits::horizon_s);
+      pose(at, poses[i].pose);
     }
   }
 
@@ -184,6 +187,12 @@ Status check_harm(const HarmOptions& harm, const std::string& path) {
   Check check;
   check_harm(harm, path, check);
   return check.status;
+}
+
+Status check_workers(unsigned workers) {
+  if (workers <= max_workers) return Success{};
+  return make_error(ErrorCode::usage, "there are " + std::to_string(workers) + " workers",
+                    "let at most " + std::to_string(max_workers) + " share the work");
 }
 
 Status check_names(const Scenario& scenario) {

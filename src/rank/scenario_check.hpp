@@ -15,7 +15,10 @@ Status check_scenario(const Scenario& scenario);
 /// about. Those without one cannot be mistaken for each other. A part of `check_scenario`.
 Status check_names(const Scenario& scenario);
 
-/// The same for harm that a program made: the ranges of `harm_limits`. `path` goes before its keys.
+/// Whether so many threads may share the work; 0 counts as 1. Errors: usage.
+Status check_workers(unsigned workers);
+
+/// Whether harm that a program made keeps to `harm_limits`. `path` goes before its keys.
 Status check_harm(const HarmOptions& harm, const std::string& path);
 
 }  // namespace crashrank::detail

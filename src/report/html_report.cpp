@@ -1,6 +1,7 @@
 #include "crashrank/report/html_report.hpp"
 
 #include "crashrank/report/escape.hpp"
+#include "crashrank/report/ranking.hpp"
 #include "report/damage_summary.hpp"
 #include "report/page/embedded.hpp"
 #include "report/plan_view.hpp"
@@ -142,6 +143,9 @@ private:
         result_.complete ? "" : "are known to ", measure_name(result_.measure),
         escape_xml(measure_unit(result_.measure)), result_.elapsed_s * 1e3,
         result_.complete ? "" : "; the answer is partial");
+    for (const std::string& doubt : ranking_doubts(scenario_, result_)) {
+      out_ += "<p class='note'>Doubtful: " + escape_xml(doubt) + ".</p>\n";
+    }
   }
 
   void verdict() {

@@ -150,8 +150,9 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
                     std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
   const Candidate& candidate = result.candidates[ranked.candidate];
-  const double until_s =
-      ranked.contacts.empty() ? scenario.horizon_s : ranked.contacts.front().time_of_impact_s;
+  const double until_s = !ranked.contacts.empty() ? ranked.contacts.front().time_of_impact_s
+                         : ranked.score           ? scenario.horizon_s
+                                                  : 0.0;
   const std::optional<double> demand = grip_demand(candidate, scenario, until_s);
   const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
   Json contacts = Json::array();

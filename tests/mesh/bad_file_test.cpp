@@ -130,6 +130,8 @@ std::vector<Case> cases() {
       {"index.obj", cube("", "f 1 2 99\n"), "vertex '99' is out of range: there are 8"},
       {"indented.obj", replaced(cube(), "f 1 4 3 2", "  f 1 4 3 2"), "", 10,
        "1 of 6 lines of faces were passed over"},
+      {"all_indented.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n f 1 2 3\n",
+       "no surface is left: 1 of 1 lines of faces were passed over"},
       {"marked.obj", cube("\xef\xbb\xbf", "f 1 2 99\n"), "line 15: vertex '99'"},
       {"far_back.obj", cube("", "f -9223372036854775808 2 3\n"), "out of range"},
       {"word.obj", "v 0 0 0\r\nv 1 zero 0\nv 0 1 0\nf 1 2 3\n", "line 2: 'zero' is no number"},

@@ -232,6 +232,14 @@ TEST(ListedCandidate, APathFromTheYawRateIsOneThatTheSteeringCanHold) {
   }
 }
 
+TEST(ListedCandidate, ANumberThatIsNoneIsToldByItsKey) {
+  Scenario scenario = scenario_at(10.0);
+  scenario.grip = NAN;
+  const Result<std::vector<Candidate>> bad = make_candidates(scenario, length_m);
+  ASSERT_FALSE(bad.ok());
+  EXPECT_EQ(bad.error().place, "grip");
+}
+
 TEST(ListedCandidate, WhatNoVehicleFollowsIsRefused) {
   Scenario scenario = scenario_at(60.0);
   scenario.listed = {listed("spins", 0.0)};

@@ -1,5 +1,7 @@
 // What docs/guide/faults.md promises for input that makes little sense.
 
+#include "crashrank/rank/ranker.hpp"
+
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -104,13 +106,29 @@ TEST(Fault, APoseWithoutANumberIsNoRigidPose) {
   const Result<RankResult> refused = rank(scene.scenario, scene.models);
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, ErrorCode::bad_input);
-  EXPECT_EQ(refused.error().place, "candidates.listed[0].poses");
+  EXPECT_EQ(refused.error().place, "candidates.listed[0].poses[1]");
   pose = {};
   pose.translation.x() = nan;
   scene.scenario.listed[0].poses[1].pose = pose;
   EXPECT_FALSE(rank(scene.scenario, scene.models).ok());
   scene.scenario.listed[0].poses[1] = {nan, {}};
-  EXPECT_FALSE(rank(scene.scenario, scene.models).ok());
+  const Result<RankResult> timeless = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(timeless.ok());
+  EXPECT_EQ(timeless.error().place, "candidates.listed[0].poses[1].t_s");
+}
+
+TEST(Fault, MoreWorkersThanThereMayBeAreRefused) {
+  Scene scene = car_and_wall(10.0);
+  scene.add_candidate("keep going", 0.0);
+  for (const auto& [workers, fine] : {std::pair(0U, true), {64U, true}, {65U, false}}) {
+    RankOptions options;
+    options.workers = workers;
+    EXPECT_EQ(rank(scene.scenario, scene.models, options).ok(), fine) << workers;
+    RankerOptions ranker;
+    ranker.rank.workers = workers;
+    const Result<Ranker> prepared = Ranker::prepare(scene.scenario, scene.models, ranker);
+    EXPECT_EQ(prepared.ok(), fine) << workers;
+  }
 }
 
 }  // namespace

@@ -390,6 +390,7 @@ TEST(Rank, NumbersThatNobodyCanComputeWithAreRefused) {
     EXPECT_EQ(place_after([&](Scenario& s) { s.models[0].mass_kg = bad; }), "models.car.mass_kg");
     EXPECT_EQ(place_after([&](Scenario& s) { s.grip = bad; }), "grip");
   }
+  EXPECT_EQ(place_after([](Scenario& s) { s.ego.pose.translation.y() = 2e5; }), "ego.pose.y_m");
   EXPECT_EQ(place_after([](Scenario& s) { s.models[0].mass_kg = 0.0; }), "models.car.mass_kg");
   EXPECT_EQ(place_after([](Scenario& s) { s.horizon_s = 0.0; }), "horizon_s");
   EXPECT_EQ(place_after([](Scenario& s) { s.grid = CandidateGrid{0, 3}; }), "candidates.grid");

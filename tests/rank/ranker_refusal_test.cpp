@@ -96,16 +96,33 @@ TEST(RankerRefusal, NothingMovesBeyondTheLimitsOfScenarios) {
     to.translation.x() += 0.1 * speed_mps;
     return *Motion::timed(std::vector<TimedPose>{{0.0, from}, {0.1, to}});
   };
-  const std::vector<Motion> beyond{
-      Motion(spins),         Motion(races),
-      Motion(gains),         Motion(gains_at_once),
-      Motion(stops_at_once), Motion(brakes),
-      Motion(curls),         Motion(flies),
-      Motion(far),           timed(start, 1.01 * scenario_limits::fastest_mps),
-      timed(far.start, 0.0)};
+  TurnMotion mirrored;
+  mirrored.start = start;
+  mirrored.start.rotation.col(1) *= -1.0;
+  TurnMotion doubled;
+  doubled.start = start;
+  doubled.start.rotation *= 2.0;
+  EXPECT_FALSE(Motion(mirrored).is_finite());
+  EXPECT_FALSE(Motion(doubled).is_finite());
+  Pose away = start;
+  away.translation.x() += 1.0;
+  const Motion late = *Motion::timed(std::vector<TimedPose>{{5.0, start}, {6.0, away}});
+  const std::vector<Motion> beyond{Motion(mirrored),
+                                   Motion(doubled),
+                                   late,
+                                   Motion(spins),
+                                   Motion(races),
+                                   Motion(gains),
+                                   Motion(gains_at_once),
+                                   Motion(stops_at_once),
+                                   Motion(brakes),
+                                   Motion(curls),
+                                   Motion(flies),
+                                   Motion(far),
+                                   timed(start, 1.01 * scenario_limits::fastest_mps),
+                                   timed(far.start, 0.0)};
   for (std::size_t i = 0; i < beyond.size(); ++i) {
     SCOPED_TRACE(i);
-    EXPECT_TRUE(beyond[i].is_finite());
     std::vector<Motion> others = motions;
     others.back() = beyond[i];
     const Status moved = ranker.move_actors(start, others);

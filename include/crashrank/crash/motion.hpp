@@ -78,8 +78,8 @@ struct MotionBound {
 /// How a body moves: its pose and velocity at every time t >= 0 (s). Before 0 it is where it is at
 /// 0. A value; reading from many threads is safe. Planar kinds move in the world's x-y plane
 /// whatever the pitch and roll of the start; their heading is the body's x axis seen from above.
-/// Start poses have to be rigid within `max_rigidity_error`; rotations off by more than rounding
-/// are orthonormalised.
+/// Start poses are rigid within `max_rigidity_error`; any other makes a motion that is not finite.
+/// Rotations off by more than rounding are orthonormalised.
 class CRASHRANK_API Motion {
 public:
   /// Rests at the world's origin.

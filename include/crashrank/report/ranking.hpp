@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace crashrank {
 
@@ -32,5 +33,12 @@ struct RankingTextOptions {
 CRASHRANK_API std::string ranking_text(const Scenario& scenario, View<const Model> models,
                                        const RankResult& result,
                                        const RankingTextOptions& options = {});
+
+/// What makes places of an answer doubtful though nothing is wrong with it, one sentence each,
+/// names as they are: contacts faster than the crash model reaches, listed manoeuvres beyond the
+/// grip of the tyres, timed poses that end while their body moves or begin at another speed than
+/// the ego's.
+CRASHRANK_API std::vector<std::string> ranking_doubts(const Scenario& scenario,
+                                                      const RankResult& result);
 
 }  // namespace crashrank

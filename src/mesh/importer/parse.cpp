@@ -193,6 +193,10 @@ Result<Parsed> parse(const Request& request) {
   if (!unit) return unit.error();
   Result<TriangleMesh> mesh = flatten(*scene, request, *unit, files.mesh_name());
   if (!mesh) return mesh.error();
+  if (mesh->triangles.empty() && !holes.empty()) {
+    return make_error(ErrorCode::bad_input, "no surface is left: " + holes,
+                      "begin each face with a small f and a blank");
+  }
   if (mesh->triangles.empty()) {
     return make_error(ErrorCode::bad_input, "the file holds no triangles",
                       "export surfaces, not points or lines");

@@ -1,0 +1,131 @@
+#include "crashrank/crash/pulse.hpp"
+#include "crashrank/rank/candidate.hpp"
+#include "crashrank/report/ranking.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+/// Things of one kind: how many there are, and words about the first.
+struct Counted {
+  std::size_t count = 0;
+  std::string first;
+
+  void add(std::string words) {
+    if (count++ == 0) first = std::move(words);
+  }
+  std::string many(const char* one, const char* more) const {
+    return count == 1 ? fmt::format("1 {}", one) : fmt::format("{} {}", count, more);
+  }
+};
+
+/// How far a candidate was followed: to its first contact; not at all where that is not known.
+double followed_s(const Scenario& scenario, const CandidateResult& ranked) {
+  if (!ranked.contacts.empty()) return ranked.contacts.front().time_of_impact_s;
+  return ranked.score ? scenario.horizon_s : 0.0;
+}
+
+/// The speed at which a timed motion's body is stopped dead where its poses end, if before then.
+double cut_speed_mps(const Motion& motion, double before_s) {
+  const double end = motion.rest_time();
+  if (!motion.holds_poses() || !(end < before_s) || !(end > 0.0)) return 0.0;
+  return motion.velocity_at(end * (1.0 - 1e-9)).linear_mps.norm();
+}
+
+constexpr double moves_mps = 0.5;
+
+void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
+  if (!needs_crash(result.measure)) return;
+  Counted fast;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
+                    [](const Contact& c) { return c.closing_speed_mps > fastest_pulse_mps; })) {
+      fast.add({});
+    }
+  }
+  if (fast.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} somebody at more than {:g} m/s, where the crash model does not hold: its scores fall as "
+      "speed rises; rank by closing-energy",
+      fast.many("candidate meets", "candidates meet"), fastest_pulse_mps));
+}
+
+void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
+                      std::vector<std::string>& doubts) {
+  constexpr double whole_grip = 1.001;  // the grid takes all of it, up to rounding
+  const double speed = std::abs(scenario.ego.speed_mps);
+  Counted slips;
+  Counted ends;
+  Counted jumps;
+  for (std::size_t place = 0; place < result.ranking.size(); ++place) {
+    const CandidateResult& ranked = result.ranking[place];
+    const Candidate& candidate = result.candidates[ranked.candidate];
+    const double until_s = followed_s(scenario, ranked);
+    const std::string who = fmt::format("'{}', in place {}, ", candidate.name, place + 1);
+    const std::optional<double> demand = grip_demand(candidate, scenario, until_s);
+    if (demand && *demand > whole_grip) {
+      slips.add(who + fmt::format("takes {:.2f} times what there is", *demand));
+    }
+    if (!candidate.motion.holds_poses()) continue;
+    const double cut = cut_speed_mps(candidate.motion, until_s);
+    if (cut > moves_mps) {
+      ends.add(who + fmt::format("at {:g} s and {:.1f} m/s", candidate.motion.rest_time(), cut));
+    }
+    const double begins = candidate.motion.velocity_at(0.0).linear_mps.norm();
+    if (std::abs(begins - speed) > 1.0 + 0.1 * speed) {
+      jumps.add(who + fmt::format("at {:.1f} m/s", begins));
+    }
+  }
+  if (slips.count > 0) {
+    doubts.push_back(fmt::format(
+        "{} beyond the tyres' grip ({:g}), so that the car cannot follow: {}",
+        slips.many("listed manoeuvre lies", "listed manoeuvres lie"), scenario.grip, slips.first));
+  }
+  if (ends.count > 0) {
+    doubts.push_back(fmt::format(
+        "{} before the horizon ({:g} s) while moving, and stands still from then on: {}",
+        ends.many("listed plan ends", "listed plans end"), scenario.horizon_s, ends.first));
+  }
+  if (jumps.count > 0) {
+    doubts.push_back(fmt::format("{} at another speed than the ego's {:.1f} m/s: {}",
+                                 jumps.many("listed plan begins", "listed plans begin"), speed,
+                                 jumps.first));
+  }
+}
+
+void doubt_actors(const Scenario& scenario, std::vector<std::string>& doubts) {
+  Counted ends;
+  for (const ScenarioActor& actor : scenario.actors) {
+    if (actor.poses.empty()) continue;
+    const Result<Motion> motion = make_motion(actor);
+    if (!motion) continue;
+    const double cut = cut_speed_mps(*motion, scenario.horizon_s);
+    if (cut <= moves_mps) continue;
+    ends.add(fmt::format("'{}', at {:g} s and {:.1f} m/s", actor.name, motion->rest_time(), cut));
+  }
+  if (ends.count == 0) return;
+  doubts.push_back(fmt::format(
+      "the poses of {} before the horizon ({:g} s) while moving, and stand still from then on: {}",
+      ends.many("actor end", "actors end"), scenario.horizon_s, ends.first));
+}
+
+}  // namespace
+
+std::vector<std::string> ranking_doubts(const Scenario& scenario, const RankResult& result) {
+  std::vector<std::string> doubts;
+  doubt_speeds(result, doubts);
+  doubt_manoeuvres(scenario, result, doubts);
+  doubt_actors(scenario, doubts);
+  return doubts;
+}
+
+}  // namespace crashrank

@@ -1,0 +1,103 @@
+#include "crashrank/report/html_report.hpp"
+#include "crashrank/report/ranking.hpp"
+
+#include "told_ranking.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+Motion planned(double begin_mps, double end_mps, double end_s) {
+  Pose middle;
+  middle.translation.x() = 0.5 * end_s * begin_mps;
+  Pose last = middle;
+  last.translation.x() += 0.5 * end_s * end_mps;
+  return *Motion::timed(std::vector<TimedPose>{{0.0, {}}, {0.5 * end_s, middle}, {end_s, last}});
+}
+
+/// Nothing doubtful: the ego drives 20 m/s, the second candidate hits at 10 m/s after 0.5 s.
+struct Sound : Told {
+  Sound() {
+    scenario.ego.speed_mps = 20.0;
+    scenario.horizon_s = 3.0;
+    result.measure = Measure::harm;
+  }
+  std::vector<std::string> doubts() const { return ranking_doubts(scenario, result); }
+};
+
+TEST(Doubts, ThereAreNoneOfAnOrdinaryRanking) { EXPECT_TRUE(Sound().doubts().empty()); }
+
+TEST(Doubts, ContactsFasterThanTheCrashModelAreTold) {
+  Sound told;
+  told.result.ranking[1].contacts[1].closing_speed_mps = 100.1;
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0].rfind("1 candidate meets somebody at more than 100 m/s", 0), 0U);
+  told.result.measure = Measure::closing_energy;
+  EXPECT_TRUE(told.doubts().empty());
+}
+
+TEST(Doubts, TheGripCountsUpToTheFirstContact) {
+  Sound told;
+  // 25 m/s at the contact, 50 m/s at the horizon.
+  ArcMotion arc;
+  arc.speed_mps = 20.0;
+  arc.acceleration_mps2 = 10.0;
+  arc.curvature_per_m = 0.01;
+  told.scenario.grip = 1.21;
+  Candidate& hits = told.result.candidates[1];
+  hits.motion = arc;
+  hits.acceleration_mps2 = 10.0;
+  EXPECT_TRUE(told.doubts().empty());
+  told.scenario.grip = 1.19;
+  ASSERT_EQ(told.doubts().size(), 1U);  // hypot(10, 6.25) / 9.80665 = 1.2025
+  EXPECT_NE(told.doubts()[0].find("'hit', in place 2, takes 1.01 times"), std::string::npos)
+      << told.doubts()[0];
+}
+
+TEST(Doubts, PlansThatEndWhileMovingOrBeginAtAnotherSpeedAreTold) {
+  Sound told;
+  Candidate& misses = told.result.candidates[0];
+  misses.motion = planned(20.0, 20.0, 2.0);
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_NE(told.doubts()[0].find("'miss', in place 1, at 2 s and 20.0 m/s"), std::string::npos);
+  misses.motion = planned(20.0, 20.0, 3.0);  // as long as the horizon
+  EXPECT_TRUE(told.doubts().empty());
+  misses.motion = planned(20.0, 0.0, 2.0);  // it has come to rest
+  EXPECT_TRUE(told.doubts().empty());
+  misses.motion = planned(1.0, 0.0, 2.0);
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_NE(told.doubts()[0].find("another speed than the ego's 20.0 m/s: 'miss', in place 1, at "
+                                  "1.0 m/s"),
+            std::string::npos)
+      << told.doubts()[0];
+  // What ends after the contact is not followed that far.
+  misses.motion = Motion();
+  told.result.candidates[1].motion = planned(20.0, 20.0, 1.0);
+  EXPECT_TRUE(told.doubts().empty());
+}
+
+TEST(Doubts, ActorsWhosePosesEndWhileTheyMoveAreTold) {
+  Sound told;
+  Pose away;
+  away.translation.x() = 4.0;
+  told.scenario.actors[1].poses = {{0.0, {}}, {0.2, away}};
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_NE(told.doubts()[0].find("'second', at 0.2 s and 20.0 m/s"), std::string::npos);
+}
+
+TEST(Doubts, ThePageTellsThem) {
+  Sound told;
+  EXPECT_EQ(html_report(told.scenario, told.models, told.result).find("Doubtful"),
+            std::string::npos);
+  told.result.ranking[1].contacts[0].closing_speed_mps = 120.0;
+  EXPECT_NE(html_report(told.scenario, told.models, told.result)
+                .find("Doubtful: 1 candidate meets somebody"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace crashrank
