@@ -35,15 +35,16 @@ TEST(Allocation, AWarmDispatchAllocatesNothing) {
       options.store = store;
       options.depth = 9;
       // Which job shares a batch with which depends on timing, and so does how much room the lists
-      // need: now and then a warm dispatch still grows one. What allocates per job does so every
-      // time.
-      int grown = 0;
-      for (int i = 0; i < 40; ++i) {
+      // need: they grow until they have met what can come together. What allocates per job does so
+      // every time, and is never quiet.
+      constexpr int in_a_row = 10;
+      int quiet = 0;
+      for (int runs = 0; quiet < in_a_row && runs < 500; ++runs) {
         const long before = allocations.load();
         ASSERT_TRUE(dispatcher->run(queries, lists, options).ok());
-        if (i >= 20 && allocations.load() != before) ++grown;
+        quiet = allocations.load() == before ? quiet + 1 : 0;
       }
-      EXPECT_LE(grown, 3) << policy_name(policy);
+      EXPECT_EQ(quiet, in_a_row) << policy_name(policy);
     }
   }
 }
