@@ -16,7 +16,6 @@
 #include "crashrank/tree/model.hpp"
 #include "crashrank/tree/model_file.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
