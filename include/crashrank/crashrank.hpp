@@ -31,6 +31,8 @@
 
 #include "crashrank/dispatch/dispatcher.hpp"
 
+#include "crashrank/vehicle/body_kind.hpp"
+
 #include "crashrank/crash/injury.hpp"
 #include "crashrank/crash/motion.hpp"
 #include "crashrank/crash/severity.hpp"

@@ -11,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> stages{"base",  "mesh", "tree",   "collide", "dispatch",
-                                      "crash", "rank", "report", "c"};
+const std::vector<std::string> stages{"base",    "mesh",  "tree", "collide", "dispatch",
+                                      "vehicle", "crash", "rank", "report",  "c"};
 
 int level(const std::string& stage) {
   for (std::size_t i = 0; i < stages.size(); ++i) {
@@ -21,8 +21,8 @@ int level(const std::string& stage) {
   return -1;
 }
 
-// Data flows mesh -> tree -> collide -> dispatch -> crash -> rank -> report: a stage may include
-// itself and what stands to its left.
+// Data flows mesh -> tree -> collide -> dispatch -> vehicle -> crash -> rank -> report: a stage may
+// include itself and the stages to its left.
 std::vector<std::string> violations(const fs::path& root) {
   static const std::regex include(R"re(^\s*#\s*include\s*[<"](?:crashrank/)?([a-z]+)/)re");
   std::vector<std::string> found;

@@ -2,7 +2,7 @@
 
 #include "crashrank/base/export.hpp"
 #include "crashrank/crash/injury.hpp"
-#include "crashrank/rank/body_kind.hpp"
+#include "crashrank/vehicle/body_kind.hpp"
 
 #include <cstddef>
 #include <vector>

@@ -5,9 +5,9 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/crash/motion.hpp"
 #include "crashrank/mesh/import.hpp"
-#include "crashrank/rank/body_kind.hpp"
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/measure.hpp"
+#include "crashrank/vehicle/body_kind.hpp"
 
 #include <Eigen/Core>
 

@@ -6,7 +6,7 @@
 
 namespace crashrank {
 
-/// What a body is; decides its mass where none is given.
+/// What a body is. Decides its mass where none is given.
 enum class BodyKind {
   car,
   truck,

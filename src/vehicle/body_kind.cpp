@@ -1,4 +1,4 @@
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/vehicle/body_kind.hpp"
 
 #include <algorithm>
 #include <cmath>
