@@ -32,6 +32,7 @@
 #include "crashrank/dispatch/dispatcher.hpp"
 
 #include "crashrank/vehicle/body_kind.hpp"
+#include "crashrank/vehicle/surface.hpp"
 
 #include "crashrank/crash/injury.hpp"
 #include "crashrank/crash/motion.hpp"

@@ -83,6 +83,27 @@ void check_names(const std::vector<Named>& named, const char* path, Check& check
   }
 }
 
+void check_models(const Scenario& scenario, Check& check) {
+  for (const ScenarioModel& model : scenario.models) {
+    const std::string path = "models." + model.name;
+    if (model.mass_kg) {
+      check.within(path + ".mass_kg", *model.mass_kg, {limits::min_mass_kg, limits::max_mass_kg});
+    }
+    if (model.center_of_mass_m) {
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        check.at_most(path + ".center_of_mass_m[" + std::to_string(i) + "]",
+                      (*model.center_of_mass_m)[i], limits::position_m);
+      }
+    }
+    if (model.yaw_inertia_kgm2) {
+      check.within(path + ".yaw_inertia_kgm2", *model.yaw_inertia_kgm2,
+                   {0.0, limits::yaw_inertia_kgm2, true});
+    }
+    check.within(path + ".stiffness", model.stiffness,
+                 {limits::min_stiffness, limits::max_stiffness});
+  }
+}
+
 void check_ego(const Scenario& scenario, Check& check) {
   const ScenarioEgo& ego = scenario.ego;
   if (ego.model >= scenario.models.size()) {
@@ -99,6 +120,7 @@ void check_ego(const Scenario& scenario, Check& check) {
     check.within("ego.wheelbase_m", *ego.wheelbase_m,
                  {limits::min_wheelbase_m, limits::max_wheelbase_m});
   }
+  check.not_negative("ego.occupants", ego.occupants.value_or(0.0), harm_limits::people);
 }
 
 void check_candidates(const Scenario& scenario, Check& check) {
@@ -147,6 +169,7 @@ void check_actors(const Scenario& scenario, Check& check) {
     check.at_most(path + ".acceleration_mps2", actor.acceleration_mps2, limits::acceleration_mps2);
     check.at_most(path + ".yaw_rate_dps", actor.yaw_rate_radps, limits::yaw_rate_dps, rad_per_deg);
     check.poses(path + ".poses", actor.poses);
+    check.not_negative(path + ".occupants", actor.occupants.value_or(0.0), harm_limits::people);
   }
 }
 
@@ -205,11 +228,7 @@ Status check_names(const Scenario& scenario) {
 Status check_scenario(const Scenario& scenario) {
   if (Status named = check_names(scenario); !named) return named;
   Check check;
-  for (const ScenarioModel& model : scenario.models) {
-    if (!model.mass_kg) continue;
-    check.within("models." + model.name + ".mass_kg", *model.mass_kg,
-                 {limits::min_mass_kg, limits::max_mass_kg});
-  }
+  check_models(scenario, check);
   check_ego(scenario, check);
   check_candidates(scenario, check);
   check_actors(scenario, check);

@@ -24,6 +24,7 @@ constexpr NumberRange angle{-limits::angle_deg, limits::angle_deg};
 constexpr NumberRange speed{-limits::speed_mps, limits::speed_mps};
 constexpr NumberRange acceleration{-limits::acceleration_mps2, limits::acceleration_mps2};
 constexpr NumberRange yaw_rate{-limits::yaw_rate_dps, limits::yaw_rate_dps};
+constexpr NumberRange occupants{0.0, harm_limits::people};
 constexpr NumberRange steering{-limits::steering_deg, limits::steering_deg};
 
 std::string indexed(const char* key, std::size_t index) {
@@ -101,10 +102,31 @@ Axis read_axis(const JsonObject& object, const char* key, Axis otherwise) {
 
 bool same_line(Axis a, Axis b) { return static_cast<int>(a) / 2 == static_cast<int>(b) / 2; }
 
+std::optional<Eigen::Vector3d> read_point(const JsonObject& object, const char* key) {
+  const json* array = object.array(key, 3, 3);
+  if (array == nullptr) return std::nullopt;
+  Eigen::Vector3d point;
+  for (std::size_t i = 0; i < 3; ++i) {
+    point[static_cast<Eigen::Index>(i)] = detail::checked_number(
+        (*array)[i], object.path_of(indexed(key, i).c_str()), position, object.status(), 0.0);
+  }
+  return point;
+}
+
+std::optional<Surface> read_surface(const JsonObject& object) {
+  if (!object.has("surface")) return std::nullopt;
+  const Result<Surface> surface =
+      surface_from_name(object.text("surface", limits::name_characters));
+  if (surface) return *surface;
+  object.refuse("surface", surface.error().reason, surface.error().remedy);
+  return std::nullopt;
+}
+
 ScenarioModel read_model(const json& value, const std::string& name, const std::string& path,
                          Status& status) {
   const JsonObject object(value, path, status,
-                          {"mesh", "kind", "mass_kg", "scale", "up", "forward", "origin_m"});
+                          {"mesh", "kind", "mass_kg", "scale", "up", "forward", "origin_m",
+                           "center_of_mass_m", "yaw_inertia_kgm2", "stiffness", "surface"});
   ScenarioModel model;
   model.name = name;
   object.require("mesh");
@@ -119,14 +141,12 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
   if (same_line(model.transform.up, model.transform.forward)) {
     object.refuse("forward", "lies along the same line as up", "give two different axes");
   }
-  if (const json* origin = object.array("origin_m", 3, 3)) {
-    for (int i = 0; i < 3; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      model.transform.origin_m[i] = detail::checked_number(
-          (*origin)[index], object.path_of(indexed("origin_m", index).c_str()), position, status,
-          0.0);
-    }
-  }
+  if (const auto origin = read_point(object, "origin_m")) model.transform.origin_m = *origin;
+  model.center_of_mass_m = read_point(object, "center_of_mass_m");
+  model.yaw_inertia_kgm2 =
+      object.optional_number("yaw_inertia_kgm2", {0.0, limits::yaw_inertia_kgm2, true});
+  model.stiffness = object.number("stiffness", {limits::min_stiffness, limits::max_stiffness}, 1.0);
+  model.surface = read_surface(object);
   return model;
 }
 
@@ -145,7 +165,7 @@ std::size_t read_model_name(const JsonObject& object, const std::vector<Scenario
 ScenarioEgo read_ego(const json& value, const std::vector<ScenarioModel>& models, Status& status) {
   const JsonObject object(value, "ego", status,
                           {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m",
-                           "max_acceleration_mps2", "max_steering_deg"});
+                           "max_acceleration_mps2", "max_steering_deg", "occupants"});
   ScenarioEgo ego;
   ego.model = read_model_name(object, models);
   ego.pose = read_pose(object);
@@ -158,6 +178,7 @@ ScenarioEgo read_ego(const json& value, const std::vector<ScenarioModel>& models
       "max_acceleration_mps2", {0.0, limits::acceleration_mps2}, ego.max_acceleration_mps2);
   ego.max_steering_rad =
       rad_per_deg * object.number("max_steering_deg", {0.0, limits::steering_deg}, 35.0);
+  ego.occupants = object.optional_number("occupants", occupants);
   return ego;
 }
 
@@ -187,9 +208,9 @@ ListedCandidate read_candidate(const json& value, const std::string& path, Statu
 
 ScenarioActor read_actor(const json& value, const std::string& path,
                          const std::vector<ScenarioModel>& models, Status& status) {
-  const JsonObject object(
-      value, path, status,
-      {"name", "model", "pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses"});
+  const JsonObject object(value, path, status,
+                          {"name", "model", "pose", "speed_mps", "acceleration_mps2",
+                           "yaw_rate_dps", "poses", "occupants"});
   ScenarioActor actor;
   object.require("name");
   actor.name = object.name("name", limits::name_characters);
@@ -199,6 +220,7 @@ ScenarioActor read_actor(const json& value, const std::string& path,
   actor.acceleration_mps2 = object.number("acceleration_mps2", acceleration, 0.0);
   actor.yaw_rate_radps = rad_per_deg * object.number("yaw_rate_dps", yaw_rate, 0.0);
   actor.poses = read_poses(object);
+  actor.occupants = object.optional_number("occupants", occupants);
   if (object.has("poses")) {
     for (const char* key : {"pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps"}) {
       if (object.has(key)) object.refuse(key, "stands beside poses", "keep one of them");

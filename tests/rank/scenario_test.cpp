@@ -39,13 +39,21 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
   EXPECT_EQ(s.models[0].mesh, "meshes/box.obj");
   EXPECT_EQ(s.models[0].kind, BodyKind::car);
   EXPECT_EQ(s.models[0].mass_kg, 1500.0);
+  EXPECT_EQ(s.models[0].center_of_mass_m, Eigen::Vector3d(1.2, 0.0, 0.55));
+  EXPECT_EQ(s.models[0].yaw_inertia_kgm2, 2400.0);
+  EXPECT_EQ(s.models[0].stiffness, 1.25);
+  EXPECT_EQ(s.models[0].surface, Surface::sheet_metal);
   EXPECT_EQ(s.models[1].kind, BodyKind::barrier);
+  EXPECT_FALSE(s.models[1].center_of_mass_m || s.models[1].yaw_inertia_kgm2);
+  EXPECT_EQ(s.models[1].stiffness, 1.0);
+  EXPECT_EQ(s.models[1].surface, Surface::concrete);
   EXPECT_FALSE(s.models[1].mass_kg.has_value());
   EXPECT_EQ(s.models[1].transform.scale, 10.0);
   EXPECT_EQ(s.ego.model, 0U);
   EXPECT_EQ(s.ego.speed_mps, 20.0);
   EXPECT_EQ(s.ego.wheelbase_m, 2.7);
   EXPECT_NEAR(s.ego.max_steering_rad, 35.0 * M_PI / 180.0, 1e-15);
+  EXPECT_EQ(s.ego.occupants, 2.0);
   ASSERT_EQ(s.listed.size(), 4U);
   EXPECT_FALSE(s.listed[0].steering_rad || s.listed[0].yaw_rate_radps);
   EXPECT_EQ(s.listed[1].acceleration_mps2, -3.0);
@@ -65,6 +73,9 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
   EXPECT_NEAR(s.actors[0].pose.rotation(0, 0), -1.0, 1e-15);
   EXPECT_EQ(s.actors[1].model, 1U);
   EXPECT_EQ(s.actors[2].poses.size(), 2U);
+  EXPECT_EQ(s.actors[0].occupants, 0.0);
+  EXPECT_FALSE(s.actors[1].occupants.has_value());
+  EXPECT_EQ(s.actors[2].occupants, 4.5);
   EXPECT_EQ(s.horizon_s, 4.0);
   EXPECT_EQ(s.crush.time_s, 0.05);
   EXPECT_FALSE(s.crush.depth_m.has_value());
@@ -126,6 +137,12 @@ TEST(Scenario, TheSchemaStatesTheParsersLimits) {
   EXPECT_EQ(at("/$defs/ego/properties/wheelbase_m/maximum"), limits::max_wheelbase_m);
   EXPECT_EQ(at("/$defs/model/properties/mass_kg/minimum"), limits::min_mass_kg);
   EXPECT_EQ(at("/$defs/model/properties/mass_kg/maximum"), limits::max_mass_kg);
+  EXPECT_EQ(at("/$defs/model/properties/yaw_inertia_kgm2/exclusiveMinimum"), 0.0);
+  EXPECT_EQ(at("/$defs/model/properties/yaw_inertia_kgm2/maximum"), limits::yaw_inertia_kgm2);
+  EXPECT_EQ(at("/$defs/model/properties/stiffness/minimum"), limits::min_stiffness);
+  EXPECT_EQ(at("/$defs/model/properties/stiffness/maximum"), limits::max_stiffness);
+  EXPECT_EQ(at("/$defs/occupants/minimum"), 0.0);
+  EXPECT_EQ(at("/$defs/occupants/maximum"), harm_limits::people);
   EXPECT_EQ(at("/$defs/model/properties/scale/minimum"), limits::min_scale);
   EXPECT_EQ(at("/$defs/model/properties/scale/maximum"), limits::max_scale);
   EXPECT_EQ(at("/properties/grip/minimum"), limits::min_grip);
@@ -154,6 +171,20 @@ TEST(Scenario, DefaultsAreThoseOfTheSchema) {
   EXPECT_EQ(s->grid->steerings, 15U);
   EXPECT_TRUE(s->add_straight_braking);
   EXPECT_EQ(s->crush.time_s, 0.05);
+  EXPECT_EQ(at("/$defs/model/properties/stiffness/default"), s->models[0].stiffness);
+  EXPECT_FALSE(s->models[0].surface || s->ego.occupants);
+}
+
+TEST(Scenario, EverySurfaceOfTheSchemaReadsBack) {
+  const json names = json::parse(read(CRASHRANK_SCHEMA))
+                         .at(json::json_pointer("/$defs/model/properties/surface/enum"));
+  ASSERT_EQ(names.size(), 6U);
+  for (const json& name : names) {
+    const Result<Surface> surface = surface_from_name(name.get<std::string>());
+    ASSERT_TRUE(surface.ok());
+    EXPECT_EQ(surface_name(*surface), name.get<std::string>());
+  }
+  EXPECT_NE(surface_from_name("glass").error().remedy.find("sheet-metal"), std::string::npos);
 }
 
 TEST(Scenario, ListedCandidatesReplaceTheGrid) {

@@ -8,6 +8,7 @@
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/measure.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
+#include "crashrank/vehicle/surface.hpp"
 
 #include <Eigen/Core>
 
@@ -26,6 +27,13 @@ struct ScenarioModel {
   BodyKind kind = BodyKind::car;  ///< what it is
   std::optional<double> mass_kg;  ///< absent: guessed from kind and size
   ImportTransform transform;      ///< how its mesh is read
+  /// Center of mass in body coordinates, m; absent: estimated from kind and mesh.
+  std::optional<Eigen::Vector3d> center_of_mass_m;
+  /// Moment of inertia about the vertical axis through the center of mass, kg·m²; absent: estimated
+  /// from mass and mesh.
+  std::optional<double> yaw_inertia_kgm2;
+  double stiffness = 1.0;          ///< crush strength, times the default of its kind
+  std::optional<Surface> surface;  ///< outer material; absent: by kind
 };
 
 /// The ego vehicle at time 0.
@@ -37,6 +45,8 @@ struct ScenarioEgo {
   std::optional<double> wheelbase_m;   ///< absent: 0.6 of the mesh's length
   double max_acceleration_mps2 = 3.0;  ///< of the engine, m/s²
   double max_steering_rad = 0.6108652381980153;  ///< 35 degrees
+  /// Persons in it, 0 allowed; absent: HarmWeights::people_in_ego.
+  std::optional<double> occupants;
 };
 
 /// Something that can be hit, and how it moves: from its pose with speed, acceleration and yaw
@@ -49,6 +59,8 @@ struct ScenarioActor {
   double acceleration_mps2 = 0.0;  ///< along its forward axis; against the speed it brakes
   double yaw_rate_radps = 0.0;     ///< held while it moves
   std::vector<TimedPose> poses;    ///< where there are any, they say all
+  /// Persons in or on it, 0 allowed; absent: the number that HarmWeights has for its kind.
+  std::optional<double> occupants;
 };
 
 /// A manoeuvre written out: acceleration with steering or yaw rate, or timed poses when there are
@@ -115,6 +127,9 @@ inline constexpr double min_wheelbase_m = 0.1;     ///< m
 inline constexpr double max_wheelbase_m = 30.0;    ///< m
 inline constexpr double min_mass_kg = 0.1;         ///< kg
 inline constexpr double max_mass_kg = 1e6;         ///< kg
+inline constexpr double yaw_inertia_kgm2 = 1e9;    ///< most, kg·m²; above 0
+inline constexpr double min_stiffness = 0.01;      ///< least factor
+inline constexpr double max_stiffness = 100.0;     ///< most
 inline constexpr double min_scale = 1e-6;          ///< metres per file unit
 inline constexpr double max_scale = 1e6;           ///< metres per file unit
 inline constexpr double min_grip = 0.01;           ///< least friction
