@@ -62,7 +62,10 @@ bool ranks_before(const CandidateResult& a, const CandidateResult& b);
 /// Orders the ranking and says how sure its first place is.
 void put_in_order(RankResult& result);
 
-/// Says how stable the order is over the samples, once it is there.
+/// Fills `place` and `sharing` of a ranking that is in order.
+void assign_places(std::vector<CandidateResult>& ranking);
+
+/// Fills the places of a ranking that is in order, and says how stable they are over the samples.
 void tell_stability(RankResult& result);
 
 }  // namespace crashrank::detail

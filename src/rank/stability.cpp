@@ -19,25 +19,39 @@ void places_by_intervals(std::vector<CandidateResult>& ranking) {
   }
   std::sort(lowest.begin(), lowest.end());
   std::sort(highest.begin(), highest.end());
-  for (std::size_t place = 0; place < ranking.size(); ++place) {
-    CandidateResult& c = ranking[place];
+  for (CandidateResult& c : ranking) {
     const auto before =
         std::lower_bound(highest.begin(), highest.end(), c.score_interval.lowest) - highest.begin();
     const auto behind =
         lowest.end() - std::upper_bound(lowest.begin(), lowest.end(), c.score_interval.highest);
-    // Of candidates that are level the order says who stands where.
-    c.best_place = std::min(place, static_cast<std::size_t>(before));
-    c.worst_place = std::max(place, ranking.size() - 1 - static_cast<std::size_t>(behind));
+    // Those tied with it overlap it and never stand before it. Where all else is level, the order
+    // of the ranking decides.
+    const std::size_t worst = ranking.size() - c.sharing - static_cast<std::size_t>(behind);
+    c.best_place = std::min(c.place - 1, static_cast<std::size_t>(before));
+    c.worst_place = std::max(c.place - 1, worst);
   }
+}
+
+/// Whether the scores of two candidates differ, whatever value they take within their intervals.
+bool scores_differ(const CandidateResult& a, const CandidateResult& b) {
+  if (a.score && b.score) return *a.score != *b.score;
+  const double lowest_a = a.score.value_or(a.score_interval.lowest);
+  const double lowest_b = b.score.value_or(b.score_interval.lowest);
+  return a.score.value_or(a.score_interval.highest) < lowest_b ||
+         b.score.value_or(b.score_interval.highest) < lowest_a;
 }
 
 }  // namespace
 
 void tell_stability(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
-  for (std::size_t place = 0; place < ranking.size(); ++place) {
-    ranking[place].best_place = place;
-    ranking[place].worst_place = place;
+  assign_places(ranking);
+  for (CandidateResult& c : ranking) {
+    c.best_place = c.place - 1;
+    c.worst_place = c.place - 1;
+  }
+  for (std::size_t i = 0; i + 1 < ranking.size(); ++i) {
+    ranking[i].separable = scores_differ(ranking[i], ranking[i + 1]);
   }
   if (!result.complete) {
     places_by_intervals(ranking);
@@ -57,8 +71,13 @@ void tell_stability(RankResult& result) {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
       return ranking[p].sample_scores[sample] < ranking[q].sample_scores[sample];
     });
-    for (std::size_t place = 0; place < known; ++place) {
-      CandidateResult& c = ranking[order[place]];
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < known; ++i) {
+      CandidateResult& c = ranking[order[i]];
+      // The sort is stable: candidates that tie in the ranking and in the sample stand together.
+      const bool shared = i > 0 && ranking[order[i - 1]].place == c.place &&
+                          ranking[order[i - 1]].sample_scores[sample] == c.sample_scores[sample];
+      if (!shared) place = i;
       c.best_place = std::min(c.best_place, place);
       c.worst_place = std::max(c.worst_place, place);
     }
@@ -71,7 +90,8 @@ void tell_stability(RankResult& result) {
       }
     }
     ranking[place].overtaken = static_cast<double>(turned) / static_cast<double>(samples);
-    ranking[place].separable = ranking[place].overtaken <= separable_share;
+    ranking[place].separable =
+        ranking[place].separable && ranking[place].overtaken <= separable_share;
   }
 }
 

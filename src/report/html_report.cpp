@@ -87,6 +87,7 @@ public:
     const std::size_t drawn = options.drawn == 0 ? all : std::min(options.drawn, all);
     for (std::size_t place = 0; place < drawn; ++place) places_.push_back(place);
     if (drawn < all) places_.push_back(all - 1);
+    scores_ = detail::score_texts(result);
     data_ = detail::view_data(scenario, models, result, places_, options.model_triangles);
   }
 
@@ -154,10 +155,15 @@ private:
     out_ += !result_.proved                    ? "Best guess so far: "
             : result_.measure == Measure::harm ? "Least harmful: "
                                                : "Least destructive: ";
-    out_ += escape_xml(name_of(0)) + "</h2>\n";
-    out_ += result_.ranking.size() > 1
-                ? "<p>" + escape_xml(detail::reason_words(scenario_, result_, 0)) + "</p>\n"
-                : "<p>It is the only candidate.</p>\n";
+    out_ += escape_xml(name_of(0));
+    if (result_.ranking[0].sharing > 1) {
+      out_ += fmt::format(", tied with {} more", result_.ranking[0].sharing - 1);
+    }
+    out_ += "</h2>\n";
+    out_ +=
+        result_.ranking.size() > 1
+            ? "<p>" + escape_xml(detail::reason_words(scenario_, result_, scores_, 0)) + "</p>\n"
+            : "<p>It is the only candidate.</p>\n";
     if (!result_.proved) {
       out_ += "<p class='note'>The first place is not proved; still in the race: ";
       for (std::size_t i = 0; i < result_.in_race.size(); ++i) {
@@ -228,11 +234,12 @@ private:
     const CandidateResult& ranked = result_.ranking[place];
     const double score = ranked.score.value_or(ranked.score_interval.highest);
     const double width = top > 0.0 && std::isfinite(score) ? 110.0 * score / top : 0.0;
-    out_ += fmt::format("<tr data-place='{}'><td class='n'>{}</td>", place + 1, place + 1);
+    out_ += fmt::format("<tr data-place='{}'><td class='n'>{}</td>", place + 1,
+                        detail::place_text(ranked));
     out_ += is_drawn(place) ? fmt::format("<td><a href='#c{}'>", place + 1) : std::string("<td>");
     out_ += escape_xml(name_of(place)) + (is_drawn(place) ? "</a></td>" : "</td>");
     out_ += fmt::format("<td class='score'><span class='bar' style='width:{:.1f}px'></span>{}</td>",
-                        width, detail::score_text(ranked));
+                        width, scores_[place]);
     if (simulated()) {
       out_ += "<td class='n'>" + detail::interval_text(ranked) + "</td><td class='n'>" +
               detail::places_text(ranked) + "</td>";
@@ -259,15 +266,17 @@ private:
       parts += ego.parts[i];
     }
     if (ego.parts.size() > 4) parts += fmt::format(" +{}", ego.parts.size() - 4);
-    out_ += fmt::format("<td>{}</td><td class='n'>{:.3f}</td><td class='n'>{:.1f}</td>",
-                        escape_xml(hit), first.time_of_impact_s, first.closing_speed_mps);
+    out_ +=
+        fmt::format("<td>{}</td><td class='n'>{:.3f}</td><td class='n'>{}</td>", escape_xml(hit),
+                    first.time_of_impact_s, detail::fixed_text(first.closing_speed_mps, 1));
     if (simulated()) {
       severity_cells(ranked);
     } else {
-      out_ += fmt::format("<td class='n'>{:.1f}</td>", first.normal_speed_mps);
+      out_ += "<td class='n'>" + detail::fixed_text(first.normal_speed_mps, 1) + "</td>";
     }
-    out_ += fmt::format("<td class='n'>{:.2f}</td><td class='n'>{:.2f}</td><td>{}</td></tr>\n",
-                        ego.area_m2, other.area_m2, escape_xml(parts));
+    out_ += fmt::format("<td class='n'>{}</td><td class='n'>{}</td><td>{}</td></tr>\n",
+                        detail::fixed_text(ego.area_m2, 2), detail::fixed_text(other.area_m2, 2),
+                        escape_xml(parts));
   }
 
   /// Of all contacts: changes of velocity and harm add up, crush is the deepest. As many digits as
@@ -284,20 +293,25 @@ private:
       other.harm += contact.severity.other.harm;
     }
     out_ += fmt::format(
-        "<td class='n'>{:.1f}</td><td class='n'>{:.1f}</td><td class='n'>{:.2f}</td>"
-        "<td class='n'>{:.2f}</td><td class='n'>{:.2g}</td><td class='n'>{:.2g}</td>",
-        ego.delta_v_mps, other.delta_v_mps, ego.crush_m, other.crush_m, ego.harm, other.harm);
+        "<td class='n'>{}</td><td class='n'>{}</td><td class='n'>{}</td>"
+        "<td class='n'>{}</td><td class='n'>{:.2g}</td><td class='n'>{:.2g}</td>",
+        detail::fixed_text(ego.delta_v_mps, 1), detail::fixed_text(other.delta_v_mps, 1),
+        detail::fixed_text(ego.crush_m, 2), detail::fixed_text(other.crush_m, 2), ego.harm,
+        other.harm);
   }
 
   void candidate(std::size_t place) {
     const CandidateResult& ranked = result_.ranking[place];
-    out_ += fmt::format("<section class='candidate' id='c{}'><h2>{}. {}</h2>\n", place + 1,
-                        place + 1, escape_xml(name_of(place)));
+    out_ +=
+        fmt::format("<section class='candidate' id='c{}'><h2>{}. {}{}</h2>\n", place + 1,
+                    ranked.place, escape_xml(name_of(place)), ranked.sharing > 1 ? " (tied)" : "");
     out_ += "<p>It " + escape_xml(detail::outcome_words(scenario_, ranked)) + ": " +
-            escape_xml(detail::score_words(ranked, result_.measure)) + ".";
+            escape_xml(detail::score_words(ranked, scores_[place], result_.measure)) + ".";
     if (place > 0 && place + 1 < result_.ranking.size() && is_drawn(place + 1)) {
-      out_ += " Why it stands before the next: " +
-              escape_xml(detail::reason_words(scenario_, result_, place));
+      out_ += std::string(ranked.place == result_.ranking[place + 1].place
+                              ? " Tied with the next: "
+                              : " Why it stands before the next: ") +
+              escape_xml(detail::reason_words(scenario_, result_, scores_, place));
     }
     out_ += "</p>\n<div class='columns'>\n" + plan_.draw(place);
     out_ += "<div>\n";
@@ -360,6 +374,7 @@ private:
   const RankResult& result_;
   detail::PlanView plan_;
   std::vector<std::size_t> places_;  // drawn, rising
+  std::vector<std::string> scores_;  // by row
   detail::ViewData data_;
   std::string out_;
 };

@@ -47,6 +47,9 @@ const char* state_name(ImpactState state) {
   return "undecided";
 }
 
+/// Most names in `tied_with`.
+constexpr std::size_t most_tied_names = 256;
+
 /// {"ego": of one, "other": of the other}
 template <class T> Json both(T ego, T other) {
   return {{"ego", std::move(ego)}, {"other", std::move(other)}};
@@ -146,6 +149,17 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
   return entry;
 }
 
+/// Names of the candidates that share a place, the first `most_tied_names` of them: every entry of
+/// a tie lists all others, which grows with the square of their number.
+Json tied_json(const RankResult& result, std::size_t index) {
+  Json names = Json::array();
+  for (const std::size_t candidate : tied_with(result, index)) {
+    if (names.size() == most_tied_names) break;
+    names.push_back(result.candidates[candidate].name);
+  }
+  return names;
+}
+
 Json candidate_json(const Scenario& scenario, View<const Model> models, const RankResult& result,
                     std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
@@ -163,8 +177,9 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
   for (const Graze& graze : ranked.grazes) {
     grazes.push_back({{"other", scenario.actors[graze.actor].name}, {"time_s", graze.time_s}});
   }
-  Json entry{{"rank", place + 1},
+  Json entry{{"rank", ranked.place},
              {"candidate", candidate.name},
+             {"tied_with", tied_json(result, place)},
              {"grip_demand", demand ? Json(*demand) : Json(nullptr)},
              {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
              {"score_interval",
@@ -239,10 +254,13 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
     actors.push_back(body_json(scenario, scenario.actors[i].name, result.actors[i]));
   }
   Json not_separable = Json::array();
-  for (std::size_t place = 0; place + 1 < result.ranking.size(); ++place) {
-    if (result.ranking[place].separable) continue;
-    not_separable.push_back({{"ranks", Json::array({place + 1, place + 2})},
-                             {"overtaken_share", result.ranking[place].overtaken}});
+  const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
+  for (std::size_t i = 0; sampled && i + 1 < result.ranking.size(); ++i) {
+    const CandidateResult& ranked = result.ranking[i];
+    const CandidateResult& next = result.ranking[i + 1];
+    if (ranked.separable || ranked.place == next.place) continue;
+    not_separable.push_back({{"ranks", Json::array({ranked.place, next.place})},
+                             {"overtaken_share", ranked.overtaken}});
   }
   const RankWork& work = result.work;
   Json document{{"scenario", scenario.name},

@@ -12,7 +12,6 @@ namespace crashrank {
 namespace {
 
 using detail::DamageSummary;
-using detail::score_text;
 
 /// The first few names, and how many more there are.
 std::string shortened(const std::vector<std::string>& names) {
@@ -26,10 +25,11 @@ std::string shortened(const std::vector<std::string>& names) {
 }
 
 std::vector<std::string> cells(const Scenario& scenario, View<const Model> models,
-                               const RankResult& result, std::size_t place) {
+                               const RankResult& result, const std::string& score,
+                               std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
-  std::vector<std::string> row{std::to_string(place + 1), result.candidates[ranked.candidate].name,
-                               score_text(ranked)};
+  std::vector<std::string> row{detail::place_text(ranked), result.candidates[ranked.candidate].name,
+                               score};
   const bool simulated = needs_crash(result.measure);
   if (simulated) {
     row.push_back(detail::interval_text(ranked));
@@ -50,7 +50,7 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   const DamageSummary other = detail::summary_of_others(scenario, models, ranked);
   row.push_back(hit);
   row.push_back(fmt::format("{:.3f}", first.time_of_impact_s));
-  row.push_back(fmt::format("{:.1f}", first.closing_speed_mps));
+  row.push_back(detail::fixed_text(first.closing_speed_mps, 1));
   if (simulated) {
     double delta_v = 0.0;
     double crush = 0.0;
@@ -58,11 +58,12 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
       delta_v += contact.severity.ego.delta_v_mps;
       crush = std::max(crush, contact.severity.ego.crush_m);
     }
-    row.push_back(fmt::format("{:.1f}", delta_v));
-    row.push_back(fmt::format("{:.2f}", crush));
+    row.push_back(detail::fixed_text(delta_v, 1));
+    row.push_back(detail::fixed_text(crush, 2));
   } else {
     row.push_back(fmt::format("{} + {}", ego.triangles, other.triangles));
-    row.push_back(fmt::format("{:.2f} + {:.2f}", ego.area_m2, other.area_m2));
+    row.push_back(detail::fixed_text(ego.area_m2, 2) + " + " +
+                  detail::fixed_text(other.area_m2, 2));
   }
   row.push_back(shortened(ego.parts));
   return row;
@@ -90,23 +91,24 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
   columns.push_back({simulated ? "delta-v m/s" : "triangles", true});
   columns.push_back({simulated ? "crush m" : "area m2", true});
   columns.push_back({"ego's parts"});
+  const std::vector<std::string> scores = detail::score_texts(result);
   Table table(std::move(columns));
   for (std::size_t place = 0; place < shown; ++place) {
-    table.add_row(cells(scenario, models, result, place));
+    table.add_row(cells(scenario, models, result, scores[place], place));
   }
   std::string text = fmt::format("{}: {} candidate{}, {} other{} on the road\n\n",
                                  escape_terminal(scenario.name), all, all == 1 ? "" : "s",
                                  scenario.actors.size(), scenario.actors.size() == 1 ? "" : "s");
   text += table.text(options.colours);
   if (shown < all) {
-    text += fmt::format("... and {} more, up to {} {}\n", all - shown,
-                        score_text(result.ranking.back()), measure_unit(result.measure));
+    text += fmt::format("... and {} more, up to {} {}\n", all - shown, scores.back(),
+                        measure_unit(result.measure));
   }
   const auto free = static_cast<std::size_t>(std::count_if(
       result.ranking.begin(), result.ranking.end(),
       [](const CandidateResult& ranked) { return ranked.score && !ranked.collides; }));
   for (const std::string& words : detail::not_separable_words(result, shown)) {
-    text += words + "\n";
+    text += escape_terminal(words) + "\n";
   }
   text += fmt::format("\n{} of {} {}touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
                       result.complete ? "" : "are known to ",

@@ -57,32 +57,25 @@ std::string other_view(const RankResult& result, const CandidateResult& first,
   return {};
 }
 
+/// Which tie-break decides between equal scores; the two are not tied.
 std::string tie_words(const CandidateResult& first, const CandidateResult& second) {
   if (first.collides != second.collides) return "it touches nothing";
-  if (!first.collides) {
-    return first.grazes.empty() && !second.grazes.empty()
-               ? "it passes everything with more than a hair's breadth"
-               : "it comes first in the list of candidates";
-  }
+  if (!first.collides) return "it passes everything with more than a hair's breadth";
   const Contact& p = first.contacts.front();
   const Contact& q = second.contacts.front();
   if (p.time_of_impact_s != q.time_of_impact_s) {
     return fmt::format("its first contact is later, {:.3f} s against {:.3f} s", p.time_of_impact_s,
                        q.time_of_impact_s);
   }
-  if (p.closing_speed_mps != q.closing_speed_mps) {
-    return fmt::format("its closing speed is lower, {:.2f} m/s against {:.2f} m/s",
-                       p.closing_speed_mps, q.closing_speed_mps);
-  }
-  return "it comes first in the list of candidates";
+  return fmt::format("its closing speed is lower, {:.2f} m/s against {:.2f} m/s",
+                     p.closing_speed_mps, q.closing_speed_mps);
 }
 
 }  // namespace
 
-std::string score_words(const CandidateResult& ranked, Measure measure) {
+std::string score_words(const CandidateResult& ranked, const std::string& score, Measure measure) {
   const std::string interval = interval_text(ranked);
-  return score_text(ranked) + " " + measure_unit(measure) +
-         (interval.empty() ? "" : " (" + interval + ")");
+  return score + " " + measure_unit(measure) + (interval.empty() ? "" : " (" + interval + ")");
 }
 
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
@@ -106,22 +99,31 @@ std::string outcome_words(const Scenario& scenario, const CandidateResult& ranke
   return text;
 }
 
-std::string reason_words(const Scenario& scenario, const RankResult& result, std::size_t place) {
+std::string reason_words(const Scenario& scenario, const RankResult& result,
+                         const std::vector<std::string>& scores, std::size_t place) {
   const CandidateResult& first = result.ranking[place];
   const CandidateResult& second = result.ranking[place + 1];
+  const std::string first_score = score_words(first, scores[place], result.measure);
+  const std::string second_score = score_words(second, scores[place + 1], result.measure);
   std::string text = quoted(result, place) + " " + outcome_words(scenario, first) + "; " +
                      quoted(result, place + 1) + " " + outcome_words(scenario, second) + ". ";
   if (!first.score || !second.score) {
     return text + "Not both scores are known: the order is the best guess within the intervals.";
   }
+  if (first.place == second.place) {
+    return text + fmt::format(
+                      "Both score {} and agree in every tie-break: they are tied in place "
+                      "{}.",
+                      first_score, first.place);
+  }
   if (*first.score == *second.score) {
-    return text + fmt::format("Both score {}; the first is placed before because {}.",
-                              score_words(first, result.measure), tie_words(first, second));
+    return text + fmt::format("Both score {}; the first is placed before because {}.", first_score,
+                              tie_words(first, second));
   }
   text += fmt::format("What counts here is the {}: {} against {}", what_counts(result.measure),
-                      score_words(first, result.measure), score_words(second, result.measure));
+                      first_score, second_score);
   if (*first.score > 0.0 && first.separable) {
-    text += fmt::format(", {:.0f} % more", 100.0 * (*second.score / *first.score - 1.0));
+    text += ", " + fixed_text(100.0 * (*second.score / *first.score - 1.0), 0) + " % more";
   }
   if (!first.separable) {
     text += fmt::format(

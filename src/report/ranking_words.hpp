@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace crashrank::detail {
 
@@ -12,10 +13,12 @@ namespace crashrank::detail {
 /// m/s".
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked);
 
-/// Why the candidate at `place` stands before the next one, plain text. `place` is not the last.
-std::string reason_words(const Scenario& scenario, const RankResult& result, std::size_t place);
+/// Why the candidate at `place` stands before the next one, or that they are tied, plain text.
+/// `place` is the row in the ranking, not the last; `scores` those of `score_texts`.
+std::string reason_words(const Scenario& scenario, const RankResult& result,
+                         const std::vector<std::string>& scores, std::size_t place);
 
-/// A score with its unit, or its interval where it is not known.
-std::string score_words(const CandidateResult& ranked, Measure measure);
+/// A score, printed as `score`, with its unit and its interval.
+std::string score_words(const CandidateResult& ranked, const std::string& score, Measure measure);
 
 }  // namespace crashrank::detail

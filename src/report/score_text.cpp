@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <limits>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -11,10 +15,24 @@ namespace {
 /// The decimal place of the first digit that an interval of that width leaves open.
 int open_place(double width) { return static_cast<int>(std::floor(std::log10(width))); }
 
+/// The decimal place of the first digit of a number other than 0.
+int first_place(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
+
+/// A number rounded to a decimal place.
 std::string at_place(double value, int place) {
+  if (value == 0.0 || !std::isfinite(value)) return fmt::format("{:g}", value);
+  const int first = first_place(value);
+  if (first < -5 || first >= 15) return fmt::format("{:.{}e}", value, std::max(first - place, 0));
+  if (place < 0) return fmt::format("{:.{}f}", value, -place);
   const double step = std::pow(10.0, place);
-  if (place >= 0) return fmt::format("{:.0f}", std::round(value / step) * step);
-  return fmt::format("{:.{}f}", value, std::min(-place, 12));
+  return fmt::format("{:.0f}", std::round(value / step) * step);
+}
+
+std::string without_trailing_zeros(std::string text) {
+  if (text.find('.') == std::string::npos || text.find('e') != std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
 }
 
 double width_of(const CandidateResult& ranked) {
@@ -26,15 +44,122 @@ bool is_open(const CandidateResult& ranked) {
   return width_of(ranked) > 1e-9 * std::abs(ranked.score_interval.highest);
 }
 
+/// A score and how many digits of it are printed; that of all rows which have it.
+class PrintedScore {
+public:
+  explicit PrintedScore(double score) : score_(score) {
+    if (score == 0.0 || !std::isfinite(score)) return;
+    finest_ = first_place(score) - (most_score_digits - 1);
+  }
+
+  void add(const CandidateResult& ranked) {
+    exact_ = exact_ || !is_open(ranked);
+    if (finest_ == coarsest) return;
+    const int first = first_place(score_);
+    const int wanted =
+        is_open(ranked) ? std::min(open_place(width_of(ranked)), first) : std::min(first - 4, 0);
+    place_ = std::max(std::min(place_, wanted), finest_);
+    print();
+  }
+
+  /// One digit more; false where it has the most.
+  bool refine() {
+    if (place_ <= finest_) return false;
+    --place_;
+    print();
+    return true;
+  }
+
+  double score() const { return score_; }
+  int place() const { return place_; }
+  double shown() const { return shown_; }
+  const std::string& text() const { return text_; }
+
+private:
+  static constexpr int coarsest = std::numeric_limits<int>::max();
+
+  void print() {
+    text_ = at_place(score_, place_);
+    if (exact_) text_ = without_trailing_zeros(std::move(text_));
+    shown_ = std::strtod(text_.c_str(), nullptr);
+  }
+
+  double score_;
+  int finest_ = coarsest;
+  int place_ = coarsest;
+  bool exact_ = false;  ///< of a row whose interval leaves nothing open: no zeros at the end
+  std::string text_ = at_place(score_, 0);
+  double shown_ = score_;
+};
+
+/// Adds digits until every two neighbours print in their order. Each step adds one, so that it ends
+/// after at most `most_score_digits` steps a score.
+void keep_order(std::vector<PrintedScore>& scores) {
+  for (std::size_t i = 0; i + 1 < scores.size();) {
+    PrintedScore& a = scores[i];
+    PrintedScore& b = scores[i + 1];
+    const bool sound = !(a.score() < b.score()) || a.shown() < b.shown();
+    // The coarser of the two first; two that are alike keep alike.
+    const int place = std::max(a.place(), b.place());
+    bool finer = false;
+    if (!sound) {
+      if (a.place() == place) finer = a.refine();
+      if (b.place() == place) finer = b.refine() || finer;
+      // The coarser one has all its digits: the other may have some left.
+      if (!finer) finer = a.refine() || b.refine();
+    }
+    if (!finer) {
+      ++i;
+    } else if (i > 0) {
+      --i;  // the one before was compared with fewer digits
+    }
+  }
+}
+
+/// The first few names of a tie.
+std::string tied_names(const RankResult& result, std::size_t first, std::size_t count) {
+  constexpr std::size_t shown = 5;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(shown, count); ++i) {
+    names += (i > 0 ? ", " : "") + result.candidates[result.ranking[first + i].candidate].name;
+  }
+  if (count > shown) names += fmt::format(" and {} more", count - shown);
+  return names;
+}
+
 }  // namespace
 
-std::string score_text(const CandidateResult& ranked) {
-  if (!ranked.score) {
-    return fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
-                       ranked.score_interval.highest);
+std::vector<std::string> score_texts(const RankResult& result) {
+  std::vector<PrintedScore> scores;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (!ranked.score) continue;
+    if (scores.empty() || scores.back().score() != *ranked.score) {
+      scores.emplace_back(*ranked.score);
+    }
+    scores.back().add(ranked);
   }
-  if (!is_open(ranked)) return fmt::format("{:.5g}", *ranked.score);
-  return at_place(*ranked.score, open_place(width_of(ranked)));
+  keep_order(scores);
+  std::vector<std::string> texts;
+  std::size_t known = 0;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (!ranked.score) {
+      texts.push_back(fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
+                                  ranked.score_interval.highest));
+      continue;
+    }
+    if (scores[known].score() != *ranked.score) ++known;
+    texts.push_back(scores[known].text());
+  }
+  return texts;
+}
+
+std::string fixed_text(double value, int decimals) {
+  const bool vanishes = value != 0.0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
+  return vanishes ? fmt::format("{:.1g}", value) : fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string place_text(const CandidateResult& ranked) {
+  return std::to_string(ranked.place) + (ranked.sharing > 1 ? " tied" : "");
 }
 
 std::string interval_text(const CandidateResult& ranked) {
@@ -54,12 +179,22 @@ std::string places_text(const CandidateResult& ranked) {
 
 std::vector<std::string> not_separable_words(const RankResult& result, std::size_t shown) {
   std::vector<std::string> words;
-  for (std::size_t place = 0; place + 1 < std::min(shown, result.ranking.size()); ++place) {
-    const CandidateResult& ranked = result.ranking[place];
-    if (ranked.separable) continue;
-    words.push_back(fmt::format(
-        "rank {} and {} not separable (their order turns round in {:.0f} % of {} samples)",
-        place + 1, place + 2, 100.0 * ranked.overtaken, result.samples.size()));
+  const std::size_t end = std::min(shown, result.ranking.size());
+  for (std::size_t i = 0; i < end; ++i) {
+    const CandidateResult& ranked = result.ranking[i];
+    if (ranked.sharing > 1 && i + 1 == ranked.place) {
+      words.push_back(fmt::format("rank {}: {} candidates are tied ({})", ranked.place,
+                                  ranked.sharing, tied_names(result, i, ranked.sharing)));
+    }
+    if (i + 1 == end || ranked.separable) continue;
+    const CandidateResult& next = result.ranking[i + 1];
+    if (next.place == ranked.place || !ranked.score || !next.score) continue;
+    const std::string why = *ranked.score == *next.score
+                                ? std::string("equal scores")
+                                : fmt::format("their order turns round in {:.0f} % of {} samples",
+                                              100.0 * ranked.overtaken, result.samples.size());
+    words.push_back(
+        fmt::format("rank {} and {} not separable ({})", ranked.place, next.place, why));
   }
   return words;
 }

@@ -7,9 +7,20 @@
 
 namespace crashrank::detail {
 
-/// A score as text, with no digit past the first that its interval leaves open; five digits where
-/// nothing is open. An interval alone where the score is not known.
-std::string score_text(const CandidateResult& ranked);
+/// Most significant digits of a printed score: what differs by less prints alike.
+inline constexpr int most_score_digits = 9;
+
+/// The scores of a ranking as text, one for each row; an interval where the score is not known.
+///
+/// Digits of a score: up to the first that its interval leaves open, five where nothing is open. At
+/// least one, so that only 0 prints as 0; and as many more, up to `most_score_digits`, as keep the
+/// printed numbers in the order of the scores: a lower score never prints as the higher number, and
+/// different scores do not print alike. Equal scores print alike.
+std::vector<std::string> score_texts(const RankResult& result);
+
+/// A number with that many decimals; one significant digit where those would show a number other
+/// than 0 as 0.
+std::string fixed_text(double value, int decimals);
 
 /// The interval, ends rounded outwards to that digit: "0.1 to 0.4"; empty where it is a point.
 std::string interval_text(const CandidateResult& ranked);
@@ -17,8 +28,12 @@ std::string interval_text(const CandidateResult& ranked);
 /// The places it may have: "2", "1-3".
 std::string places_text(const CandidateResult& ranked);
 
-/// Neighbours among the first `shown` places that cannot be told apart, one sentence each:
-/// "rank 2 and 3 are not separable (their order turns round in 38 % of 129 samples)".
+/// "2", "2 tied".
+std::string place_text(const CandidateResult& ranked);
+
+/// Candidates among the first `shown` rows that are tied, and neighbours whose order is not
+/// certain, one sentence each, names as they are: "rank 1: 3 candidates are tied (a, b, c)", "rank
+/// 2 and 3 not separable (their order turns round in 38 % of 129 samples)".
 std::vector<std::string> not_separable_words(const RankResult& result, std::size_t shown);
 
 /// What harm was counted with: model, every weight, who is where, ranges. Lines without a break.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace crashrank {
 namespace {
@@ -54,7 +55,8 @@ TEST(Stability, SamplesTellPlacesAndSeparation) {
       for (std::size_t other = 0; other < count; ++other) {
         const double theirs = result.ranking[other].sample_scores[s];
         const double ours = c.sample_scores[s];
-        if (theirs < ours || (theirs == ours && other < place)) ++before;
+        const bool ahead = result.ranking[other].place < c.place;
+        if (theirs < ours || (theirs == ours && ahead)) ++before;
       }
       best = std::min(best, before);
       worst = std::max(worst, before);
@@ -65,8 +67,64 @@ TEST(Stability, SamplesTellPlacesAndSeparation) {
     EXPECT_EQ(c.best_place, best);
     EXPECT_EQ(c.worst_place, worst);
     EXPECT_DOUBLE_EQ(c.overtaken, static_cast<double>(turned) / 129.0);
+    EXPECT_EQ(c.place, place + 1);
     EXPECT_EQ(c.separable, c.overtaken <= separable_share);
   }
+}
+
+TEST(Stability, EqualCandidatesShareAPlaceAndAreNotSeparable) {
+  for (const Measure measure : {Measure::harm, Measure::polygons}) {
+    Scene scene = square();
+    scene.scenario.measure = measure;
+    scene.scenario.listed.clear();
+    scene.add_candidate("a", 0.0);
+    scene.add_candidate("b", 0.0);
+    scene.add_candidate("slower", -4.0);
+    scene.add_candidate("c", 0.0);
+    scene.add_candidate("past all", 0.0, 0.5);
+    const RankResult result = scene.ranked();
+    ASSERT_EQ(result.ranking.size(), 5U);
+    const CandidateResult& first = of(result, "a");
+    EXPECT_EQ(first.sharing, 3U);
+    const std::size_t row = first.place - 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const CandidateResult& c = result.ranking[row + i];
+      EXPECT_EQ(c.place, first.place);
+      EXPECT_EQ(c.sharing, 3U);
+      EXPECT_EQ(c.score, first.score);
+      EXPECT_EQ(c.best_place, first.best_place);
+      EXPECT_EQ(c.worst_place, first.worst_place);
+      EXPECT_LE(c.best_place, c.place - 1);
+      EXPECT_GE(c.worst_place, c.place - 1);
+      if (i < 2) {
+        EXPECT_FALSE(c.separable);
+      }
+    }
+    // In the order of the candidates, and each without itself.
+    EXPECT_EQ(result.ranking[row].candidate, 0U);
+    EXPECT_EQ(tied_with(result, row), (std::vector<std::size_t>{1, 3}));
+    EXPECT_EQ(tied_with(result, row + 1), (std::vector<std::size_t>{0, 3}));
+    EXPECT_EQ(tied_with(result, row + 2), (std::vector<std::size_t>{0, 1}));
+    for (std::size_t i = 0; i < 5; ++i) {
+      if (result.ranking[i].sharing != 1) continue;
+      EXPECT_EQ(result.ranking[i].place, i + 1);
+      EXPECT_TRUE(tied_with(result, i).empty());
+    }
+  }
+}
+
+TEST(Stability, EqualScoresThatATieBreakOrdersAreNotSeparable) {
+  Scene scene = square();
+  scene.scenario.measure = Measure::polygons;
+  scene.scenario.listed.clear();
+  scene.add_candidate("now", 0.0);
+  scene.add_candidate("later", -0.01);
+  const RankResult result = scene.ranked();
+  ASSERT_EQ(result.ranking[0].score, result.ranking[1].score);
+  EXPECT_EQ(result.ranking[0].candidate, 1U);
+  EXPECT_EQ(result.ranking[1].place, 2U);
+  EXPECT_EQ(result.ranking[0].sharing, 1U);
+  EXPECT_FALSE(result.ranking[0].separable);
 }
 
 TEST(Stability, WhatIsWrongForBothAlikeDoesNotCount) {

@@ -101,6 +101,42 @@ TEST(RankingText, TellsNoDigitThatTheIntervalLeavesOpen) {
   EXPECT_EQ(exact.find("separable"), std::string::npos) << exact;
 }
 
+/// Three candidates by harm, the second and third tied.
+Told with_a_tie() {
+  Told told = by_harm();
+  RankResult& result = told.result;
+  result.candidates[2].name = "as \x1b[1mhit";
+  CandidateResult& hit = result.ranking[1];
+  hit.overtaken = 0.0;
+  hit.sharing = 2;
+  result.ranking[2] = hit;
+  result.ranking[2].candidate = 2;
+  return told;
+}
+
+TEST(RankingText, TiesShareAPlaceAndAreNamed) {
+  const Told told = with_a_tie();
+  const std::string text = ranking_text(told.scenario, told.models, told.result);
+  EXPECT_NE(text.find("rank 2: 2 candidates are tied (hit, as "), std::string::npos) << text;
+  EXPECT_NE(text.find("2 tied"), text.rfind("2 tied")) << text;
+  EXPECT_EQ(text.find("not separable"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+}
+
+TEST(RankingJson, TiesShareARankAndNameEachOther) {
+  const Told told = with_a_tie();
+  const auto answer = nlohmann::json::parse(ranking_json(told.scenario, told.models, told.result));
+  const auto& rows = answer["ranking"];
+  EXPECT_EQ(rows[0]["rank"], 1);
+  EXPECT_EQ(rows[0]["tied_with"], nlohmann::json::array());
+  EXPECT_EQ(rows[1]["rank"], 2);
+  EXPECT_EQ(rows[1]["tied_with"], nlohmann::json::array({"as \x1b[1mhit"}));
+  EXPECT_EQ(rows[2]["rank"], 2);
+  EXPECT_EQ(rows[2]["tied_with"], nlohmann::json::array({"hit"}));
+  EXPECT_EQ(rows[1]["separable_from_next"], false);
+  EXPECT_TRUE(answer["stability"]["not_separable"].empty());
+}
+
 TEST(RankingJson, TellsStabilityAndEveryWeight) {
   const Told told = by_harm();
   const auto answer = nlohmann::json::parse(ranking_json(told.scenario, told.models, told.result));

@@ -73,6 +73,7 @@ struct Told {
     unknown.score_interval = {1.0, 8.0};
     unknown.collides = true;
     result.ranking = {miss, hit, unknown};
+    for (std::size_t i = 0; i < result.ranking.size(); ++i) result.ranking[i].place = i + 1;
     result.complete = false;
     result.in_race = {0, 2};
     result.ego = {0, 1500.0, false};

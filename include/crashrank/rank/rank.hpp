@@ -131,12 +131,20 @@ struct CandidateResult {
   /// The ego's damage from all contacts together; a triangle hit twice counts once.
   BodyDamage ego;
   std::vector<double> sample_scores;  ///< by RankResult::samples; empty where there are none
-  /// Best and worst place over the samples, from 0; the place it has where there are none.
+  /// Place in the ranking, from 1. Candidates that are tied share it: 1, 2, 2, 4.
+  std::size_t place = 1;
+  /// Number of candidates in that place, this one included; 1: not tied. They are neighbours in
+  /// RankResult::ranking; `tied_with` lists them.
+  std::size_t sharing = 1;
+  /// Best and worst place over the samples, from 0; `place` - 1 where there are none. Candidates
+  /// that are tied and score alike in a sample share their place in it.
   std::size_t best_place = 0;
   std::size_t worst_place = 0;  ///< and the worst
   /// Share of the samples in which the next in the ranking scores lower than this one.
   double overtaken = 0.0;
-  /// `overtaken` is at most `separable_share`: this place and the next can be told apart.
+  /// The scores of this candidate and the next in the ranking differ (where one is not known: their
+  /// intervals are disjoint), and `overtaken` is at most `separable_share`. Never between
+  /// candidates that are tied.
   bool separable = true;
 };
 
@@ -197,12 +205,14 @@ struct RankResult {
   std::vector<CandidateResult> ranking;  ///< every candidate once, best first
   bool complete = true;                  ///< every score is known
   bool proved = true;                    ///< no other candidate can still take the first place
-  std::vector<std::size_t> in_race;      ///< candidates that can be first, best guess first
-  RankedBody ego;                        ///< the ego
-  std::vector<RankedBody> actors;        ///< in the scenario's order
-  RankWork work;                         ///< done for all
-  double elapsed_s = 0.0;                ///< wall time of the call
-  std::optional<RankerEffort> effort;    ///< where a Ranker told it
+  /// Candidates that can be first, best guess first. Of known scores the first in the ranking
+  /// stands for those that are tied with it.
+  std::vector<std::size_t> in_race;
+  RankedBody ego;                      ///< the ego
+  std::vector<RankedBody> actors;      ///< in the scenario's order
+  RankWork work;                       ///< done for all
+  double elapsed_s = 0.0;              ///< wall time of the call
+  std::optional<RankerEffort> effort;  ///< where a Ranker told it
 };
 
 /// Ranks the candidates of a scenario by what they would destroy. `models` belong to
@@ -226,7 +236,8 @@ struct RankResult {
 /// hit are not followed. The other measures take the planned motion and each contact by itself.
 /// Order: lower score; then what touches
 /// nothing before what does, a clean miss before a graze; then the later first contact; then the
-/// lower closing speed; then the order of the candidates. No two places are equal.
+/// lower closing speed. Candidates that agree in all of these are tied: they share a place and are
+/// listed in the order of the candidates.
 ///
 /// Cost: about the candidates times the bodies they come near. Errors: bad_input (numbers out
 /// of `scenario_limits` or not finite, poses not rigid or out of order, missing or empty model, ego
@@ -234,5 +245,10 @@ struct RankResult {
 /// Safe from any thread; allocates.
 CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
                                       const RankOptions& options = {});
+
+/// Indices into RankResult::candidates of those that share the place of `ranking[index]`, in their
+/// order, itself left out; empty where it is not tied. `index` is one of the ranking's. Linear in
+/// their number; safe from any thread.
+CRASHRANK_API std::vector<std::size_t> tied_with(const RankResult& result, std::size_t index);
 
 }  // namespace crashrank
