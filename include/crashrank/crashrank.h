@@ -168,6 +168,21 @@ CRASHRANK_API crashrank_status crashrank_scenario_add_model(crashrank_scenario* 
                                                             const char* name, const char* kind,
                                                             double mass_kg, crashrank_error* error);
 
+/// What is known of a body besides its shape, kind and mass. Begin with all zero: that is the
+/// default of everything.
+typedef struct crashrank_body {
+  const double* center_of_mass_m;  ///< x, y, z in body coordinates, m; NULL: estimated
+  double
+      yaw_inertia_kgm2;  ///< about the vertical axis through it, kg m2, at most 1e9; 0: estimated
+  double stiffness;      ///< crush strength, times the default, 0.01 to 100; 0: 1
+  const char* surface;   ///< sheet-metal, steel, concrete, wood, rubber or person; NULL: by kind
+} crashrank_body;
+/// Sets what is known of the shape with that index. Errors: usage. Numbers out of range are found
+/// by crashrank_rank.
+CRASHRANK_API crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario,
+                                                           size_t model, const crashrank_body* body,
+                                                           crashrank_error* error);
+
 /// A pose that a body has at a time, s from now.
 typedef struct crashrank_timed_pose {
   double time_s;    ///< later than that of the pose before
@@ -202,6 +217,16 @@ typedef struct crashrank_actor {
 CRASHRANK_API crashrank_status crashrank_scenario_add_actor(crashrank_scenario* scenario,
                                                             const crashrank_actor* actor,
                                                             crashrank_error* error);
+
+/// Number of persons in the ego, 0 to 1000; below 0: the default. Errors: usage for NULL.
+CRASHRANK_API crashrank_status crashrank_scenario_set_ego_occupants(crashrank_scenario* scenario,
+                                                                    double persons,
+                                                                    crashrank_error* error);
+/// Number of persons in or on the actor with that index, 0 to 1000; below 0: the default of its
+/// kind. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_set_actor_occupants(crashrank_scenario* scenario,
+                                                                      size_t actor, double persons,
+                                                                      crashrank_error* error);
 
 /// A manoeuvre that the ego can choose: constant acceleration and steering, or timed poses.
 typedef struct crashrank_candidate {
@@ -282,6 +307,12 @@ CRASHRANK_API size_t crashrank_ranking_size(const crashrank_ranking* ranking);
 CRASHRANK_API crashrank_status crashrank_ranking_get(const crashrank_ranking* ranking, size_t place,
                                                      crashrank_choice* choice,
                                                      crashrank_error* error);
+/// The place of the candidate that crashrank_ranking_get has under `index`, from 1: candidates that
+/// are tied share it (1, 2, 2, 4) and have neighbouring indices. `sharing`, which may be NULL: how
+/// many candidates have that place. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking,
+                                                       size_t index, size_t* place, size_t* sharing,
+                                                       crashrank_error* error);
 /// Unit of the scores: "triangles", "m2", "J", "m/s", "m", "persons". NULL for NULL.
 CRASHRANK_API const char* crashrank_ranking_unit(const crashrank_ranking* ranking);
 /// The whole answer as `crashrank rank --json` prints it (data/schemas/rank.schema.json), ended by

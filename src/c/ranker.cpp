@@ -36,15 +36,18 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
   };
   if (scenario.horizon_s != prepared.horizon_s) return other("horizon_s");
   const auto same_model = [](const ScenarioModel& a, const ScenarioModel& b) {
-    return a.kind == b.kind && (!a.mass_kg || a.mass_kg == b.mass_kg);
+    return a.kind == b.kind && (!a.mass_kg || a.mass_kg == b.mass_kg) &&
+           a.center_of_mass_m == b.center_of_mass_m && a.yaw_inertia_kgm2 == b.yaw_inertia_kgm2 &&
+           a.stiffness == b.stiffness && a.surface == b.surface;
   };
   if (!std::equal(scenario.models.begin(), scenario.models.end(), prepared.models.begin(),
                   prepared.models.end(), same_model)) {
     return other("models");
   }
   if (scenario.ego.model != prepared.ego.model) return other("ego.model");
+  if (scenario.ego.occupants != prepared.ego.occupants) return other("ego.occupants");
   const auto same_actor = [](const ScenarioActor& a, const ScenarioActor& b) {
-    return a.model == b.model;
+    return a.model == b.model && a.occupants == b.occupants;
   };
   if (!std::equal(scenario.actors.begin(), scenario.actors.end(), prepared.actors.begin(),
                   prepared.actors.end(), same_actor)) {

@@ -84,6 +84,18 @@ crashrank_status crashrank_ranking_get(const crashrank_ranking* ranking, size_t 
   return CRASHRANK_OK;
 }
 
+crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking, size_t index,
+                                         size_t* place, size_t* sharing, crashrank_error* error) {
+  if (ranking == nullptr || place == nullptr) return refuse_null(error);
+  if (index >= crashrank_ranking_size(ranking)) {
+    return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
+  }
+  const CandidateResult& ranked = ranking->result.ranking[index];
+  *place = ranked.place;
+  if (sharing != nullptr) *sharing = ranked.sharing;
+  return CRASHRANK_OK;
+}
+
 const char* crashrank_ranking_unit(const crashrank_ranking* ranking) {
   return ranking == nullptr ? nullptr : measure_unit(ranking->result.measure);
 }

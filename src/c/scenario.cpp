@@ -1,7 +1,10 @@
 #include "c/handles.hpp"
 
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -26,6 +29,11 @@ Result<BodyKind> kind_from_name(const std::string& name) {
   return make_error(ErrorCode::usage, "'" + name + "' is no kind of body",
                     "choose car, truck, bus, motorcycle, bicycle, pedestrian, barrier, pole or "
                     "building");
+}
+
+/// Persons as the scenario has them: below 0 nothing is set.
+std::optional<double> to_occupants(double persons) {
+  return persons < 0.0 ? std::nullopt : std::optional<double>(persons);
 }
 
 Result<std::vector<TimedPose>> to_poses(const crashrank_timed_pose* poses, std::size_t count) {
@@ -90,6 +98,49 @@ crashrank_status crashrank_scenario_add_model(crashrank_scenario* scenario, cons
     scenario->scenario.models.push_back(std::move(model));
     return CRASHRANK_OK;
   });
+}
+
+crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario, size_t model,
+                                             const crashrank_body* body, crashrank_error* error) {
+  if (scenario == nullptr || body == nullptr) return refuse_null(error);
+  return guarded(error, [&]() -> crashrank_status {
+    if (model >= scenario->scenario.models.size()) {
+      return refuse(CRASHRANK_USAGE, "the scenario has no such shape", error);
+    }
+    ScenarioModel made = scenario->scenario.models[model];
+    made.center_of_mass_m.reset();
+    made.yaw_inertia_kgm2.reset();
+    made.surface.reset();
+    if (const double* center = body->center_of_mass_m; center != nullptr) {
+      made.center_of_mass_m = Eigen::Vector3d(center[0], center[1], center[2]);
+    }
+    if (body->yaw_inertia_kgm2 != 0.0) made.yaw_inertia_kgm2 = body->yaw_inertia_kgm2;
+    made.stiffness = body->stiffness != 0.0 ? body->stiffness : 1.0;
+    if (body->surface != nullptr) {
+      const Result<Surface> surface = surface_from_name(body->surface);
+      if (!surface) return refuse(surface.error(), error);
+      made.surface = *surface;
+    }
+    scenario->scenario.models[model] = std::move(made);
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_scenario_set_ego_occupants(crashrank_scenario* scenario, double persons,
+                                                      crashrank_error* error) {
+  if (scenario == nullptr) return refuse_null(error);
+  scenario->scenario.ego.occupants = to_occupants(persons);
+  return CRASHRANK_OK;
+}
+
+crashrank_status crashrank_scenario_set_actor_occupants(crashrank_scenario* scenario, size_t actor,
+                                                        double persons, crashrank_error* error) {
+  if (scenario == nullptr) return refuse_null(error);
+  if (actor >= scenario->scenario.actors.size()) {
+    return refuse(CRASHRANK_USAGE, "the scenario has no such actor", error);
+  }
+  scenario->scenario.actors[actor].occupants = to_occupants(persons);
+  return CRASHRANK_OK;
 }
 
 crashrank_status crashrank_scenario_set_ego(crashrank_scenario* scenario, const crashrank_ego* ego,

@@ -31,6 +31,16 @@ TEST(CApi, AScenarioThatDoesNotFitIsRefusedByRank) {
             CRASHRANK_USAGE);
   ASSERT_EQ(crashrank_scenario_add_model(scenario.get(), "car", "car", 0, &error), CRASHRANK_OK);
   EXPECT_NE(crashrank_rank(scenario.get(), models.get(), nullptr, &ranking, &error), CRASHRANK_OK);
+  crashrank_body body{};
+  EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 1, &body, &error), CRASHRANK_USAGE);
+  body.surface = "glass";
+  EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_USAGE);
+  const double center_m[3] = {1.3, 0.0, 0.5};
+  body = crashrank_body{center_m, 2000.0, 0.0, "rubber"};
+  EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_OK);
+  EXPECT_EQ(crashrank_scenario_set_ego_occupants(scenario.get(), 0.0, &error), CRASHRANK_OK);
+  EXPECT_EQ(crashrank_scenario_set_actor_occupants(scenario.get(), 0, 2.0, &error),
+            CRASHRANK_USAGE);
   EXPECT_EQ(crashrank_scenario_set_grid(scenario.get(), 102, 5, &error), CRASHRANK_USAGE);
   crashrank_rank_options options{};
   options.measure = "beauty";
@@ -83,6 +93,12 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
     EXPECT_EQ(choice.candidate, expected->candidates[wanted.candidate].name);
     EXPECT_EQ(choice.score, *wanted.score);
     EXPECT_EQ(choice.contacts, wanted.contacts.size());
+    size_t shared = 0;
+    size_t sharing = 0;
+    ASSERT_EQ(crashrank_ranking_place(ranking.get(), place, &shared, &sharing, &error),
+              CRASHRANK_OK);
+    EXPECT_EQ(shared, wanted.place);
+    EXPECT_EQ(sharing, wanted.sharing);
     if (wanted.contacts.empty()) {
       EXPECT_EQ(choice.other, nullptr);
       EXPECT_TRUE(std::isnan(choice.time_of_impact_s));
@@ -94,6 +110,11 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
   crashrank_choice choice{};
   EXPECT_EQ(crashrank_ranking_get(ranking.get(), expected->ranking.size(), &choice, &error),
             CRASHRANK_USAGE);
+  size_t shared = 0;
+  EXPECT_EQ(crashrank_ranking_place(ranking.get(), 0, &shared, nullptr, nullptr), CRASHRANK_OK);
+  EXPECT_EQ(
+      crashrank_ranking_place(ranking.get(), expected->ranking.size(), &shared, nullptr, nullptr),
+      CRASHRANK_USAGE);
   // Character for character but for the time taken.
   const auto without_time = [](std::string json) {
     const std::size_t at = json.find("\"elapsed_s\"");
