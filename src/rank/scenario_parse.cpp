@@ -5,10 +5,13 @@
 #include "rank/read_harm.hpp"
 #include "rank/scenario_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace crashrank {
 namespace {
@@ -291,6 +294,18 @@ void read_models(const JsonObject& root, Scenario& scenario) {
   }
 }
 
+/// Keys of earlier crash models: read and checked, so that files which have them stay valid.
+std::vector<std::string> find_keys_without_effect(const json& document) {
+  std::vector<std::string> keys;
+  for (const char* const pointer : {"/crush", "/harm/least_struck_share"}) {
+    if (!document.contains(json::json_pointer(pointer))) continue;
+    std::string key(pointer + 1);
+    std::replace(key.begin(), key.end(), '/', '.');
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
 Scenario read_scenario(const json& document, Status& status) {
   Scenario scenario;
   const JsonObject root(document, {}, status,
@@ -327,6 +342,7 @@ Scenario read_scenario(const json& document, Status& status) {
     detail::read_harm(harm, scenario.harm);
   }
   scenario.grip = root.number("grip", {limits::min_grip, limits::max_grip}, 0.8);
+  if (status.ok()) scenario.keys_without_effect = find_keys_without_effect(document);
   return scenario;
 }
 

@@ -70,7 +70,7 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     const CandidateResult& ranked = result.ranking[place];
     const Candidate& candidate = result.candidates[ranked.candidate];
     const double until_s = followed_s(scenario, ranked);
-    const std::string who = fmt::format("'{}', in place {}, ", candidate.name, place + 1);
+    const std::string who = fmt::format("'{}', in place {}, ", candidate.name, ranked.place);
     const std::optional<double> demand = grip_demand(candidate, scenario, until_s);
     if (demand && *demand > whole_grip) {
       slips.add(who + fmt::format("takes {:.2f} times what there is", *demand));
@@ -118,6 +118,17 @@ void doubt_actors(const Scenario& scenario, std::vector<std::string>& doubts) {
       ends.many("actor end", "actors end"), scenario.horizon_s, ends.first));
 }
 
+void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
+  if (scenario.keys_without_effect.empty()) return;
+  std::string keys;
+  for (const std::string& key : scenario.keys_without_effect) {
+    keys += (keys.empty() ? "" : ", ") + key;
+  }
+  doubts.push_back(fmt::format("the scenario sets {}, which {} without effect; leave {} out", keys,
+                               scenario.keys_without_effect.size() == 1 ? "is" : "are",
+                               scenario.keys_without_effect.size() == 1 ? "it" : "them"));
+}
+
 }  // namespace
 
 std::vector<std::string> ranking_doubts(const Scenario& scenario, const RankResult& result) {
@@ -125,6 +136,7 @@ std::vector<std::string> ranking_doubts(const Scenario& scenario, const RankResu
   doubt_speeds(result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_actors(scenario, doubts);
+  doubt_keys(scenario, doubts);
   return doubts;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace crashrank {
 namespace {
@@ -173,6 +174,18 @@ TEST(Scenario, DefaultsAreThoseOfTheSchema) {
   EXPECT_EQ(s->crush.time_s, 0.05);
   EXPECT_EQ(at("/$defs/model/properties/stiffness/default"), s->models[0].stiffness);
   EXPECT_FALSE(s->models[0].surface || s->ego.occupants);
+}
+
+TEST(Scenario, KeysWithoutEffectAreListed) {
+  json document = sample();
+  EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
+            std::vector<std::string>{"crush"});
+  document["harm"]["least_struck_share"] = 0.5;
+  EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
+            (std::vector<std::string>{"crush", "harm.least_struck_share"}));
+  document.erase("crush");
+  document.erase("harm");
+  EXPECT_TRUE(parse_scenario(document.dump(), "f")->keys_without_effect.empty());
 }
 
 TEST(Scenario, EverySurfaceOfTheSchemaReadsBack) {

@@ -40,6 +40,18 @@ TEST(Doubts, ContactsFasterThanTheCrashModelAreTold) {
   EXPECT_TRUE(told.doubts().empty());
 }
 
+TEST(Doubts, KeysWithoutEffectAreNamed) {
+  Sound told;
+  told.scenario.keys_without_effect = {"crush"};
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0], "the scenario sets crush, which is without effect; leave it out");
+  told.scenario.keys_without_effect.push_back("harm.least_struck_share");
+  EXPECT_EQ(
+      told.doubts()[0],
+      "the scenario sets crush, harm.least_struck_share, which are without effect; leave them "
+      "out");
+}
+
 TEST(Doubts, TheGripCountsUpToTheFirstContact) {
   Sound told;
   // 25 m/s at the contact, 50 m/s at the horizon.

@@ -102,6 +102,9 @@ struct Scenario {
   Measure measure = Measure::harm;                      ///< what is compared
   HarmOptions harm;   ///< weights and ranges; the defaults where the file is silent
   double grip = 0.8;  ///< friction between tyre and road
+  /// Key paths of the text that are accepted but change nothing, as "crush"; `parse_scenario` fills
+  /// it, in the order of the schema.
+  std::vector<std::string> keys_without_effect;
 };
 
 /// Bounds on what a scenario may ask for; the published schema states the same numbers.
