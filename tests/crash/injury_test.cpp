@@ -187,6 +187,12 @@ TEST(Injury, TheWorstLeadingEdgeIsEnclosed) {
       EXPECT_GE(bound, most * (1.0 - 1e-14)) << v;
       EXPECT_LE(bound, most * (1.0 + 1e-5)) << v;
     }
+    for (const double v : {1e-15, 1e-10, 1e-5, 1e-2}) {
+      const double bound = most_injury_risk(model, outside(Person::pedestrian, v));
+      for (double edge = 0.5; edge < 1.3; edge += 0.01) {
+        EXPECT_GE(bound, injury_risk(model, outside(Person::pedestrian, v, edge)) * (1.0 - 1e-14));
+      }
+    }
   }
 }
 

@@ -106,7 +106,7 @@ CRASHRANK_API double injury_risk(RiskModel model, const Exposure& exposure);
 
 /// The largest `injury_risk` over all directions of force and all leading edges. Between the edges
 /// of 0.5 and 1.3 m, to which `injury_risk` clamps, the risk of Monfort & Mueller's MAIS3+ curve
-/// may have a maximum at low speed; it is bounded from above to 1e-9 of its value.
+/// may have a maximum at low speed; it is bounded from above to 1e-9 of its value (above 1 mm/s).
 CRASHRANK_API double most_injury_risk(RiskModel model, const Exposure& exposure);
 
 /// Height over its lowest point of a vehicle's bonnet leading edge: where a straight edge of 1 m,
