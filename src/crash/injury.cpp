@@ -29,73 +29,177 @@ const RiskModelEntry& entry_of(RiskModel model) noexcept {
   return risk_models.front();
 }
 
-enum class Side { front, side, rear };
-
-Side side_of(double pdof_deg) {
-  if (pdof_deg <= 45.0 || pdof_deg >= 315.0) return Side::front;
-  return pdof_deg >= 135.0 && pdof_deg <= 225.0 ? Side::rear : Side::side;
-}
+constexpr double mph = 0.44704;
+constexpr double kmh = 1.0 / 3.6;
+// The coefficients of the leading edge were fitted to cars and pickups.
+constexpr double lowest_edge_m = 0.5;
+constexpr double highest_edge_m = 1.3;
 
 double logistic(double z) { return 1.0 / (1.0 + std::exp(-z)); }
 
-double tum_occupant(double v, Side side) {
-  const double by_side = side == Side::side ? 0.244 : (side == Side::rear ? -0.431 : 0.0);
-  return logistic(-4.457 + 0.177 * v + by_side);
+/// The argument of a logistic curve: at zero exposure, and what the exposure adds, >= 0.
+struct Argument {
+  double at_zero = 0.0;
+  double gain = 0.0;
+};
+
+/// (L(z) - L(z0)) / (1 - L(z0)) without cancellation, for z = z0 + gain. With u = exp(z0) and
+/// g = exp(gain): 1 - (1 + u)/(1 + u·g) = u·(g - 1)/(1 + u·g) = (1 - 1/g) · L(z0 + gain). Both
+/// factors rise with the gain, the second with z0.
+double risk_over_zero(const Argument& z) {
+  return -std::expm1(-z.gain) * logistic(z.at_zero + z.gain);
 }
 
-constexpr double mph = 0.44704;
-constexpr double kmh = 1.0 / 3.6;
+/// Logistic curve of an occupant: intercept, 1/(m/s), and what side and rear add to the front.
+struct OccupantCurve {
+  double intercept;
+  double per_mps;
+  double side;
+  double rear;
+};
 
-double malliaris(double v, Side side, bool fatal) {
-  const double speed = v / mph;
-  const double s = side == Side::side ? 1.0 : 0.0;
-  const double r = side == Side::rear ? 1.0 : 0.0;
-  return fatal ? logistic(-9.032 + 0.198 * speed + 1.462 * s - 1.921 * r)
-               : logistic(-5.820 + 0.202 * speed + 0.556 * s - 2.170 * r);
+constexpr OccupantCurve tum_occupant{-4.457, 0.177, 0.244, -0.431};
+constexpr OccupantCurve malliaris_mais3{-5.820, 0.202 / mph, 0.556, -2.170};
+constexpr OccupantCurve malliaris_fatal{-9.032, 0.198 / mph, 1.462, -1.921};
+
+/// The coefficient of the direction, that of the front being 0: a weighted mean of the side's and
+/// of the front's or the rear's. Even in the angle and of period 360 degrees.
+double direction_coefficient(const OccupantCurve& curve, double pdof_deg) {
+  const double angle = std::abs(std::remainder(pdof_deg, 360.0)) * std::numbers::pi / 180.0;
+  const double along = std::cos(angle);
+  const double end = along < 0.0 ? curve.rear : 0.0;
+  return curve.side + (end - curve.side) * along * along;
 }
 
-double joksch(double v) {
-  const double share = v / 31.74;
-  return std::min(1.0, share * share * share * share);
+double occupant_risk(const OccupantCurve& curve, const Exposure& e) {
+  Argument z;
+  z.at_zero = curve.intercept + direction_coefficient(curve, e.pdof_deg);
+  z.gain = curve.per_mps * std::max(e.delta_v_mps, 0.0) +
+           intrusion_gain_per_m * std::max(e.intrusion_m, 0.0);
+  return risk_over_zero(z);
 }
 
-/// For a person of mean age and sex, whose terms vanish.
-double monfort(double v, double edge_m, bool fatal) {
-  const double speed = v / kmh - 42.79;
-  const double edge = 100.0 * edge_m - 85.25;
-  return fatal ? logistic(-3.280 + 0.123 * speed + 0.047 * edge)
-               : logistic(-0.460 + 0.091 * speed + 0.039 * edge + 0.002 * speed * edge);
+/// No logistic: intrusion multiplies the odds by exp(gain), as it does in a logistic curve.
+double joksch(const Exposure& e) {
+  const double share = std::max(e.delta_v_mps, 0.0) / 31.74;
+  const double risk = std::min(share * share * share * share, 1.0);
+  if (risk == 0.0) return 0.0;
+  return risk /
+         (risk + (1.0 - risk) * std::exp(-intrusion_gain_per_m * std::max(e.intrusion_m, 0.0)));
 }
 
 double occupant_risk(RiskModel model, const Exposure& e) {
-  const Side side = side_of(e.pdof_deg);
   switch (model) {
     case RiskModel::tum:
-      return tum_occupant(e.delta_v_mps, side);
+      return occupant_risk(tum_occupant, e);
     case RiskModel::malliaris_monfort:
-      return malliaris(e.delta_v_mps, side, false);
+      return occupant_risk(malliaris_mais3, e);
     case RiskModel::malliaris_rosen:
-      return malliaris(e.delta_v_mps, side, true);
+      return occupant_risk(malliaris_fatal, e);
     case RiskModel::joksch_monfort:
       break;
   }
-  return joksch(e.delta_v_mps);
+  return joksch(e);
 }
 
-double pedestrian_risk(RiskModel model, double v, double edge_m) {
-  // The coefficients of the edge were fitted to cars and pickups.
-  const double edge = std::clamp(edge_m, 0.5, 1.3);
+/// Monfort & Mueller, standardised with the means of their sample. The edge's coefficient in the
+/// MAIS3+ curve depends on the speed.
+Argument monfort(double v_mps, double edge_m, const PedestrianDescription& person, bool fatal) {
+  constexpr double mean_speed_kmh = 42.79;
+  const double speed = v_mps / kmh;
+  const double edge = 100.0 * edge_m - 85.25;
+  const double male = person.male_share ? std::clamp(*person.male_share, 0.0, 1.0) - 0.59 : 0.0;
+  const double age = person.age_years ? std::clamp(*person.age_years, 0.0, 120.0) - 42.42 : 0.0;
+  if (fatal) {
+    return {-3.280 - 0.123 * mean_speed_kmh + 0.047 * edge + 0.319 * male + 0.030 * age,
+            0.123 * speed};
+  }
+  const double per_kmh = 0.091 + 0.002 * edge;
+  return {-0.460 - per_kmh * mean_speed_kmh + 0.039 * edge - 0.119 * male + 0.029 * age,
+          per_kmh * speed};
+}
+
+Argument rosen_sander(double v_mps, const PedestrianDescription& person) {
+  const double speed = v_mps / kmh;
+  if (!person.age_years) return {-6.9, 0.090 * speed};
+  return {-9.1 + 0.040 * std::clamp(*person.age_years, 0.0, 120.0), 0.095 * speed};
+}
+
+/// Solves (1 - exp(-g)) · L(z0 + g) = 0.1 for z0, at g = 0.288 · 29/3.6: the risk is 10 % at
+/// 29 km/h. z0 = -ln(10 · (1 - exp(-g)) - 1) - g.
+constexpr double tum_pedestrian_at_zero = -4.401597234498132;
+constexpr double tum_pedestrian_per_mps = 0.288;
+
+Argument pedestrian_argument(RiskModel model, double v_mps, double edge_m,
+                             const PedestrianDescription& person) {
   switch (model) {
     case RiskModel::tum:
-      return logistic(-3.164 + 0.288 * v);
+      return {tum_pedestrian_at_zero, tum_pedestrian_per_mps * v_mps};
     case RiskModel::malliaris_monfort:
-      return monfort(v, edge, false);
+      return monfort(v_mps, edge_m, person, false);
     case RiskModel::malliaris_rosen:
-      return logistic(-6.9 + 0.090 * v / kmh);
+      return rosen_sander(v_mps, person);
     case RiskModel::joksch_monfort:
       break;
   }
-  return monfort(v, edge, true);
+  return monfort(v_mps, edge_m, person, true);
+}
+
+/// The speed at which the pedestrian's curve has the risk of this person, m/s.
+double pedestrian_speed_mps(const Exposure& e) {
+  // 10 % MAIS3+ (Lubbe et al. 2022).
+  constexpr double pedestrian_kmh = 29.0;
+  constexpr double cyclist_kmh = 44.0;
+  constexpr double motorcyclist_kmh = 48.0;
+  const double speed = std::max(e.impact_speed_mps, 0.0);
+  if (e.person == Person::cyclist) return speed * pedestrian_kmh / cyclist_kmh;
+  if (e.person == Person::motorcyclist) return speed * pedestrian_kmh / motorcyclist_kmh;
+  return speed;
+}
+
+PedestrianDescription description_of(const Exposure& e) {
+  return e.person == Person::pedestrian ? e.description : PedestrianDescription{};
+}
+
+/// The largest risk of a person outside a car over the leading edges h. z0 and z = z0 + gain are
+/// linear in h, with the slopes z0' and z'. From 1 - p = (1 + exp(z0))/(1 + exp(z)):
+///
+///   d ln(1 - p)/dh = z0' · L(z0) - z' · L(z)
+///
+/// - z0' >= 0 (all curves but Monfort & Mueller's MAIS3+): z' >= z0' there, so p never falls.
+/// - z0' < 0 <= z': p rises.
+/// - z0' < z' < 0: p rises while L(z)/L(z0) < z0'/z'. The logarithm of the left side has the slope
+///   z' · (1 - L(z)) - z0' · (1 - L(z0)) >= 0, as L(z) >= L(z0) and |z'| < |z0'|. So p rises up to
+///   one point and falls from there; bisection encloses it.
+double most_outside_risk(RiskModel model, const Exposure& e) {
+  const double speed = pedestrian_speed_mps(e);
+  const auto at = [&](double edge_m) {
+    return pedestrian_argument(model, speed, edge_m, description_of(e));
+  };
+  double low = lowest_edge_m;
+  double high = highest_edge_m;
+  const Argument first = at(low);
+  const Argument last = at(high);
+  double most = std::max(risk_over_zero(first), risk_over_zero(last));
+  const double slope_at_zero = last.at_zero - first.at_zero;
+  const double slope = slope_at_zero + last.gain - first.gain;
+  if (slope_at_zero >= 0.0 || slope >= 0.0) return most;
+  const auto rises = [&](const Argument& z) {
+    return slope * logistic(z.at_zero + z.gain) > slope_at_zero * logistic(z.at_zero);
+  };
+  // At lower speeds rounding decides the comparison: bound the risk over all edges at once.
+  constexpr double least_mps = 1e-3;
+  const bool decides = speed > least_mps;
+  if (decides && (!rises(first) || rises(last))) return most;
+  for (int step = 0; decides && step < 36; ++step) {
+    const double middle = 0.5 * (low + high);
+    (rises(at(middle)) ? low : high) = middle;
+  }
+  // Of both factors of the risk the larger end: an upper bound within the last interval.
+  const Argument left = at(low);
+  const Argument right = at(high);
+  most = std::max(most, -std::expm1(-right.gain) * logistic(left.at_zero + left.gain));
+  return most;
 }
 
 }  // namespace
@@ -115,18 +219,21 @@ Result<RiskModel> risk_model_from_name(const std::string& name) {
 }
 
 double injury_risk(RiskModel model, const Exposure& exposure) {
-  constexpr double no_crash_mps = 0.1;
-  constexpr double pedestrian_kmh = 29.0;
-  constexpr double cyclist_kmh = 44.0;
-  constexpr double motorcyclist_kmh = 48.0;
-  if (exposure.person == Person::occupant) {
-    return exposure.delta_v_mps < no_crash_mps ? 0.0 : occupant_risk(model, exposure);
+  if (exposure.person == Person::occupant) return occupant_risk(model, exposure);
+  const double edge_m = std::clamp(exposure.leading_edge_m, lowest_edge_m, highest_edge_m);
+  return risk_over_zero(
+      pedestrian_argument(model, pedestrian_speed_mps(exposure), edge_m, description_of(exposure)));
+}
+
+double most_injury_risk(RiskModel model, const Exposure& exposure) {
+  if (exposure.person != Person::occupant) return most_outside_risk(model, exposure);
+  double most = 0.0;
+  Exposure worst = exposure;
+  for (const double pdof : {0.0, 90.0, 180.0}) {
+    worst.pdof_deg = pdof;
+    most = std::max(most, injury_risk(model, worst));
   }
-  if (exposure.impact_speed_mps < no_crash_mps) return 0.0;
-  double speed = exposure.impact_speed_mps;
-  if (exposure.person == Person::cyclist) speed *= pedestrian_kmh / cyclist_kmh;
-  if (exposure.person == Person::motorcyclist) speed *= pedestrian_kmh / motorcyclist_kmh;
-  return pedestrian_risk(model, speed, exposure.leading_edge_m);
+  return most;
 }
 
 double leading_edge_m(const TriangleMesh& mesh) {

@@ -7,6 +7,7 @@ namespace crashrank {
 namespace {
 
 double people_in(const HarmExposure& e, const HarmWeights& w) {
+  if (e.occupants) return *e.occupants;
   if (e.ego) return w.people_in_ego;
   if (e.kind == BodyKind::bus) return w.people_in_bus;
   if (e.kind == BodyKind::truck) return w.people_in_truck;
@@ -25,6 +26,23 @@ double weight_of(Person person, bool ego, const HarmWeights& w) {
       break;
   }
   return ego ? w.ego_occupant : w.other_occupant;
+}
+
+/// Inputs of the injury risk of one person in or on a body, as the sample changes them.
+Exposure person_exposure(const HarmExposure& body, Person person, const HarmOptions& options,
+                         const HarmSample& sample) {
+  const double delta_v_mps = body.delta_v_mps * (1.0 + sample.restitution);
+  const bool rides = person == Person::cyclist || person == Person::motorcyclist;
+  const double fall_mps = rides ? fall_speed_mps(body.road_speed_mps, delta_v_mps) : 0.0;
+  Exposure e;
+  e.person = person;
+  e.delta_v_mps = delta_v_mps * sample.occupant_speed;
+  e.pdof_deg = body.pdof_deg;
+  e.impact_speed_mps = std::max(body.closing_speed_mps, fall_mps) * sample.outside_speed;
+  e.leading_edge_m = body.leading_edge_m;
+  e.intrusion_m = body.intrusion_m;
+  e.description = options.pedestrian;
+  return e;
 }
 
 /// Both ends of a range, one of them where they coincide.
@@ -68,25 +86,40 @@ bool has_cage(BodyKind kind) noexcept {
 }
 
 double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                        double reduced_kg, const HarmOptions& options) {
+                        double reduced_kg) noexcept {
   const double full_hit_mps = reduced_kg > 0.0 ? delta_v_mps * mass_kg / reduced_kg : 0.0;
-  return std::clamp(full_hit_mps, options.least_struck_share * closing_speed_mps,
-                    closing_speed_mps);
+  return std::min(full_hit_mps, closing_speed_mps);
+}
+
+double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
+                        double reduced_kg, const HarmOptions& /*options*/) {
+  return struck_speed_mps(closing_speed_mps, delta_v_mps, mass_kg, reduced_kg);
+}
+
+double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept {
+  const double ramp = std::clamp(delta_v_mps / fall_delta_v_mps, 0.0, 1.0);
+  return fall_share * std::max(road_speed_mps, 0.0) * ramp;
+}
+
+double risk_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {
+  Person person = Person::occupant;
+  if (!carries_people(exposure.kind, person)) return 0.0;
+  return injury_risk(sample.model, person_exposure(exposure, person, options, sample));
+}
+
+double people_weight(const HarmExposure& exposure, const HarmWeights& weights) {
+  Person person = Person::occupant;
+  if (!carries_people(exposure.kind, person)) return 0.0;
+  return people_in(exposure, weights) * weight_of(person, exposure.ego, weights);
+}
+
+double property_harm(const HarmExposure& exposure, const HarmWeights& weights) {
+  return weights.property_per_mj * exposure.crush_energy_j * 1e-6;
 }
 
 double harm_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {
-  const double property = options.weights.property_per_mj * exposure.crush_energy_j * 1e-6;
-  Person person = Person::occupant;
-  if (!carries_people(exposure.kind, person)) return property;
-  Exposure e;
-  e.person = person;
-  e.delta_v_mps = exposure.delta_v_mps * (1.0 + sample.restitution) * sample.occupant_speed;
-  e.pdof_deg = exposure.pdof_deg;
-  e.impact_speed_mps = exposure.closing_speed_mps * sample.outside_speed;
-  e.leading_edge_m = exposure.leading_edge_m;
-  return property + people_in(exposure, options.weights) *
-                        weight_of(person, exposure.ego, options.weights) *
-                        injury_risk(sample.model, e);
+  return people_weight(exposure, options.weights) * risk_of(exposure, options, sample) +
+         property_harm(exposure, options.weights);
 }
 
 double harm_of(const HarmExposure& exposure, const HarmOptions& options) {
@@ -96,20 +129,12 @@ double harm_of(const HarmExposure& exposure, const HarmOptions& options) {
 }
 
 double most_harm(const HarmExposure& exposure, const HarmOptions& options) {
-  // One direction of each side; the risk is monotonic in the edge between the ends at which
-  // `injury_risk` holds it, one way or the other.
-  constexpr std::array<double, 3> sides_deg{0.0, 90.0, 180.0};
-  constexpr std::array<double, 2> edges_m{0.0, 10.0};
-  double most = 0.0;
-  HarmExposure worst = exposure;
-  for (const double side : sides_deg) {
-    for (const double edge : edges_m) {
-      worst.pdof_deg = side;
-      worst.leading_edge_m = edge;
-      most = std::max(most, harm_of(worst, options));
-    }
-  }
-  return most;
+  const double property = property_harm(exposure, options.weights);
+  Person person = Person::occupant;
+  if (!carries_people(exposure.kind, person)) return property;
+  const Exposure worst = person_exposure(exposure, person, options, HarmSample{});
+  return people_weight(exposure, options.weights) * most_injury_risk(options.model, worst) +
+         property;
 }
 
 std::vector<HarmSample> harm_samples(const HarmOptions& options) {

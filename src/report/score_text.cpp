@@ -215,12 +215,11 @@ std::vector<std::string> harm_words(const HarmOptions& harm) {
   lines.push_back(fmt::format(
       "Friction {:g} ({:g} to {:g}); ranges: stiffness x {:g} to {:g}, restitution {:g} to {:g}, "
       "speed of the risk curves x {:g} to {:g}, {}. After a contact: {:g} m/s2 for {:g} s at most, "
-      "{} contacts at most; who is brushed takes {:g} of the closing speed at least.",
+      "{} contacts at most.",
       harm.friction, r.least_friction, r.most_friction, r.least_strength, r.most_strength,
       r.least_restitution, r.most_restitution, r.least_risk_speed, r.most_risk_speed,
       r.all_models ? "order under all four risk models" : "this risk model alone",
-      harm.after.deceleration_mps2, harm.after.longest_s, harm.after.most_contacts,
-      harm.least_struck_share));
+      harm.after.deceleration_mps2, harm.after.longest_s, harm.after.most_contacts));
   return lines;
 }
 

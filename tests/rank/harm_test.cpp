@@ -1,10 +1,14 @@
 #include "crashrank/rank/harm.hpp"
 
+#include "crash/random.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
 
 namespace crashrank {
 namespace {
@@ -37,6 +41,182 @@ TEST(Harm, SomebodyOnFootCountsByTheClosingSpeed) {
   const double slow = harm_of(e, options);
   e.closing_speed_mps = 14;
   EXPECT_GT(harm_of(e, options), slow);
+}
+
+constexpr BodyKind kinds[] = {BodyKind::car,        BodyKind::truck,   BodyKind::bus,
+                              BodyKind::motorcycle, BodyKind::bicycle, BodyKind::pedestrian,
+                              BodyKind::barrier,    BodyKind::pole,    BodyKind::building};
+constexpr RiskModel models[] = {RiskModel::tum, RiskModel::malliaris_monfort,
+                                RiskModel::malliaris_rosen, RiskModel::joksch_monfort};
+
+TEST(Harm, IsPeopleTimesRiskPlusProperty) {
+  HarmExposure e;
+  e.kind = BodyKind::bus;
+  e.delta_v_mps = 9;
+  e.intrusion_m = 0.1;
+  e.crush_energy_j = 1e5;
+  HarmOptions options;
+  options.weights.other_occupant = 2.0;
+  options.weights.property_per_mj = 3.0;
+  const HarmSample sample;
+  EXPECT_DOUBLE_EQ(people_weight(e, options.weights), 20.0);
+  EXPECT_DOUBLE_EQ(property_harm(e, options.weights), 0.3);
+  Exposure person;
+  person.delta_v_mps = 9;
+  person.intrusion_m = 0.1;
+  EXPECT_DOUBLE_EQ(risk_of(e, options, sample), injury_risk(RiskModel::tum, person));
+  EXPECT_DOUBLE_EQ(harm_of(e, options), 20.0 * risk_of(e, options, sample) + 0.3);
+  e.kind = BodyKind::pole;
+  EXPECT_EQ(people_weight(e, options.weights), 0.0);
+  EXPECT_EQ(risk_of(e, options, sample), 0.0);
+}
+
+TEST(Harm, StatedOccupantsReplaceTheAssumedNumber) {
+  HarmExposure e;
+  e.delta_v_mps = 15;
+  HarmOptions options;
+  options.weights.people_in_car = 4;
+  const double risk = risk_of(e, options, {});
+  e.occupants = 2.5;
+  EXPECT_DOUBLE_EQ(harm_of(e, options), 2.5 * risk);
+  e.ego = true;
+  EXPECT_DOUBLE_EQ(harm_of(e, options), 2.5 * risk);
+  e.occupants = 0.0;
+  EXPECT_EQ(harm_of(e, options), 0.0);
+  EXPECT_EQ(most_harm(e, options), 0.0);
+  EXPECT_EQ(risk_of(e, options, {}), risk);
+  options.weights.property_per_mj = 1.0;
+  e.crush_energy_j = 1e6;
+  EXPECT_EQ(harm_of(e, options), 1.0);
+  EXPECT_EQ(most_harm(e, options), 1.0);
+}
+
+TEST(Harm, RisksOfSeveralEventsCombineAsProbabilities) {
+  EXPECT_DOUBLE_EQ(combined_risk(0.2, 0.5), 0.6);
+  EXPECT_EQ(combined_risk(0.0, 0.3), 0.3);
+  EXPECT_EQ(combined_risk(0.3, 0.0), 0.3);
+  EXPECT_EQ(combined_risk(1.0, 0.4), 1.0);
+  EXPECT_EQ(combined_risk(0.4, 1.0), 1.0);
+  EXPECT_DOUBLE_EQ(combined_risk(1e-18, 1e-18), 2e-18);
+  constexpr std::uint64_t seed = 32;
+  test::Random random(seed);
+  for (int i = 0; i < 2000; ++i) {
+    double survival = 1.0;
+    double risk = 0.0;
+    for (int event = 0; event < 6; ++event) {
+      const double p = random.uniform(0, 1);
+      const double before = risk;
+      survival *= 1.0 - p;
+      risk = combined_risk(risk, p);
+      ASSERT_GE(risk, std::max(before, p) * (1.0 - 1e-15)) << "seed " << seed << ", case " << i;
+      ASSERT_LE(risk, std::min(1.0, before + p)) << "seed " << seed << ", case " << i;
+    }
+    ASSERT_NEAR(risk, 1.0 - survival, 1e-15) << "seed " << seed << ", case " << i;
+  }
+}
+
+TEST(Harm, ATouchedRiderFallsAtRoadSpeed) {
+  EXPECT_EQ(fall_speed_mps(20.0, 0.0), 0.0);
+  EXPECT_DOUBLE_EQ(fall_speed_mps(20.0, 0.5), 3.0);
+  EXPECT_DOUBLE_EQ(fall_speed_mps(20.0, 1.0), 6.0);
+  EXPECT_DOUBLE_EQ(fall_speed_mps(20.0, 9.0), 6.0);
+  const HarmOptions options;
+  for (const BodyKind kind : {BodyKind::motorcycle, BodyKind::bicycle}) {
+    HarmExposure e;
+    e.kind = kind;
+    e.road_speed_mps = 20.0;
+    EXPECT_EQ(risk_of(e, options, {}), 0.0);
+    e.delta_v_mps = 1.0;
+    const double falls = risk_of(e, options, {});
+    HarmExposure struck = e;
+    struck.road_speed_mps = 0.0;
+    struck.closing_speed_mps = 6.0;
+    EXPECT_EQ(falls, risk_of(struck, options, {}));
+    e.closing_speed_mps = 5.0;
+    EXPECT_EQ(risk_of(e, options, {}), falls);
+    e.closing_speed_mps = 9.0;
+    EXPECT_GT(risk_of(e, options, {}), falls);
+  }
+  HarmExposure walking;
+  walking.kind = BodyKind::pedestrian;
+  walking.road_speed_mps = 20.0;
+  walking.delta_v_mps = 2.0;
+  EXPECT_EQ(risk_of(walking, options, {}), 0.0);
+}
+
+TEST(Harm, AContactThatTransfersNothingStrikesNobody) {
+  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0), 0.0);
+  EXPECT_DOUBLE_EQ(struck_speed_mps(10.0, 1.0, 75.0, 50.0), 1.5);
+  EXPECT_EQ(struck_speed_mps(10.0, 30.0, 75.0, 50.0), 10.0);
+  HarmOptions options;
+  options.least_struck_share = 1.0;
+  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0, options), 0.0);
+}
+
+TEST(Harm, TouchingHurtsHardlyAnybody) {
+  const HarmOptions options;
+  HarmExposure wall;
+  wall.ego = true;
+  wall.delta_v_mps = 0.3;
+  EXPECT_LE(harm_of(wall, options), 0.002);
+  HarmExposure person;
+  person.kind = BodyKind::pedestrian;
+  person.delta_v_mps = person.closing_speed_mps = 0.3;
+  EXPECT_LE(harm_of(person, options), 0.005);
+  person.delta_v_mps = person.closing_speed_mps = 1.0;
+  EXPECT_LE(harm_of(person, options), 0.02);
+}
+
+TEST(Harm, ThePedestriansAgeIsAnOption) {
+  HarmExposure person;
+  person.kind = BodyKind::pedestrian;
+  person.closing_speed_mps = 12.0;
+  HarmOptions options;
+  options.model = RiskModel::malliaris_rosen;
+  const double mean = harm_of(person, options);
+  options.pedestrian.age_years = 80.0;
+  EXPECT_GT(harm_of(person, options), mean);
+  EXPECT_GE(most_harm(person, options), harm_of(person, options));
+}
+
+TEST(Harm, IsMonotoneAndBoundedByItsMost) {
+  constexpr std::uint64_t seed = 33;
+  test::Random random(seed);
+  for (int i = 0; i < 5000; ++i) {
+    const auto name = [i] {
+      return "seed " + std::to_string(seed) + ", case " + std::to_string(i);
+    };
+    HarmOptions options;
+    options.model = models[random.below(4)];
+    options.weights.property_per_mj = random.uniform(0, 2);
+    if (random.below(2) != 0) options.pedestrian.age_years = random.uniform(0, 90);
+    HarmExposure e;
+    e.kind = kinds[random.below(9)];
+    e.ego = random.below(2) != 0;
+    e.delta_v_mps = random.uniform(0, 30);
+    e.closing_speed_mps = random.uniform(0, 30);
+    e.crush_energy_j = random.uniform(0, 1e6);
+    e.intrusion_m = random.below(2) != 0 ? random.uniform(0, 0.5) : 0.0;
+    e.road_speed_mps = random.uniform(0, 40);
+    if (random.below(2) != 0) e.occupants = random.uniform(0, 5);
+    const double most = most_harm(e, options) * (1.0 + 1e-14);
+    HarmExposure less = e;
+    less.delta_v_mps *= random.uniform(0, 1);
+    less.closing_speed_mps *= random.uniform(0, 1);
+    less.crush_energy_j *= random.uniform(0, 1);
+    less.intrusion_m *= random.uniform(0, 1);
+    less.road_speed_mps *= random.uniform(0, 1);
+    for (int direction = 0; direction < 20; ++direction) {
+      e.pdof_deg = less.pdof_deg = random.uniform(-10, 370);
+      e.leading_edge_m = less.leading_edge_m = random.uniform(0.2, 1.6);
+      ASSERT_LE(harm_of(e, options), most) << name();
+      ASSERT_LE(harm_of(less, options), harm_of(e, options)) << name();
+      ASSERT_GE(harm_of(less, options), 0.0) << name();
+    }
+    HarmExposure none = e;
+    none.delta_v_mps = none.closing_speed_mps = none.crush_energy_j = none.intrusion_m = 0.0;
+    ASSERT_EQ(harm_of(none, options), 0.0) << name();
+  }
 }
 
 using scenes::box_mesh;

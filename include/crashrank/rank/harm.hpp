@@ -5,28 +5,33 @@
 #include "crashrank/vehicle/body_kind.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace crashrank {
 
-// What a candidate's harm is, as a function of its contacts; all that a bound on it may rest on.
+// Harm of a candidate as a function of its contacts; all that a bound on it may rest on.
 //
-//   harm(candidate) = sum over its contacts of harm_of(ego's exposure) + harm_of(other's exposure)
+// One body in one contact:
 //
-// Every term is >= 0, contacts come in time order, and what a contact contributes depends on itself
-// and on those before it alone: the sum over the first few is a lower bound on the whole. After the
-// first contact there are at most `AfterImpact::most_contacts` - 1 more, and no body is met twice.
+//   harm_of = people_weight · risk_of + property_harm
 //
-// harm_of = property_per_mj · crush energy in MJ + people · weight · risk(exposure), risk in [0,
-// 1]. It never falls when delta-v (occupants), closing speed (people outside cars) or crush energy
-// rise. It depends on the PDOF by its side alone (front, side, rear; `most_harm` takes the worst)
-// and on the striker's leading edge in the models that know it, in which it need not be monotonic.
-// So the term of somebody outside a car is bounded on both sides at first contact, without
-// simulating the crash: see `struck_speed_mps`; that of occupants needs the pulse.
+// people_weight is the number of people in or on the body times their weight, risk_of the
+// probability of one of them in [0, 1], property_harm a weight times the crush energy. All terms
+// are
+// >= 0. The people on one body in several contacts are injured with the probability
+// 1 - prod(1 - p_i), see `combined_risk`, which is at least the largest p_i and at most their sum:
+// each further contact raises it or leaves it, so the first few contacts give a lower bound.
 //
-// Bounds on what enters, for two bodies of masses m1, m2 that meet with the relative velocity v of
-// their centres of mass and the yaw rates w1, w2 (inertias I1, I2), since the pulse conserves
-// momentum and never gains energy, with M = m1·m2/(m1 + m2), or the movable body's mass:
+// risk_of is continuous, 0 at zero exposure, and never falls when delta-v (occupants and riders),
+// intrusion (occupants), struck speed (people outside cars) or road speed (riders) rise. It depends
+// on the PDOF by a coefficient between those of front, side and rear, and on the striker's leading
+// edge in the models that have it, in which it need not be monotonic; `most_harm` takes the worst
+// of both. The struck speed lies between 0 and the closing speed, see `struck_speed_mps`.
+//
+// Bounds on the inputs, for two bodies of masses m1, m2 with the relative velocity v of their
+// centres of mass and the yaw rates w1, w2 (inertias I1, I2), since the pulse conserves momentum
+// and never gains energy, with M = m1·m2/(m1 + m2), or the movable body's mass:
 //   delta_v of body i  <=  M/m_i · (|v| + sqrt(v² + (I1·w1² + I2·w2²)/M))
 //   both crush energies together  <=  (M·v² + I1·w1² + I2·w2²)/2
 // The sample's restitution multiplies delta-v by 1 + e.
@@ -83,10 +88,13 @@ struct HarmOptions {
   HarmRanges ranges;                 ///< what is not known
   double friction = 0.3;             ///< between the bodies
   AfterImpact after;                 ///< how the ego goes on
-  /// Somebody outside a car who is brushed takes at least this share of the closing speed, whatever
-  /// the pulse says that the touch gave him: falls and wheels are not simulated. A choice.
+  /// Without effect: a contact that transfers no velocity injures nobody, and the fall of a brushed
+  /// rider comes from `HarmExposure::road_speed_mps`. Profiles and scenarios may still contain it.
   double least_struck_share = 0.3;
   bool intervals = true;  ///< evaluate the samples, too: five pulses a contact in place of one
+  /// Age and sex of all pedestrians, for the curves that have coefficients of them; empty: the mean
+  /// person of the curve's sample.
+  PedestrianDescription pedestrian;
 };
 
 /// Bounds on what a profile may ask for; the published schema states the same numbers.
@@ -101,26 +109,48 @@ inline constexpr double min_risk_speed = 0.1;                    ///< least fact
 inline constexpr double max_risk_speed = 10.0;                   ///< most
 inline constexpr double deceleration_mps2 = 50.0;                ///< most, m/s²
 inline constexpr double after_s = 60.0;                          ///< longest, s
+inline constexpr double age_years = 120.0;                       ///< most
 inline constexpr std::size_t contacts = 16;                      ///< most of a candidate
 }  // namespace harm_limits
 
-/// What a crash does to one body, as harm sees it.
+/// Inputs of the harm model for one body in one contact.
 struct HarmExposure {
-  BodyKind kind = BodyKind::car;   ///< what is hit
+  BodyKind kind = BodyKind::car;   ///< of this body
   bool ego = false;                ///< it is the ego
   double delta_v_mps = 0.0;        ///< change of its velocity, m/s
   double pdof_deg = 0.0;           ///< where the force comes from, degrees clockwise from ahead
-  double closing_speed_mps = 0.0;  ///< as `struck_speed_mps` has it, for people outside cars
-  double leading_edge_m = 0.75;    ///< of what hit it
+  double closing_speed_mps = 0.0;  ///< from `struck_speed_mps`, for people outside cars, m/s
+  double leading_edge_m = 0.75;    ///< of the other body, m
   double crush_energy_j = 0.0;     ///< turned into its damage, J
+  /// Deepest intrusion into its passenger compartment, m, >= 0; kinds without one have no effect.
+  double intrusion_m = 0.0;
+  /// Speed over ground before the contact of a motorcycle or bicycle, m/s, >= 0; see
+  /// `fall_speed_mps`. No effect on other kinds.
+  double road_speed_mps = 0.0;
+  /// Number of people in or on it, in place of `HarmWeights::people_in_ego` and the others; 0 to
+  /// `harm_limits::people`. 0: a parked vehicle, whose only harm is the property's.
+  std::optional<double> occupants;
 };
 
-/// Harm to the people in or on one body: their number times the risk times their weight, and the
-/// property's share. Unit: persons with the model's outcome, as weighted.
+/// Share of the road speed at which a fallen rider's curve is read: he slides rather than strikes.
+/// A choice.
+inline constexpr double fall_share = 0.3;
+
+/// Delta-v of a two-wheeler from which its rider is certain to fall, m/s. A choice.
+inline constexpr double fall_delta_v_mps = 1.0;
+
+/// Impact speed that stands for a rider's fall, m/s: `fall_share` times the road speed, times a
+/// ramp in the delta-v of the machine from 0 at 0 to 1 at `fall_delta_v_mps`. Negative values count
+/// as 0.
+CRASHRANK_API double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept;
+
+/// Harm to the people in or on one body in one contact: their number times the risk times their
+/// weight, and the property's share. Unit: persons with the model's outcome, as weighted.
 CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& options);
 
-/// The most that `harm_of` comes to for any PDOF and any leading edge, when nothing else of the
-/// exposure is larger.
+/// The largest `harm_of` over all PDOF and leading edges, and over all exposures that are nowhere
+/// larger than this one (the number of people being the same). The pure directions front, side and
+/// rear have the extreme risks, see injury.hpp.
 CRASHRANK_API double most_harm(const HarmExposure& exposure, const HarmOptions& options);
 
 /// One way in which all that is not known may lie. The same sample holds for every candidate and
@@ -144,10 +174,34 @@ CRASHRANK_API std::vector<HarmSample> harm_samples(const HarmOptions& options);
 CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& options,
                              const HarmSample& sample);
 
-/// The speed at which the curve of somebody outside a car is read. Curves come from people struck
-/// by a front, who take on the vehicle's speed: delta-v = closing speed · M/m. Who is brushed by a
-/// flank takes on less, and stands where a full hit of the same delta-v would. Between
-/// `least_struck_share` times the closing speed and all of it. `reduced_kg` is m1·m2/(m1 + m2).
+/// Probability of the sample's model's outcome for one person in or on the body in this contact
+/// alone, in [0, 1], without weights or numbers of people; 0 for kinds that carry nobody.
+CRASHRANK_API double risk_of(const HarmExposure& exposure, const HarmOptions& options,
+                             const HarmSample& sample);
+
+/// Number of people in or on the body times the weight of one of them; 0 for kinds that carry
+/// nobody. `HarmExposure::occupants` replaces the number of `weights`.
+CRASHRANK_API double people_weight(const HarmExposure& exposure, const HarmWeights& weights);
+
+/// Harm of the damage to the body itself, in the unit of `harm_of`.
+CRASHRANK_API double property_harm(const HarmExposure& exposure, const HarmWeights& weights);
+
+/// Probability that a person is injured in at least one of two independent events of the
+/// probabilities `earlier` and `later`: 1 - (1 - earlier)·(1 - later), in the form that loses no
+/// digits of small risks. Over several events: start at 0 and combine with the next one each time;
+/// the result is 1 - prod(1 - p_i). In [0, 1]; never falls with either.
+constexpr double combined_risk(double earlier, double later) noexcept {
+  return earlier + later * (1.0 - earlier);
+}
+
+/// The speed at which the curve of a person outside a car is read, m/s. Curves come from people
+/// struck by a front, who take on the vehicle's speed: delta-v = closing speed · M/m. A person
+/// brushed by a flank takes on less, and has the risk of a full hit of the same delta-v:
+/// min(closing speed, delta-v · m/M), 0 at no delta-v. `reduced_kg` is M = m1·m2/(m1 + m2).
+CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
+                                      double reduced_kg) noexcept;
+
+/// The same; the options have no effect.
 CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
                                       double reduced_kg, const HarmOptions& options);
 
