@@ -1,11 +1,13 @@
 #pragma once
 
 #include "crashrank/base/guarded.hpp"
+#include "crashrank/mesh/profile.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/wide_build.hpp"
 #include "crashrank/tree/wide_tree.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace crashrank {
@@ -16,6 +18,9 @@ struct Model {
   TriangleMesh mesh;   ///< its surface
   AabbTree tree;       ///< the binary tree over it
   WideTree wide = {};  ///< what the vector engine reads; empty where only the scalar one can serve
+  /// Its outlines, which crash simulations read; null: `rank` makes them when it needs them. Model
+  /// files hold them.
+  std::shared_ptr<const Profile> profile = nullptr;
 };
 
 /// Builds the trees of a mesh. Errors as `build_tree`.
@@ -24,7 +29,7 @@ inline Result<Model> make_model(TriangleMesh mesh, const BuildOptions& options =
     Result<AabbTree> tree = detail::build_tree_or_throw(mesh, options);
     if (!tree) return tree.error();
     WideTree wide = widen(*tree, options.threads);
-    return Model{std::move(mesh), std::move(*tree), std::move(wide)};
+    return Model{std::move(mesh), std::move(*tree), std::move(wide), nullptr};
   });
 }
 

@@ -1,0 +1,113 @@
+#include "crashrank/mesh/profile.hpp"
+
+#include "mesh/outline.hpp"
+
+#include "crashrank/base/guarded.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crashrank {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Of the raster and of the line: finer for small bodies, so that a pole stays round.
+constexpr double coarsest_cell_m = 0.02;
+constexpr double finest_cell_m = 0.002;
+constexpr double cells_along = 250.0;
+constexpr double tolerance_cells = 0.25;
+constexpr double most_pieces_along = 20000.0;
+
+/// Section of the mesh by a horizontal plane, body coordinates.
+void cut(const TriangleMesh& mesh, double height, std::vector<detail::SectionSegment>& segments) {
+  segments.clear();
+  for (const auto& triangle : mesh.triangles) {
+    std::array<Vector2d, 3> point;
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const Eigen::Vector3d p = mesh.vertices[triangle[e]].cast<double>();
+      const Eigen::Vector3d q = mesh.vertices[triangle[(e + 1) % 3]].cast<double>();
+      if ((p.z() < height) == (q.z() < height)) continue;
+      // From the lower end, whichever way the edge runs: neighbours meet at the same point.
+      const Eigen::Vector3d& low = p.z() < q.z() ? p : q;
+      const Eigen::Vector3d& high = p.z() < q.z() ? q : p;
+      const double t = (height - low.z()) / (high.z() - low.z());
+      point[count++] = low.head<2>() + t * (high.head<2>() - low.head<2>());
+    }
+    if (count == 2) segments.push_back({point[0], point[1]});
+  }
+}
+
+void add_pieces(const detail::OutlineLoop& loop, double longest_m,
+                std::vector<OutlinePiece>& pieces) {
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vector2d from = loop[i];
+    const Vector2d along = loop[(i + 1) % loop.size()] - from;
+    const double length = along.norm();
+    if (!(length > 1e-6)) continue;
+    const int count = std::max(1, static_cast<int>(std::ceil(length / longest_m - 1e-6)));
+    const Vector2d normal(along.y() / length, -along.x() / length);
+    for (int k = 0; k < count; ++k) {
+      const Vector2d middle = from + ((k + 0.5) / count) * along;
+      pieces.push_back({static_cast<float>(middle.x()), static_cast<float>(middle.y()),
+                        static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                        static_cast<float>(length / count)});
+    }
+  }
+}
+
+Result<Profile> profile_of(const TriangleMesh& mesh) {
+  constexpr double below_ground_m = 0.3;
+  constexpr double beside_vertices_m = 1.3e-6;
+  Profile profile;
+  const Box box = mesh.bounds();
+  if (box.empty()) {
+    return make_error(ErrorCode::bad_input, "has no triangle to take an outline from",
+                      "give it a mesh with a surface");
+  }
+  if (static_cast<double>(box.min.z()) < -below_ground_m) {
+    profile.ground_m = static_cast<double>(box.min.z());
+  }
+  const double longest = static_cast<double>(std::max(box.extent().x(), box.extent().y()));
+  const double cell_m = std::clamp(longest / cells_along, finest_cell_m, coarsest_cell_m);
+  const double piece_m =
+      std::max(std::min(longest_piece_m, longest / 16.0), longest / most_pieces_along);
+  std::vector<detail::SectionSegment> segments;
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    profile.first[band] = static_cast<std::uint32_t>(profile.pieces.size());
+    const double middle = 0.5 * (profile_edges_m[band] + profile_edges_m[band + 1]);
+    cut(mesh, profile.ground_m + middle + beside_vertices_m, segments);
+    double area = 0.0;
+    for (const detail::OutlineLoop& loop :
+         detail::trace_outlines(segments, cell_m, tolerance_cells * cell_m)) {
+      add_pieces(loop, piece_m, profile.pieces);
+      area += detail::loop_area_m2(loop);
+    }
+    profile.area_m2[band] = static_cast<float>(area);
+  }
+  profile.first[profile_bands] = static_cast<std::uint32_t>(profile.pieces.size());
+  if (!(profile.volume_m3() > 0.0)) {
+    return make_error(ErrorCode::bad_input,
+                      "has no outline between 0 and 4 m over the ground that encloses anything",
+                      "check its scale, its up axis and its origin on the ground");
+  }
+  return profile;
+}
+
+}  // namespace
+
+double Profile::volume_m3() const {
+  double volume = 0.0;
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    volume +=
+        static_cast<double>(area_m2[band]) * (profile_edges_m[band + 1] - profile_edges_m[band]);
+  }
+  return volume;
+}
+
+Result<Profile> make_profile(const TriangleMesh& mesh) {
+  return detail::guarded([&] { return profile_of(mesh); });
+}
+
+}  // namespace crashrank
