@@ -124,18 +124,25 @@ TriangleMesh box_around(const Box& box, double half_width) {
                high.z());
 }
 
-CrushStrength barrier_strength(Barrier barrier) {
-  CrushStrength strength = CrushStrength::unyielding();
-  if (barrier != Barrier::deformable) return strength;
-  strength.rigid = false;
+Result<Vehicle> barrier_vehicle(Barrier barrier, const TriangleMesh& mesh) {
+  VehicleFacts facts;
+  facts.kind = BodyKind::building;
+  facts.surface = Surface::steel;
+  Result<Vehicle> vehicle = describe_vehicle(mesh, facts);
+  if (!vehicle || barrier != Barrier::deformable) return vehicle;
+  CrushStrength& strength = vehicle->strength;
   const double height = honeycomb_high_m - honeycomb_low_m;
-  // The slope only has to be positive.
+  strength.rigid = false;
+  // The slope only has to be positive; behind the honeycomb stands a rigid block.
   strength.front = {honeycomb_pa * height, 0.01 * honeycomb_pa * height, honeycomb_depth_m};
   strength.side = strength.front;
   strength.rear = strength.front;
   strength.low_m = honeycomb_low_m;
   strength.high_m = honeycomb_high_m;
-  return strength;
+  strength.hardening_npm2 = 1e8;
+  strength.rigid_npm2 = 1e9;
+  vehicle->surface = Surface::rubber;
+  return vehicle;
 }
 
 }  // namespace
@@ -149,15 +156,8 @@ Result<Barrier> barrier_from_name(const std::string& name) {
                     "choose one of wall, flat, pole, deformable");
 }
 
-double guess_izz_kgm2(double mass_kg, double length_m) {
-  constexpr double gyration = 0.29;
-  return mass_kg * gyration * gyration * length_m * length_m;
-}
-
-Result<PulseResult> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape) {
+Result<ContactOutcome> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape) {
   constexpr double run_up_m = 0.5;
-  constexpr double steel_friction = 0.1;
-  constexpr double honeycomb_friction = 0.5;
   TriangleMesh body = morphed(car, test);
   TriangleMesh obstacle = barrier_mesh(test, test.width_m * (0.5 - test.overlap));
   if (shape == RigShape::boxes) {
@@ -168,6 +168,13 @@ Result<PulseResult> run_crash_test(const RigCar& car, const CrashTest& test, Rig
   if (!a) return a.error();
   const Result<Model> b = make_model(std::move(obstacle));
   if (!b) return b.error();
+  VehicleFacts facts;
+  facts.mass_kg = test.mass_kg;
+  facts.yaw_inertia_kgm2 = test.izz_kgm2;
+  const Result<Vehicle> one = describe_vehicle(a->mesh, facts);
+  if (!one) return one.error();
+  const Result<Vehicle> two = barrier_vehicle(test.barrier, b->mesh);
+  if (!two) return two.error();
 
   FreeMotion drive;
   drive.start.translation.x() = -run_up_m - static_cast<double>(a->mesh.bounds().max.x());
@@ -176,23 +183,16 @@ Result<PulseResult> run_crash_test(const RigCar& car, const CrashTest& test, Rig
   ImpactWorkspace workspace;
   const double until_s = (2.0 * run_up_m + test.length_m) / test.speed_mps;
   const Impact impact = time_of_impact(a->tree, motion, b->tree, Motion(), 0.0, until_s, workspace);
-  if (!impact.hit()) return PulseResult{};
-
-  MassProperties mass;
-  mass.mass_kg = test.mass_kg;
-  mass.center_m = Vector3d(car.center_of_mass * test.wheelbase_m, 0.0, car.center_height_m);
-  mass.inertia_kgm2 *= test.izz_kgm2;
-  PulseBody one;
-  one.mesh = &a->mesh;
-  one.pose = motion.pose_at(impact.time_s);
-  one.rigid = place(mass, one.pose, motion.velocity_at(impact.time_s));
-  one.strength = car_strength({test.mass_kg, test.width_m, 0.0, test.wheelbase_m});
-  PulseBody two;
-  two.mesh = &b->mesh;
-  two.strength = barrier_strength(test.barrier);
-  PulseOptions options;
-  options.friction = test.barrier == Barrier::deformable ? honeycomb_friction : steel_friction;
-  return simulate_pulse(one, two, impact.point_a_m, Vector3d::UnitX(), options);
+  if (!impact.hit()) return ContactOutcome{};
+  ContactBody moving;
+  moving.vehicle = &*one;
+  moving.pose = motion.pose_at(impact.time_s);
+  moving.velocity = motion.velocity_at(impact.time_s);
+  ContactBody standing;
+  standing.vehicle = &*two;
+  ContactWorkspace memory;
+  return simulate_contact(moving, standing, {}, 0.5 * (impact.point_a_m + impact.point_b_m), {},
+                          memory);
 }
 
 }  // namespace crashrank::cli

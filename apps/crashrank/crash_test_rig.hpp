@@ -1,9 +1,10 @@
 #pragma once
 
 #include "crashrank/base/result.hpp"
-#include "crashrank/crash/pulse.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
+#include <optional>
 #include <string>
 
 namespace crashrank::cli {
@@ -26,24 +27,18 @@ struct CrashTest {
   double height_m = 0.0;
   double wheelbase_m = 0.0;
   double mass_kg = 0.0;
-  double izz_kgm2 = 0.0;
+  std::optional<double> izz_kgm2;  ///< absent: derived as for a ranking
   Barrier barrier = Barrier::wall;
   double radius_m = 0.0;
   double overlap = 0.0;  ///< share of the width that the barrier covers
   double speed_mps = 0.0;
 };
 
-/// Yaw inertia where none is given: the radius of gyration is 0.29 of the length, as published for
-/// a mid-size saloon of 4.84 m, 1,621 kg and 3,167 kg·m².
-double guess_izz_kgm2(double mass_kg, double length_m);
-
 /// The car that is stretched to each test's measures.
 struct RigCar {
   TriangleMesh mesh;  ///< origin on the ground under the rear axle
   double wheelbase_m = 0.0;
-  double width_m = 0.0;         ///< without mirrors
-  double center_of_mass = 0.0;  ///< before the rear axle, in wheelbases
-  double center_height_m = 0.0;
+  double width_m = 0.0;  ///< without mirrors
 };
 
 enum class RigShape {
@@ -51,9 +46,9 @@ enum class RigShape {
   boxes,  ///< car and barrier are replaced by their bounding boxes, for comparison
 };
 
-/// Drives the car into the barrier: first contact of the meshes, then the pulse. Friction is 0.1 on
-/// steel, what sheet metal does on steel at high pressure and speed (0.1 to 0.2), and 0.5 on the
-/// honeycomb, which folds around what enters it; nobody brakes. Errors: as `make_model`.
-Result<PulseResult> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape);
+/// Drives the car into the barrier: first contact of the meshes, then `simulate_contact` as `rank`
+/// does it, on the same description of both bodies. The barrier is steel; its honeycomb folds
+/// around what enters it. Errors: as `make_model` and `describe_vehicle`.
+Result<ContactOutcome> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape);
 
 }  // namespace crashrank::cli

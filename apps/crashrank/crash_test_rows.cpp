@@ -89,8 +89,7 @@ Result<CrashTestRow> parse_row(Row row) {
   test.height_m = row.number("height_m", 0.3, longest);
   test.wheelbase_m = row.number("wheelbase_m", 0.3, longest);
   test.mass_kg = row.number("mass_kg", 1.0, 1e6);
-  test.izz_kgm2 = row.optional_number("izz_kgm2", 0.1, 1e8)
-                      .value_or(guess_izz_kgm2(test.mass_kg, test.length_m));
+  test.izz_kgm2 = row.optional_number("izz_kgm2", 0.1, 1e8);
   const Result<Barrier> barrier = barrier_from_name(std::string(row.text("barrier")));
   if (barrier) {
     test.barrier = *barrier;

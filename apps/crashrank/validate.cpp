@@ -77,12 +77,9 @@ Result<RigCar> load_car(const std::string& path) {
     if (!entry.is_object() || entry.value("file", "") != fs::path(path).filename().string()) {
       continue;
     }
-    const Json center = entry.value("center_of_mass_m", Json::array());
     car.wheelbase_m = entry.value("wheelbase_m", 0.0);
     car.width_m = entry.value("width_m", 0.0);
-    if (!(car.wheelbase_m > 0.0) || !(car.width_m > 0.0) || center.size() != 3) break;
-    car.center_of_mass = center[0].get<double>() / car.wheelbase_m;
-    car.center_height_m = center[2].get<double>();
+    if (!(car.wheelbase_m > 0.0) || !(car.width_m > 0.0)) break;
   }
   if (!(car.wheelbase_m > 0.0)) return refuse("has no measures of " + path);
   Result<ImportedMesh> imported = import_mesh(path, {});
@@ -93,18 +90,20 @@ Result<RigCar> load_car(const std::string& path) {
 
 /// What one row came to.
 struct Outcome {
-  PulseResult pulse;
-  double delta_v_mps() const { return pulse.a.delta_v_mps.norm(); }
-  double yaw_rate_dps() const { return pulse.a.delta_omega_radps.z() * (180.0 / std::numbers::pi); }
+  ContactOutcome contact;
+  double delta_v_mps() const { return contact.a.delta_v_mps.norm(); }
+  double yaw_rate_dps() const {
+    return contact.a.delta_yaw_rate_radps * (180.0 / std::numbers::pi);
+  }
 };
 
 Result<std::vector<Outcome>> run_all(const RigCar& car, const std::vector<CrashTestRow>& rows,
                                      RigShape shape, Progress& progress, std::size_t done) {
   std::vector<Outcome> outcomes;
   for (const CrashTestRow& row : rows) {
-    Result<PulseResult> pulse = run_crash_test(car, row.test, shape);
-    if (!pulse) return pulse.error();
-    outcomes.push_back({*pulse});
+    Result<ContactOutcome> contact = run_crash_test(car, row.test, shape);
+    if (!contact) return contact.error();
+    outcomes.push_back({*contact});
     progress.update(++done);
   }
   return outcomes;
@@ -154,18 +153,18 @@ Json errors_json(const Errors& errors) {
 }
 
 Json row_json(const CrashTestRow& row, const Outcome& outcome) {
-  const PulseResult& pulse = outcome.pulse;
+  const ContactOutcome& contact = outcome.contact;
   Json entry{{"id", row.test.id},
              {"delta_v_mps", outcome.delta_v_mps()},
-             {"delta_v_x_mps", pulse.a.delta_v_mps.x()},
-             {"delta_v_y_mps", pulse.a.delta_v_mps.y()},
+             {"delta_v_x_mps", contact.a.delta_v_mps.x()},
+             {"delta_v_y_mps", contact.a.delta_v_mps.y()},
              {"yaw_rate_dps", outcome.yaw_rate_dps()},
-             {"slides", pulse.slides},
-             {"collides", pulse.acts},
-             {"pdof_deg", pulse.a.pdof_deg},
-             {"duration_s", pulse.duration_s},
-             {"dissipated_j", pulse.dissipated_j},
-             {"deepest_m", pulse.deepest_m}};
+             {"slides", contact.slides},
+             {"collides", contact.acts},
+             {"pdof_deg", contact.a.pdof_deg},
+             {"duration_s", contact.duration_s},
+             {"dissipated_j", contact.dissipated_j},
+             {"deepest_m", contact.a.crush_depth_m}};
   if (row.measured_delta_v_mps) entry["measured_delta_v_mps"] = *row.measured_delta_v_mps;
   if (row.measured_yaw_rate_dps) entry["measured_yaw_rate_dps"] = *row.measured_yaw_rate_dps;
   return entry;
@@ -201,15 +200,15 @@ std::string table_text(const std::vector<CrashTestRow>& rows, const std::vector<
     const std::string barrier = fmt::format("{} r {:.0f} mm, {:.0f} %",
                                             names.at(static_cast<std::size_t>(row.test.barrier)),
                                             1e3 * row.test.radius_m, 1e2 * row.test.overlap);
-    table.add_row({row.test.id, barrier, measured_text(row.measured_delta_v_mps, kmh),
-                   fmt::format("{:.1f}", kmh * o.delta_v_mps()),
-                   off(o.delta_v_mps(), row.measured_delta_v_mps),
-                   fmt::format("{:.1f}", kmh * boxes[i].delta_v_mps()),
-                   off(boxes[i].delta_v_mps(), row.measured_delta_v_mps),
-                   measured_text(row.measured_yaw_rate_dps, 1.0),
-                   fmt::format("{:.0f}", o.yaw_rate_dps()),
-                   off(o.yaw_rate_dps(), row.measured_yaw_rate_dps),
-                   fmt::format("{:.0f}", boxes[i].yaw_rate_dps()), o.pulse.slides ? "yes" : "no"});
+    table.add_row(
+        {row.test.id, barrier, measured_text(row.measured_delta_v_mps, kmh),
+         fmt::format("{:.1f}", kmh * o.delta_v_mps()),
+         off(o.delta_v_mps(), row.measured_delta_v_mps),
+         fmt::format("{:.1f}", kmh * boxes[i].delta_v_mps()),
+         off(boxes[i].delta_v_mps(), row.measured_delta_v_mps),
+         measured_text(row.measured_yaw_rate_dps, 1.0), fmt::format("{:.0f}", o.yaw_rate_dps()),
+         off(o.yaw_rate_dps(), row.measured_yaw_rate_dps),
+         fmt::format("{:.0f}", boxes[i].yaw_rate_dps()), o.contact.slides ? "yes" : "no"});
   }
   std::string text = table.text(colours_wanted());
   const auto summary = [&](const char* what, const Errors& e) {

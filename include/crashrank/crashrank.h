@@ -281,7 +281,7 @@ CRASHRANK_API void crashrank_ranking_free(crashrank_ranking* ranking);
 
 /// Above this closing speed no crash can be simulated, m/s: the measures harm, delta-v, energy and
 /// intrusion do not hold there, closing-energy does.
-#define CRASHRANK_FASTEST_CRASH_MPS 100.0
+#define CRASHRANK_FASTEST_CRASH_MPS 140.0
 
 /// What choosing a candidate leads to. Of contacts the first is told; without one its numbers are
 /// NaN.

@@ -36,7 +36,9 @@
 
 #include "crashrank/crash/injury.hpp"
 #include "crashrank/crash/motion.hpp"
-#include "crashrank/crash/severity.hpp"
+#include "crashrank/crash/cdc.hpp"
+#include "crashrank/crash/contact_law.hpp"
+#include "crashrank/crash/pdof.hpp"
 #include "crashrank/crash/time_of_impact.hpp"
 
 #include "crashrank/rank/harm.hpp"

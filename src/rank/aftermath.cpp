@@ -46,11 +46,11 @@ void Aftermath::begin(const Scene& scene, const Candidate& candidate, double sta
   start_s_ = start_s;
   ego_ = ego;
   after_ = after;
-  center_in_body_m_ = scene.ego.mass.center_m;
+  center_in_body_m_ = scene.ego.vehicle.center_m;
   deceleration_mps2_ = std::max(scene.harm.after.deceleration_mps2, -candidate.acceleration_mps2);
   // Tyres that push sideways act about as far from the centre of mass as the mass does.
-  const MassProperties& mass = scene.ego.mass;
-  const double gyration_m = std::sqrt(mass.inertia_kgm2(2, 2) / mass.mass_kg);
+  const Vehicle& vehicle = scene.ego.vehicle;
+  const double gyration_m = std::sqrt(vehicle.yaw_inertia_kgm2 / vehicle.mass_kg);
   spin_deceleration_radps2_ = deceleration_mps2_ / std::max(gyration_m, 0.1);
   turned_ = yawed(after.turned_rad) * ego.pose.rotation;
   center_m_ = ego.pose.rotation * center_in_body_m_ + ego.pose.translation + after.moved_m;

@@ -34,17 +34,17 @@ double most_energy(const Scene& scene, const Body& body, const Motion& motion) {
   if (!std::isfinite(body.mass_kg)) return 0.0;
   const double speed = top_speed(scene, body, motion);
   const double spin = motion.bound(0.0, scene.slice_s.back()).angular_radps;
-  return slack * 0.5 * (body.mass_kg * speed * speed + body.mass.inertia_kgm2(2, 2) * spin * spin);
+  return slack * 0.5 * (body.mass_kg * speed * speed + body.vehicle.yaw_inertia_kgm2 * spin * spin);
 }
 
 /// Risk is 1 at most, and at such a speed it is.
 constexpr double surely_mps = 1e3;
 
-/// Harm to those on one body, property apart, whatever hits it.
-double surely(const Scene& scene, const Body& body, bool ego) {
+/// Harm to those on another body, property apart, whatever hits it.
+double surely(const Scene& scene, const Body& body) {
   HarmExposure worst;
-  worst.kind = body.kind;
-  worst.ego = ego;
+  worst.kind = body.vehicle.kind;
+  worst.occupants = body.occupants;
   worst.delta_v_mps = surely_mps;
   worst.closing_speed_mps = surely_mps;
   return most_harm(worst, scene.harm);
@@ -54,78 +54,31 @@ double property(const Scene& scene, double energy_j) {
   return scene.harm.weights.property_per_mj * energy_j * 1e-6;
 }
 
-/// The least that `harm_of` comes to for any PDOF.
-double least_harm(const HarmExposure& exposure, const HarmOptions& options) {
-  constexpr std::array<double, 3> sides_deg{0.0, 90.0, 180.0};
-  HarmExposure mildest = exposure;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double side : sides_deg) {
-    mildest.pdof_deg = side;
-    least = std::min(least, harm_of(mildest, options));
-  }
-  return least;
+double inverse_kg(const RigidState& a, const RigidState& b) {
+  return (a.movable() ? 1.0 / a.mass_kg : 0.0) + (b.movable() ? 1.0 / b.mass_kg : 0.0);
 }
 
-/// What one delta-v or a larger, up to another, does to the people on both bodies.
-struct DeltaV {
-  double least = 0.0;
-  double most = 0.0;
-};
-
-TermBounds harm_bounds(const Scene& scene, const Contact& contact, const DeltaV& ego,
-                       const DeltaV& other) {
-  const Body& actor = scene.actors[contact.actor];
-  TermBounds bounds;
-  BodyOutcome outcome;
-  outcome.delta_v_mps = ego.least;
-  bounds.least +=
-      least_harm(exposure_of(scene, scene.ego, actor, true, contact, outcome), scene.harm);
-  outcome.delta_v_mps = ego.most;
-  bounds.most +=
-      most_harm(exposure_of(scene, scene.ego, actor, true, contact, outcome), scene.harm);
-  outcome.delta_v_mps = other.least;
-  bounds.least +=
-      least_harm(exposure_of(scene, actor, scene.ego, false, contact, outcome), scene.harm);
-  outcome.delta_v_mps = other.most;
-  bounds.most +=
-      most_harm(exposure_of(scene, actor, scene.ego, false, contact, outcome), scene.harm);
-  return {bounds.least / slack, bounds.most * slack};
+double turning_j(const RigidState& body) {
+  return body.movable() ? body.inertia_kgm2 * body.spin_radps * body.spin_radps : 0.0;
 }
 
-double reduced_kg(const RigidBody& a, const RigidBody& b) {
-  const double inverse =
-      (a.movable() ? 1.0 / a.mass_kg : 0.0) + (b.movable() ? 1.0 / b.mass_kg : 0.0);
-  return inverse > 0.0 ? 1.0 / inverse : 0.0;
-}
-
-double turning_j(const RigidBody& body) {
-  if (!body.movable()) return 0.0;
-  const double spin = body.velocity.angular_radps.z();
-  return body.inertia_kgm2(2, 2) * spin * spin;
-}
-
-/// Of the measure, from what both delta-v and the dissipated energy lie between.
-TermBounds bounds_of(const Scene& scene, const CrashSetup& crash, const Contact& contact,
-                     double least_ns, double most_ns, double least_j, double most_j) {
-  const auto delta_v = [&](const RigidBody& body) -> DeltaV {
-    if (!body.movable()) return {};
-    return {std::max(0.0, least_ns / body.mass_kg / slack), slack * most_ns / body.mass_kg};
+PendingContact pending_of(const CrashSetup& crash, const Contact& contact, Range impulse_ns,
+                          Range dissipated_j) {
+  PendingContact pending;
+  pending.actor = contact.actor;
+  pending.begin_s = contact.time_of_impact_s;
+  pending.closing_mps = contact.closing_speed_mps;
+  pending.ego_road_mps = crash.a.velocity.linear_mps.norm();
+  pending.other_road_mps = crash.b.velocity.linear_mps.norm();
+  const auto delta_v = [&](const ContactBody& body) -> Range {
+    if (!body.vehicle->movable()) return {};
+    const double mass = body.vehicle->mass_kg;
+    return {std::max(0.0, impulse_ns.least / mass / slack), slack * impulse_ns.most / mass};
   };
-  const DeltaV ego = delta_v(crash.a.rigid);
-  const DeltaV other = delta_v(crash.b.rigid);
-  switch (scene.measure) {
-    case Measure::delta_v:
-      return {ego.least, ego.most};
-    case Measure::energy:
-      return {least_j / slack, slack * most_j};
-    case Measure::harm: {
-      TermBounds bounds = harm_bounds(scene, contact, ego, other);
-      bounds.most += property(scene, slack * most_j);
-      return bounds;
-    }
-    default:
-      return {0.0, std::numeric_limits<double>::infinity()};
-  }
+  pending.ego_delta_v_mps = delta_v(crash.a);
+  pending.other_delta_v_mps = delta_v(crash.b);
+  pending.dissipated_j = dissipated_j;
+  return pending;
 }
 
 }  // namespace
@@ -137,13 +90,21 @@ void ScoreBounds::prepare(const Scene& scene) {
   surface_m2_.assign(count, 0.0);
   order_.resize(count);
   ego_surface_m2_ = surface_of(scene.ego.model->mesh);
+  HarmExposure own;
+  own.kind = scene.ego.vehicle.kind;
+  own.ego = true;
+  own.occupants = scene.ego.occupants;
+  Person person = Person::occupant;
+  ego_people_ = scene.measure == Measure::harm && carries_people(own.kind, person)
+                    ? people_weight(own, scene.harm.weights)
+                    : 0.0;
   triangles_ = static_cast<double>(scene.ego.model->mesh.size());
   area_m2_ = ego_surface_m2_;
   for (std::size_t i = 0; i < count; ++i) {
     surface_m2_[i] = surface_of(scene.actors[i].model->mesh);
     area_m2_ += surface_m2_[i];
     triangles_ += static_cast<double>(scene.actors[i].model->mesh.size());
-    term_[i] = surely(scene, scene.ego, true) + surely(scene, scene.actors[i], false);
+    term_[i] = surely(scene, scene.actors[i]);
   }
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::sort(order_.begin(), order_.end(), [&](std::size_t p, std::size_t q) {
@@ -192,7 +153,8 @@ double ScoreBounds::most(const Scene& scene, const Motion& ego) const {
     case Measure::harm:
       break;
   }
-  return most_after(scene, ego, {}, std::max<std::size_t>(scene.harm.after.most_contacts, 1));
+  return slack * whole(most_after(scene, ego, {},
+                                  std::max<std::size_t>(scene.harm.after.most_contacts, 1)));
 }
 
 double ScoreBounds::most_with_first(const Scene& scene, const Motion& ego,
@@ -202,25 +164,27 @@ double ScoreBounds::most_with_first(const Scene& scene, const Motion& ego,
   const std::size_t rest_contacts = std::max<std::size_t>(scene.harm.after.most_contacts, 1) - 1;
   double best = 0.0;
   for (const std::size_t actor : first) {
-    const double rest = most_after(scene, ego, {&actor, 1}, rest_contacts);
-    best = std::max(best, slack * (term_[actor] + rest));
+    const Later rest = most_after(scene, ego, {&actor, 1}, rest_contacts);
+    best = std::max(best, slack * (term_[actor] + rest.most + ego_people_) +
+                              property(scene, energy_j(scene, ego)));
   }
   return std::min(all, best);
 }
 
-double ScoreBounds::most_after(const Scene& scene, const Motion& ego, View<const std::size_t> met,
-                               std::size_t left) const {
+Later ScoreBounds::most_after(const Scene& scene, const Motion& ego, View<const std::size_t> met,
+                              std::size_t left) const {
   const double energy = energy_j(scene, ego);
   const std::size_t actors = term_.size() - std::min(term_.size(), met.size());
   left = std::min(left, actors);
-  if (left == 0) return 0.0;
+  if (left == 0) return {};
   switch (scene.measure) {
     case Measure::energy:
       // What is dissipated is nowhere gained again, and every body is met once.
-      return energy;
+      return {true, energy};
     case Measure::delta_v:
       // All energy in the ego's speed, before the crash and after it.
-      return static_cast<double>(left) * slack * 2.0 * std::sqrt(2.0 * energy / scene.ego.mass_kg);
+      return {true, static_cast<double>(left) * slack * 2.0 *
+                        std::sqrt(2.0 * energy / scene.ego.mass_kg)};
     default:
       break;
   }
@@ -231,32 +195,30 @@ double ScoreBounds::most_after(const Scene& scene, const Motion& ego, View<const
     sum += term_[actor];
     --left;
   }
-  return slack * (sum + property(scene, energy));
+  return {true, slack * (sum + property(scene, energy))};
 }
 
-TermBounds bounds_at_contact(const Scene& scene, const CrashSetup& crash, const Contact& contact) {
-  const RigidBody& a = crash.a.rigid;
-  const RigidBody& b = crash.b.rigid;
-  const double reduced = reduced_kg(a, b);
-  if (!(reduced > 0.0)) return {0.0, 0.0};
-  const double speed = (a.velocity.linear_mps - b.velocity.linear_mps).norm();
+PendingContact pending_at_contact(const CrashSetup& crash, const Contact& contact) {
+  const RigidState a = rigid_state(crash.a);
+  const RigidState b = rigid_state(crash.b);
+  const double inverse = inverse_kg(a, b);
+  if (!(inverse > 0.0)) return pending_of(crash, contact, {}, {});
+  const double speed = (a.velocity_mps - b.velocity_mps).head<2>().norm();
   const double turning = turning_j(a) + turning_j(b);
-  const double most_ns = slack * reduced * (speed + std::sqrt(speed * speed + turning / reduced));
-  const double most_j = slack * 0.5 * (reduced * speed * speed + turning);
-  return bounds_of(scene, crash, contact, 0.0, most_ns, 0.0, most_j);
+  const double most_ns = slack * (speed + std::sqrt(speed * speed + turning * inverse)) / inverse;
+  const double most_j = slack * 0.5 * (speed * speed / inverse + turning);
+  return pending_of(crash, contact, {0.0, most_ns}, {0.0, most_j});
 }
 
-TermBounds bounds_in_pulse(const Scene& scene, const CrashSetup& crash, const Contact& contact,
-                           const PulseRun& run) {
+PendingContact pending_in_run(const CrashSetup& crash, const Contact& contact,
+                              const ContactRun& run) {
   const double so_far = run.impulse_ns().norm();
   const double left = run.most_left_ns();
   const double rounding = run.rounding_ns();
   const double least = std::max(0.0, std::max(so_far - left, run.least_whole_ns()) - rounding);
   const double most = std::min(so_far + left, run.most_whole_ns()) + rounding;
-  const double spent = run.dissipated_j();
-  const double least_spent = std::max(0.0, spent - run.rounding_j());
-  return bounds_of(scene, crash, contact, least, most, least_spent,
-                   slack * spent + run.most_left_j());
+  return pending_of(crash, contact, {least, most},
+                    {run.least_whole_j() / slack, slack * run.most_whole_j()});
 }
 
 }  // namespace crashrank::detail

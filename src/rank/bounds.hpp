@@ -1,9 +1,10 @@
 #pragma once
 
-#include "crash/pulse_run.hpp"
+#include "crash/contact_run.hpp"
 #include "rank/contact_severity.hpp"
 #include "rank/crash_setup.hpp"
 #include "rank/scene.hpp"
+#include "rank/tally.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,35 +27,32 @@ public:
   double most_with_first(const Scene& scene, const Motion& ego,
                          const std::vector<std::size_t>& first) const;
   /// What contacts after some can add: none of `met` again, `left` in number at most.
-  double most_after(const Scene& scene, const Motion& ego, View<const std::size_t> met,
-                    std::size_t left) const;
+  Later most_after(const Scene& scene, const Motion& ego, View<const std::size_t> met,
+                   std::size_t left) const;
   double ego_surface_m2() const noexcept { return ego_surface_m2_; }
   double actor_surface_m2(std::size_t actor) const { return surface_m2_[actor]; }
 
 private:
   double energy_j(const Scene& scene, const Motion& ego) const;
+  /// With the ego's people.
+  double whole(const Later& later) const { return later.most + (later.any ? ego_people_ : 0.0); }
 
-  std::vector<double> term_;        ///< by actor: the most that a crash with it adds, any speed
+  std::vector<double> term_;        ///< by actor: the most that its people suffer, any speed
   std::vector<double> energy_;      ///< by actor: kinetic energy, J
   std::vector<double> surface_m2_;  ///< by actor
   std::vector<std::size_t> order_;  ///< actors by falling term
+  double ego_people_ = 0.0;         ///< as weighted
   double ego_surface_m2_ = 0.0;
   double triangles_ = 0.0;  ///< of the ego and all actors
   double area_m2_ = 0.0;
   double energy_sum_j_ = 0.0;
 };
 
-/// Between what the term of one contact lies.
-struct TermBounds {
-  double least = 0.0;
-  double most = 0.0;
-};
+/// What is known of a contact when all that is known is how the bodies meet.
+PendingContact pending_at_contact(const CrashSetup& crash, const Contact& contact);
 
-/// What a crash adds to a score when all that is known of it is how the bodies meet.
-TermBounds bounds_at_contact(const Scene& scene, const CrashSetup& crash, const Contact& contact);
-
-/// The same in the middle of the pulse.
-TermBounds bounds_in_pulse(const Scene& scene, const CrashSetup& crash, const Contact& contact,
-                           const PulseRun& run);
+/// The same in the middle of its simulation.
+PendingContact pending_in_run(const CrashSetup& crash, const Contact& contact,
+                              const ContactRun& run);
 
 }  // namespace crashrank::detail

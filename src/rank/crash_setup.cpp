@@ -1,5 +1,8 @@
 #include "rank/crash_setup.hpp"
 
+#include "crash/contact_run.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 namespace crashrank::detail {
@@ -7,79 +10,91 @@ namespace {
 
 using Eigen::Vector3d;
 
-PulseBody pulse_body(const Body& body, const Pose& pose, const Velocity& velocity) {
-  PulseBody placed;
+ContactBody contact_body(const Body& body, const Pose& pose, const Velocity& velocity) {
+  ContactBody placed;
+  placed.vehicle = &body.vehicle;
   placed.pose = pose;
-  placed.mesh = &body.model->mesh;
-  placed.tree = &body.model->tree;
-  placed.rigid = place(body.mass, placed.pose, velocity);
-  placed.strength = body.strength;
-  if (!placed.rigid.movable()) {
-    placed.rigid.velocity = Velocity{};
-    placed.strength = CrushStrength::unyielding();
-  }
+  if (body.vehicle.movable()) placed.velocity = velocity;
   return placed;
+}
+
+/// Fixed bodies whose boxes the ego may reach while it is pressed, by actor.
+void find_group(const Scene& scene, const EgoAtContact& ego, const Contact& contact,
+                View<const std::size_t> met, FixedGroup& group) {
+  constexpr double seconds = 0.3;
+  const double reach =
+      2.0 * scene.ego.radius_m + seconds * contact.closing_speed_mps + scene.impact.tolerance_m;
+  for (std::size_t i = 0; i < scene.actors.size() && group.bodies.size() < group.most; ++i) {
+    const Body& body = scene.actors[i];
+    if (i == contact.actor || body.vehicle.movable()) continue;
+    if (std::find(met.begin(), met.end(), i) != met.end()) continue;
+    const Pose pose = body.motion.pose_at(contact.time_of_impact_s);
+    // Distance to the body's box along its own axes.
+    const Vector3d from =
+        pose.rotation.transpose() * (ego.pose.translation - pose.translation) - body.center_m;
+    const Vector3d half = body.half_axes_m.cwiseAbs().rowwise().sum();
+    const Vector3d beside = (from.cwiseAbs() - half).cwiseMax(0.0);
+    if (beside.head<2>().norm() > reach) continue;
+    group.bodies.push_back(contact_body(body, pose, {}));
+    group.actors.push_back(i);
+  }
 }
 
 }  // namespace
 
-double struck(const Scene& scene, const Body& body, const Body& striker, const Contact& contact,
-              double delta_v_mps) {
-  if (std::isinf(body.mass_kg)) return contact.closing_speed_mps;
-  const double reduced_kg = std::isinf(striker.mass_kg)
-                                ? body.mass_kg
-                                : body.mass_kg * striker.mass_kg / (body.mass_kg + striker.mass_kg);
-  return struck_speed_mps(contact.closing_speed_mps, delta_v_mps, body.mass_kg, reduced_kg,
-                          scene.harm);
-}
-
-SeverityOptions coarse(double friction) {
-  SeverityOptions options;
-  options.pulse.friction = friction;
-  options.pulse.cell_w_m = 0.05;
-  options.pulse.cell_h_m = 0.2;
-  options.pulse.step_s = 0.001;
-  options.pulse.longest_s = 0.2;
-  options.crush.cell_m = 0.1;
-  return options;
-}
-
-HarmExposure exposure_of(const Scene& scene, const Body& body, const Body& striker, bool ego,
-                         const Contact& contact, const BodyOutcome& outcome) {
-  HarmExposure e;
-  e.kind = body.kind;
-  e.ego = ego;
-  e.delta_v_mps = outcome.delta_v_mps;
-  e.pdof_deg = outcome.pdof_deg;
-  e.closing_speed_mps = struck(scene, body, striker, contact, outcome.delta_v_mps);
-  e.leading_edge_m = striker.leading_edge_m;
-  e.crush_energy_j = outcome.crush_energy_j;
-  return e;
-}
-
-CrashSetup set_up_crash(const Scene& scene, const EgoAtContact& ego, const Contact& contact) {
+CrashSetup set_up_crash(const Scene& scene, const EgoAtContact& ego, const Contact& contact,
+                        View<const std::size_t> met, FixedGroup& group) {
   const Body& other = scene.actors[contact.actor];
   Pose other_pose;
   Velocity other_velocity;
   other.motion.state_at(contact.time_of_impact_s, other_pose, other_velocity);
-  const Vector3d closing =
-      velocity_of_point(ego.left, ego.pose.translation, contact.point_m) -
-      velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
-  Vector3d along(closing.x(), closing.y(), 0.0);
-  if (!(along.norm() > 1e-6)) along = Vector3d(contact.normal.x(), contact.normal.y(), 0.0);
-  return {pulse_body(scene.ego, ego.pose, ego.left), pulse_body(other, other_pose, other_velocity),
-          along};
+  group.bodies.clear();
+  group.actors.clear();
+  if (!other.vehicle.movable()) find_group(scene, ego, contact, met, group);
+  return {contact_body(scene.ego, ego.pose, ego.left),
+          contact_body(other, other_pose, other_velocity),
+          {group.bodies.data(), group.bodies.size()}};
 }
 
-EgoAfterContact after_pulse(const CrashSetup& crash, const PulseResult& pulse) {
+RigidState rigid_state(const ContactBody& body) {
+  RigidState state;
+  const Vehicle& v = *body.vehicle;
+  state.mass_kg = v.mass_kg;
+  state.inertia_kgm2 = v.yaw_inertia_kgm2;
+  state.center_m = body.pose.rotation * v.center_m + body.pose.translation;
+  if (!v.movable()) return state;
+  // As the simulation has it: in the plane.
+  const Vector3d arm = state.center_m - body.pose.translation;
+  state.spin_radps = body.velocity.angular_radps.z();
+  state.velocity_mps = body.velocity.linear_mps + state.spin_radps * Vector3d(-arm.y(), arm.x(), 0);
+  return state;
+}
+
+ContactVariant variant_of(const HarmSample& sample) {
+  // What friction is stated for is the pair of painted panels; the others scale with it.
+  const double panels = friction_between(Surface::sheet_metal, Surface::sheet_metal);
+  return {sample.friction / panels, sample.strength, 1.0};
+}
+
+EgoAfterContact after_contact(const CrashSetup& crash, const ContactOutcome& outcome) {
   EgoAfterContact after;
-  after.velocity = crash.a.rigid.velocity;
-  if (!pulse.acts) return after;
-  after.duration_s = pulse.duration_s;
-  after.moved_m = pulse.moved_a_m;
-  after.turned_rad = pulse.turned_a_rad;
-  after.velocity = pulse.a.after;
+  const RigidState before = rigid_state(crash.a);
+  after.velocity.linear_mps = before.velocity_mps;
+  after.velocity.angular_radps = crash.a.velocity.angular_radps;
+  if (!outcome.acts) return after;
+  after.duration_s = outcome.duration_s;
+  after.moved_m = outcome.a.moved_m;
+  after.turned_rad = outcome.a.turned_rad;
+  after.velocity.linear_mps += outcome.a.delta_v_mps;
+  after.velocity.angular_radps.z() += outcome.a.delta_yaw_rate_radps;
   return after;
+}
+
+void add_pressed(const ContactWorkspace::State& state, const FixedGroup& group,
+                 std::vector<std::size_t>& met) {
+  for (std::size_t k = 0; k < group.actors.size() && k + 2 < state.pressed.size(); ++k) {
+    if (state.pressed[k + 2] != 0) met.push_back(group.actors[k]);
+  }
 }
 
 }  // namespace crashrank::detail

@@ -1,35 +1,60 @@
 #pragma once
 
-#include "crashrank/crash/pulse.hpp"
-#include "crashrank/crash/severity.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "rank/contact_severity.hpp"
 #include "rank/scene.hpp"
 
 #include <Eigen/Core>
 
+#include <cstddef>
+#include <vector>
+
 namespace crashrank::detail {
 
-/// Two bodies as the simulation of their crash begins.
-struct CrashSetup {
-  PulseBody a;  ///< the ego
-  PulseBody b;
-  Eigen::Vector3d along;  ///< in which the surfaces are looked at
+/// Bodies that nothing moves near a contact with one of them: they press at the same time.
+struct FixedGroup {
+  static constexpr std::size_t most = 64;
+  std::vector<ContactBody> bodies;
+  std::vector<std::size_t> actors;  ///< by body
+
+  void reserve() {
+    bodies.reserve(most);
+    actors.reserve(most);
+  }
 };
 
-CrashSetup set_up_crash(const Scene& scene, const EgoAtContact& ego, const Contact& contact);
+/// Two bodies as the simulation of their contact begins.
+struct CrashSetup {
+  ContactBody a;  ///< the ego
+  ContactBody b;
+  View<const ContactBody> fixed;
+};
 
-/// Cells and steps with which a ranking simulates crashes.
-SeverityOptions coarse(double friction);
+/// `group` is filled and referred to by the result. `met` are bodies that press no more.
+CrashSetup set_up_crash(const Scene& scene, const EgoAtContact& ego, const Contact& contact,
+                        View<const std::size_t> met, FixedGroup& group);
 
-/// The speed at which people outside cars are struck, from the delta-v of a pulse.
-double struck(const Scene& scene, const Body& body, const Body& striker, const Contact& contact,
-              double delta_v_mps);
+/// A body's mass and motion about its centre of mass; immovable ones stand.
+struct RigidState {
+  double mass_kg = 0.0;                                ///< infinity: nothing moves it
+  double inertia_kgm2 = 1.0;                           ///< in yaw
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();  ///< world, m
+  Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();
+  double spin_radps = 0.0;
 
-/// What harm is told of one of the two bodies.
-HarmExposure exposure_of(const Scene& scene, const Body& body, const Body& striker, bool ego,
-                         const Contact& contact, const BodyOutcome& outcome);
+  bool movable() const { return mass_kg < std::numeric_limits<double>::infinity(); }
+};
 
-/// How a pulse leaves the ego.
-EgoAfterContact after_pulse(const CrashSetup& crash, const PulseResult& pulse);
+RigidState rigid_state(const ContactBody& body);
+
+/// The plain variant and those of the samples, as factors on the law's own values.
+ContactVariant variant_of(const HarmSample& sample);
+
+/// What a contact's outcome means for the ego afterwards.
+EgoAfterContact after_contact(const CrashSetup& crash, const ContactOutcome& outcome);
+
+/// Adds the bodies of the group that pressed to `met`.
+void add_pressed(const ContactWorkspace::State& state, const FixedGroup& group,
+                 std::vector<std::size_t>& met);
 
 }  // namespace crashrank::detail

@@ -44,7 +44,8 @@ void sum_up_ego(const Scene& scene, CandidateResult& result) {
   sum_up(scene.ego.model->mesh, result.ego);
 }
 
-double score_of(const CandidateResult& result, Measure measure) {
+/// Scores that need no simulation.
+double planned_score(const CandidateResult& result, Measure measure) {
   double score = 0.0;
   switch (measure) {
     case Measure::polygons:
@@ -57,41 +58,58 @@ double score_of(const CandidateResult& result, Measure measure) {
       score = result.ego.area_m2;
       for (const Contact& contact : result.contacts) score += contact.other.area_m2;
       break;
-    case Measure::closing_energy:
+    default:
       for (const Contact& contact : result.contacts) score += contact.closing_energy_j;
-      break;
-    case Measure::delta_v:
-      for (const Contact& contact : result.contacts) score += contact.severity.ego.delta_v_mps;
-      break;
-    case Measure::energy:
-      for (const Contact& contact : result.contacts) score += contact.severity.dissipated_j;
-      break;
-    case Measure::intrusion:
-      for (const Contact& contact : result.contacts) {
-        score += contact.severity.ego.intrusion_m + contact.severity.other.intrusion_m;
-      }
-      break;
-    case Measure::harm:
-      for (const Contact& contact : result.contacts) score += contact.severity.harm;
       break;
   }
   return score;
 }
 
-// What the candidate scores in every sample, and the interval of those under its own risk model.
-void add_samples(const Scene& scene, CandidateResult& result) {
-  if (scene.samples.empty()) return;
-  result.sample_scores.assign(scene.samples.size(), 0.0);
-  for (const Contact& contact : result.contacts) {
-    for (std::size_t i = 0; i < scene.samples.size(); ++i) {
-      result.sample_scores[i] += contact.severity.sample_scores[i];
+/// The score of the plain variant; each contact learns its event and what it adds to the harm.
+double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
+                CandidateResult& result) {
+  Tally tally;
+  std::size_t begun = 0;  // the first contact of the event
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const double before = tally.score(scene, scene.plain);
+    const ContactEffect& effect = effects[k].front();
+    Contact& contact = result.contacts[k];
+    tally.add(scene, effect, scene.plain);
+    const EgoEvent& event = tally.event();
+    if (k == 0 || event.number != result.contacts[k - 1].event) begun = k;
+    contact.event = event.number;
+    for (std::size_t i = begun; i <= k; ++i) {
+      BodyOutcome& ego = result.contacts[i].severity.ego;
+      ego.event_delta_v_mps = event.delta_v_mps.norm();
+      ego.event_yaw_rate_change_radps = event.yaw_radps;
     }
+    if (scene.measure != Measure::harm) continue;
+    ContactSeverity& severity = contact.severity;
+    HarmExposure other = exposure_of_other(scene, effect);
+    other.crush_energy_j = effect.other_crush_j;
+    severity.other.harm = harm_of(other, scene.harm);
+    severity.harm = tally.score(scene, scene.plain) - before;
+    severity.ego.harm = severity.harm - severity.other.harm;
   }
+  return tally.score(scene, scene.plain);
+}
+
+// What the candidate scores in every sample, and the interval of those under its own risk model.
+void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
+                 CandidateResult& result) {
+  const std::vector<std::size_t> place = effect_of_sample(scene);
   for (std::size_t i = 0; i < scene.samples.size(); ++i) {
-    if (scene.measure == Measure::harm && scene.samples[i].model != scene.harm.model) continue;
+    const HarmSample& sample = scene.samples[i];
+    Tally tally;
+    for (const std::vector<ContactEffect>& variants : effects) {
+      tally.add(scene, variants[place[i]], sample);
+    }
+    const double score = tally.score(scene, sample);
+    result.sample_scores.push_back(score);
+    if (scene.measure == Measure::harm && sample.model != scene.harm.model) continue;
     ScoreInterval& interval = result.score_interval;
-    interval.lowest = std::min(interval.lowest, result.sample_scores[i]);
-    interval.highest = std::max(interval.highest, result.sample_scores[i]);
+    interval.lowest = std::min(interval.lowest, score);
+    interval.highest = std::max(interval.highest, score);
   }
 }
 
@@ -109,7 +127,11 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
     if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
     const EgoAtContact ego = planned(candidate.motion, hit.impact.time_s);
     contacts.push_back(make_contact(scene, ego, hit.actor, hit.impact));
-    const EgoAfterContact after = tell_severity(scene, ego, contacts.back());
+    found.met.push_back(hit.actor);
+    found.effects.emplace_back();
+    const EgoAfterContact after = simulate_variants(scene, ego, contacts.back(), found.met,
+                                                    scratch.crash, found.effects.back());
+    contacts.back().severity.simulated = scene.pulses;
     if (contacts.size() == 1) {
       last_s = hit.impact.time_s + window_s(scene, contacts.front().closing_speed_mps);
       first = ego;
@@ -137,9 +159,10 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
   }
   sum_up_ego(scene, result);
   if (approach.decided) {
-    result.score = score_of(result, scene.measure);
+    const double simulated = tally_up(scene, approach.effects, result);
+    result.score = scene.pulses ? simulated : planned_score(result, scene.measure);
     result.score_interval = {*result.score, *result.score};
-    add_samples(scene, result);
+    add_samples(scene, approach.effects, result);
   } else {
     ScoreBounds bounds;
     bounds.prepare(scene);

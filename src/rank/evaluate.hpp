@@ -1,7 +1,9 @@
 #pragma once
 
+#include "rank/crash_scratch.hpp"
 #include "rank/damage.hpp"
 #include "rank/scene.hpp"
+#include "rank/tally.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -24,6 +26,7 @@ struct Scratch {
   std::vector<std::size_t> place;  ///< by actor: where it is in `near`, or none
   std::vector<Hit> hits;
   ImpactWorkspace impact;
+  CrashScratch crash;
   DamageScratch damage;
   /// Given to the search for contacts, see ImpactOptions.
   bool (*stop)(void* stop_context) = nullptr;
@@ -36,6 +39,9 @@ struct Approach {
   std::vector<DamagePlan> plans;  ///< by contact
   /// By contact from the second on, where the ego was followed after the first: how it moved.
   std::vector<Motion> after;
+  /// By contact: in the plain variant, then in those of the samples.
+  std::vector<std::vector<ContactEffect>> effects;
+  std::vector<std::size_t> met;  ///< actors that were hit or pressed
   bool decided = true;
 
   const Motion& motion(const Candidate& candidate, std::size_t contact) const {

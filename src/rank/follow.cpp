@@ -139,12 +139,11 @@ void follow(const Scene& scene, const Candidate& candidate, const EgoAtContact& 
             const EgoAfterContact& left, Approach& found, Scratch& scratch, RankWork& work) {
   const Watch no_watch;
   std::vector<Contact>& contacts = found.result.contacts;
-  std::vector<std::size_t> met;
+  std::vector<std::size_t>& met = found.met;
   EgoAtContact ego = first;
   EgoAfterContact after = left;
   Aftermath aftermath;
   while (contacts.size() < scene.harm.after.most_contacts) {
-    met.push_back(contacts.back().actor);
     const double start_s = contacts.back().time_of_impact_s;
     aftermath.begin(scene, candidate, start_s, ego, after);
     if (!(aftermath.until_s() > start_s)) break;
@@ -154,7 +153,9 @@ void follow(const Scene& scene, const Candidate& candidate, const EgoAtContact& 
     if (!hit) break;
     ego = aftermath.at(hit->impact.time_s);
     Contact contact = make_following_contact(scene, ego, *hit);
-    after = tell_severity(scene, ego, contact);
+    met.push_back(contact.actor);
+    found.effects.emplace_back();
+    after = simulate_variants(scene, ego, contact, met, scratch.crash, found.effects.back());
     contacts.push_back(std::move(contact));
     found.after.push_back(aftermath.motion());
     found.plans.push_back(plan_damage(scene, aftermath.motion(), contacts.back(),

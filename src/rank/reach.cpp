@@ -1,5 +1,7 @@
 #include "rank/reach.hpp"
 
+#include "crash/contact_run.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +21,7 @@ double reduced_kg(double ego_kg, double other_kg) {
 
 /// No point of the ego is further from its centre of mass.
 double radius_about_mass(const Body& ego) {
-  return (ego.center_m - ego.mass.center_m).norm() + ego.half_axes_m.norm();
+  return (ego.center_m - ego.vehicle.center_m).norm() + ego.half_axes_m.norm();
 }
 
 /// How an actor moves at most until the horizon, and what that means to the ego.
@@ -37,7 +39,7 @@ Other other_of(const Scene& scene, const Body& actor) {
   other.angular_radps = speed_slack * bound.angular_radps;
   if (std::isfinite(actor.mass_kg)) {
     other.turning_j2 =
-        speed_slack * actor.mass.inertia_kgm2(2, 2) * bound.angular_radps * bound.angular_radps;
+        speed_slack * actor.vehicle.yaw_inertia_kgm2 * bound.angular_radps * bound.angular_radps;
   }
   other.reduced_kg = reduced_kg(scene.ego.mass_kg, actor.mass_kg);
   return other;
@@ -64,19 +66,18 @@ double most_of_one(const Scene& scene, const Body& actor, const Other& other, do
   // The point of contact is told by the ego's triangles, which may reach past the actor. While a
   // crash still goes on, the ego is met at a velocity between those of its start and its end, whose
   // centres of mass lie apart from its origin in different directions.
-  const double ego_arm = radius_about_mass(scene.ego) + 2.0 * scene.ego.mass.center_m.norm();
-  const double spin = std::sqrt(turning_j2 / scene.ego.mass.inertia_kgm2(2, 2));
-  HarmExposure ego;
-  ego.kind = scene.ego.kind;
-  ego.ego = true;
-  ego.delta_v_mps = ego_delta_v;
-  ego.closing_speed_mps = speed_slack * (relative + spin * ego_arm +
+  const double ego_arm = radius_about_mass(scene.ego) + 2.0 * scene.ego.vehicle.center_m.norm();
+  const double spin = std::sqrt(turning_j2 / scene.ego.vehicle.yaw_inertia_kgm2);
+  HarmExposure hit;
+  hit.kind = actor.vehicle.kind;
+  hit.occupants = actor.occupants;
+  hit.closing_speed_mps = speed_slack * (relative + spin * ego_arm +
                                          other.angular_radps * (actor.radius_m + 2.0 * ego_arm));
-  HarmExposure hit = ego;
-  hit.kind = actor.kind;
-  hit.ego = false;
   hit.delta_v_mps = std::isfinite(actor.mass_kg) ? speed_slack * impulse / actor.mass_kg : 0.0;
-  return speed_slack * (most_harm(ego, scene.harm) + most_harm(hit, scene.harm));
+  hit.road_speed_mps = other.speed_mps;
+  hit.intrusion_m = most_intrusion_m(actor.vehicle);
+  hit.crush_energy_j = speed_slack * 0.5 * (other.reduced_kg * relative * relative + turning);
+  return speed_slack * most_harm(hit, scene.harm);
 }
 
 /// A box that the ego stays in until `until_s`.
@@ -86,7 +87,7 @@ Box box_of(const Scene& scene, const Reach& reach, double until_s) {
   const double around = speed_slack * std::min(reach.around_mps * seconds, reach.furthest_m);
   // Between poses its origin moves straight while it turns: then its centre of mass is off by twice
   // their distance at most.
-  const double body = radius_about_mass(scene.ego) + 2.0 * scene.ego.mass.center_m.norm();
+  const double body = radius_about_mass(scene.ego) + 2.0 * scene.ego.vehicle.center_m.norm();
   const double margin = scene.impact.tolerance_m +
                         1e-5 * (1.0 + body + reach.from_m.cwiseAbs().maxCoeff() + along.norm());
   constexpr float infinity_f = std::numeric_limits<float>::infinity();
@@ -111,25 +112,24 @@ bool is_met(View<const std::size_t> met, std::size_t actor) {
 
 Reach reach_after(const Scene& scene, const Candidate& candidate, const CrashSetup& crash,
                   const Contact& contact) {
-  const RigidBody& a = crash.a.rigid;
-  const RigidBody& b = crash.b.rigid;
-  const auto turning = [](const RigidBody& body) {
-    const double spin = body.velocity.angular_radps.z();
-    return body.movable() ? body.inertia_kgm2(2, 2) * spin * spin : 0.0;
+  const RigidState a = rigid_state(crash.a);
+  const RigidState b = rigid_state(crash.b);
+  const auto turning = [](const RigidState& body) {
+    return body.movable() ? body.inertia_kgm2 * body.spin_radps * body.spin_radps : 0.0;
   };
   const double turning_j2 = turning(a) + turning(b);
   const double reduced = reduced_kg(a.mass_kg, b.mass_kg);
   const double share = reduced / a.mass_kg;
-  const Vector3d closing = a.velocity.linear_mps - b.velocity.linear_mps;
+  const Vector3d closing = a.velocity_mps - b.velocity_mps;
   const double speed2 = closing.squaredNorm();
   Reach reach;
   reach.from_s = contact.time_of_impact_s;
   reach.from_m = a.center_m;
-  reach.common_mps = a.velocity.linear_mps - share * closing;
+  reach.common_mps = a.velocity_mps - share * closing;
   reach.around_mps = speed_slack * share * std::sqrt(speed2 + turning_j2 / reduced);
   reach.energy_mps =
-      speed_slack * (std::sqrt(a.velocity.linear_mps.squaredNorm() + turning(a) / a.mass_kg) +
-                     2.0 * b.velocity.linear_mps.norm() + std::sqrt(turning(b) / a.mass_kg));
+      speed_slack * (std::sqrt(a.velocity_mps.squaredNorm() + turning(a) / a.mass_kg) +
+                     2.0 * b.velocity_mps.norm() + std::sqrt(turning(b) / a.mass_kg));
   reach.speed_mps =
       std::min(speed_slack * (reach.common_mps.norm() + reach.around_mps), reach.energy_mps);
   reach.turning_j2 = speed_slack * std::min(reduced * speed2 + turning_j2,
@@ -138,8 +138,7 @@ Reach reach_after(const Scene& scene, const Candidate& candidate, const CrashSet
   const double deceleration =
       std::max(scene.harm.after.deceleration_mps2, -candidate.acceleration_mps2);
   if (deceleration > 0.0) {
-    const PulseOptions pulse = coarse(scene.harm.friction).pulse;
-    const double crash_s = pulse.longest_s + 2.0 * pulse.step_s;
+    const double crash_s = longest_contact_s + 2.0 * ContactOptions{}.longest_s;
     reach.furthest_m = speed_slack * (reach.speed_mps * crash_s +
                                       0.5 * reach.speed_mps * reach.speed_mps / deceleration) +
                        1e-3;
@@ -147,11 +146,11 @@ Reach reach_after(const Scene& scene, const Candidate& candidate, const CrashSet
   return reach;
 }
 
-double most_in_reach(const Scene& scene, const Reach& reach, View<const std::size_t> met,
-                     std::size_t left, ReachMemory& memory, std::uint64_t& box_tests) {
+Later most_in_reach(const Scene& scene, const Reach& reach, View<const std::size_t> met,
+                    std::size_t left, ReachMemory& memory, std::uint64_t& box_tests) {
   const std::size_t count = scene.actors.size();
   left = std::min(left, count - std::min(count, met.size()));
-  if (left == 0) return 0.0;
+  if (left == 0) return {};
   memory.in_reach_from.assign(count, 0);
   Reach now = reach;
   double first_speed = now.speed_mps;
@@ -167,7 +166,7 @@ double most_in_reach(const Scene& scene, const Reach& reach, View<const std::siz
             more = true;
           });
     }
-    if (contact == 1 && !more) return 0.0;
+    if (contact == 1 && !more) return {};
     if (contact == left) break;
     // What each of those can make of the ego.
     const double mass_kg = scene.ego.mass_kg;
@@ -230,7 +229,7 @@ double most_in_reach(const Scene& scene, const Reach& reach, View<const std::siz
     }
     most = std::max(most, sum);
   }
-  return speed_slack * most;
+  return {true, speed_slack * most};
 }
 
 }  // namespace crashrank::detail

@@ -2,6 +2,7 @@
 
 #include "rank/crash_setup.hpp"
 #include "rank/scene.hpp"
+#include "rank/tally.hpp"
 
 #include <Eigen/Core>
 
@@ -43,7 +44,7 @@ struct ReachMemory {
 
 /// What contacts from there on add at most to the score, of measures that pulses decide: none of
 /// `met` again, `left` in number at most. Adds its tests of boxes to `box_tests`.
-double most_in_reach(const Scene& scene, const Reach& reach, View<const std::size_t> met,
-                     std::size_t left, ReachMemory& memory, std::uint64_t& box_tests);
+Later most_in_reach(const Scene& scene, const Reach& reach, View<const std::size_t> met,
+                    std::size_t left, ReachMemory& memory, std::uint64_t& box_tests);
 
 }  // namespace crashrank::detail

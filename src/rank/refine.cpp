@@ -33,8 +33,8 @@ std::uint64_t tests_of(const RankWork& work) {
 View<const std::size_t> met(const Refined& state) { return {state.met.data(), state.met_count}; }
 
 std::size_t contacts_left(const Scene& scene, const Refined& state) {
-  const std::size_t most = std::min(scene.harm.after.most_contacts, state.met.size());
-  return most - std::min(most, state.met_count);
+  const std::size_t most = std::min(scene.harm.after.most_contacts, harm_limits::contacts);
+  return most - std::min(most, state.contacts);
 }
 
 void look_near(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work) {
@@ -54,15 +54,18 @@ void expect(const RefineQuery& q, Refined& state, const EgoAtContact& ego, Conta
             RefineScratch& scratch, RankWork& work) {
   state.pending = std::move(contact);
   state.ego = ego;
+  const CrashSetup crash =
+      set_up_crash(q.scene, ego, state.pending, met(state), scratch.crash.group);
   state.met[state.met_count++] = state.pending.actor;
-  const CrashSetup crash = set_up_crash(q.scene, ego, state.pending);
-  const TermBounds term = bounds_at_contact(q.scene, crash, state.pending);
+  ++state.contacts;
   const std::size_t left = contacts_left(q.scene, state);
-  state.after =
-      std::min(q.bounds.most_after(q.scene, q.candidate.motion, met(state), left),
-               most_in_reach(q.scene, reach_after(q.scene, q.candidate, crash, state.pending),
-                             met(state), left, scratch.reach, work.box_tests));
-  narrow(state, state.sum + term.least, state.sum + term.most + state.after);
+  const Later all = q.bounds.most_after(q.scene, q.candidate.motion, met(state), left);
+  const Later near = most_in_reach(q.scene, reach_after(q.scene, q.candidate, crash, state.pending),
+                                   met(state), left, scratch.reach, work.box_tests);
+  state.after = {all.any && near.any, all.any && near.any ? std::min(all.most, near.most) : 0.0};
+  const Range score =
+      state.tally.bounds(q.scene, pending_at_contact(crash, state.pending), state.after);
+  narrow(state, score.least, score.most);
 }
 
 /// All contacts of a measure that takes the planned motion only.
@@ -134,14 +137,17 @@ bool search(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWo
 /// Simulates the pending crash and looks for what comes after it.
 bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work,
            std::uint64_t& pulse_work) {
-  const CrashScore scored = score_crash(q.scene, state.ego, state.pending,
-                                        {state.sum, q.give_up_above}, q.watch, scratch.pulse);
+  scratch.met.assign(state.met.data(), state.met.data() + state.met_count);
+  const CrashScore scored =
+      score_crash(q.scene, {state.ego, state.pending, state.tally, state.after, q.give_up_above},
+                  q.watch, scratch.met, scratch.crash);
   pulse_work += scored.work;
-  narrow(state, state.sum + scored.term.least, state.sum + scored.term.most + state.after);
+  narrow(state, scored.score.least, scored.score.most);
   if (scored.end == CrashScore::End::given_up) return true;
   if (scored.end == CrashScore::End::stopped) return false;
 
-  const double sum = state.sum + scored.term.least;
+  Tally tally = state.tally;
+  tally.add(q.scene, scored.effect, q.scene.plain);
   const double start_s = state.pending.time_of_impact_s;
   bool over = contacts_left(q.scene, state) == 0;
   if (!over) {
@@ -151,14 +157,16 @@ bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWor
   std::optional<Scratch::Hit> hit;
   if (!over) {
     bool stopped = false;
-    hit = find_next(q.scene, scratch.aftermath, met(state), start_s, q.watch, stopped,
-                    scratch.evaluate, work);
+    hit = find_next(q.scene, scratch.aftermath, {scratch.met.data(), scratch.met.size()}, start_s,
+                    q.watch, stopped, scratch.evaluate, work);
     if (stopped) return false;
   }
-  state.sum = sum;
+  state.tally = tally;
+  state.met_count = std::min(scratch.met.size(), state.met.size());
+  std::copy_n(scratch.met.begin(), state.met_count, state.met.begin());
   state.told.stage = RankStage::followed;
   if (!hit) {
-    settle(state, sum);
+    settle(state, tally.score(q.scene, q.scene.plain));
     return true;
   }
   const EgoAtContact ego = scratch.aftermath.at(hit->impact.time_s);

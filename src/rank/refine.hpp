@@ -1,12 +1,13 @@
 #pragma once
 
-#include "crash/pulse_run.hpp"
 #include "crashrank/rank/ranker.hpp"
 #include "rank/aftermath.hpp"
 #include "rank/bounds.hpp"
 #include "rank/contact_severity.hpp"
+#include "rank/crash_scratch.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/reach.hpp"
+#include "rank/tally.hpp"
 #include "rank/watch.hpp"
 
 #include <array>
@@ -19,7 +20,8 @@ namespace crashrank::detail {
 /// Memory of one worker of a Ranker.
 struct RefineScratch {
   Scratch evaluate;
-  PulseMemory pulse;
+  CrashScratch crash;
+  std::vector<std::size_t> met;
   Aftermath aftermath;
   std::vector<std::size_t> near;
   ReachMemory reach;
@@ -29,13 +31,14 @@ struct RefineScratch {
 struct Refined {
   RankedCandidate told;
   bool stuck = false;  ///< a question about it stayed undecided: no step follows
-  double sum = 0.0;    ///< of the crashes simulated so far
-  /// Bodies met, the pending one included.
-  std::array<std::size_t, harm_limits::contacts> met{};
+  Tally tally;         ///< of the contacts simulated so far
+  /// Bodies hit, the pending one included, and those that pressed with one of them.
+  std::array<std::size_t, harm_limits::contacts*(1 + FixedGroup::most)> met{};
   std::size_t met_count = 0;
-  Contact pending;     ///< whose crash comes next
-  EgoAtContact ego;    ///< at that
-  double after = 0.0;  ///< contacts after the pending one add no more than this
+  std::size_t contacts = 0;  ///< the pending one included
+  Contact pending;           ///< whose crash comes next
+  EgoAtContact ego;          ///< at that
+  Later after;               ///< what contacts after the pending one may add
 
   bool open() const noexcept { return !told.known && !stuck; }
 };

@@ -1,6 +1,6 @@
 #include "rank/scene.hpp"
 
-#include "rank/contact_severity.hpp"
+#include "crashrank/crash/injury.hpp"
 #include "rank/motion_check.hpp"
 
 #include <algorithm>
@@ -51,6 +51,25 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
                     !model.mass_kg.has_value()};
 }
 
+Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
+  VehicleFacts facts;
+  facts.kind = model.kind;
+  facts.mass_kg = model.mass_kg;
+  facts.center_of_mass_m = model.center_of_mass_m;
+  facts.yaw_inertia_kgm2 = model.yaw_inertia_kgm2;
+  facts.stiffness = model.stiffness;
+  facts.surface = model.surface;
+  Result<Vehicle> vehicle = describe_vehicle(shape.mesh, facts, shape.profile);
+  if (!vehicle) {
+    Error error = vehicle.error();
+    error.file = model.path;
+    error.place = "models." + model.name;
+    return error;
+  }
+  vehicle->leading_edge_m = leading_edge_m(shape.mesh);
+  return vehicle;
+}
+
 }  // namespace
 
 Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
@@ -90,6 +109,8 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   if (scene.pulses && scene.measure != Measure::intrusion && scene.harm.intervals) {
     scene.samples = harm_samples(scene.harm);
   }
+  scene.plain.friction = scene.harm.friction;
+  scene.plain.model = scene.harm.model;
   scene.impact = options.impact;
   scene.impact.start_is_apart = false;
   scene.ego_start = scenario.ego.pose;
@@ -107,7 +128,10 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
         "give the ego's model a mass"};
   }
   scene.ego = make_body(models[ego->model], ego->mass_kg, {});
-  prepare_body(scenario.models[ego->model], scene.ego);
+  Result<Vehicle> own = vehicle_of(scenario.models[ego->model], models[ego->model]);
+  if (!own) return own.error();
+  scene.ego.vehicle = std::move(*own);
+  scene.ego.occupants = scenario.ego.occupants;
 
   for (const ScenarioActor& actor : scenario.actors) {
     const Result<RankedBody> body = ranked_body(scenario, models, actor.model);
@@ -119,7 +143,10 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     }
     result.actors.push_back(*body);
     scene.actors.push_back(make_body(models[body->model], body->mass_kg, std::move(*motion)));
-    prepare_body(scenario.models[body->model], scene.actors.back());
+    Result<Vehicle> vehicle = vehicle_of(scenario.models[body->model], models[body->model]);
+    if (!vehicle) return vehicle.error();
+    scene.actors.back().vehicle = std::move(*vehicle);
+    scene.actors.back().occupants = actor.occupants;
   }
 
   const auto slices =

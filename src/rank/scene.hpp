@@ -4,16 +4,16 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/collide/broad_phase.hpp"
-#include "crashrank/crash/impulse.hpp"
 #include "crashrank/crash/motion.hpp"
-#include "crashrank/crash/strength.hpp"
 #include "crashrank/crash/time_of_impact.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/tree/model.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace crashrank::detail {
@@ -25,12 +25,9 @@ struct Body {
   Motion motion;  ///< of actors; the ego's comes with each candidate
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
-  double radius_m = 0.0;  ///< no point of the body is further from its origin
-  BodyKind kind = BodyKind::car;
-  /// As an even block of its box would have it.
-  MassProperties mass;
-  CrushStrength strength;
-  double leading_edge_m = 0.0;  ///< see crash/injury.hpp
+  double radius_m = 0.0;            ///< no point of the body is further from its origin
+  Vehicle vehicle;                  ///< what it is in a crash
+  std::optional<double> occupants;  ///< persons; absent: the kind's
 };
 
 /// A box in world coordinates that holds every point of the body at every time of [from, until],
@@ -52,6 +49,7 @@ struct Scene {
   Crush crush;
   Measure measure = Measure::polygons;
   HarmOptions harm;
+  HarmSample plain;                 ///< in which nothing varies
   bool pulses = false;              ///< the measure needs the crash itself
   std::vector<HarmSample> samples;  ///< in which the score is evaluated, too; may be empty
   ImpactOptions impact;

@@ -1,38 +1,43 @@
 #pragma once
 
-#include "crash/pulse_run.hpp"
 #include "rank/bounds.hpp"
 #include "rank/contact_severity.hpp"
+#include "rank/crash_scratch.hpp"
+#include "rank/tally.hpp"
 #include "rank/watch.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace crashrank::detail {
 
-/// What one crash adds to the score.
+/// What came of simulating a contact for its score.
 struct CrashScore {
   enum class End {
-    done,      ///< `term.least` is it
-    given_up,  ///< it is above what was asked, as far as it was followed
+    done,      ///< `effect` and `after` stand
+    given_up,  ///< the score is above what was asked, as far as it was simulated
     stopped,   ///< time was up
   };
   End end = End::done;
-  TermBounds term;
+  Range score;  ///< bounds on the whole score
+  ContactEffect effect;
   EgoAfterContact after;
   std::uint64_t work = 0;
 };
 
-/// When a crash is not worth following: its term, added to what crashes `before` cost, is `above`.
-struct GiveUp {
-  double before = 0.0;
-  double above = 0.0;
+/// A contact, what is known of the candidate before it, and when it need not be simulated further.
+struct CrashQuery {
+  const EgoAtContact& ego;
+  const Contact& contact;
+  const Tally& tally;
+  const Later& later;
+  double give_up_above;
 };
 
-/// Simulates the crash that begins with a contact as `tell_severity` does, for the score alone: of
-/// the measures delta_v and energy, and of harm where property has no weight. Left as soon as its
-/// term is proved to be worth giving up.
-CrashScore score_crash(const Scene& scene, const EgoAtContact& ego, const Contact& contact,
-                       const GiveUp& give_up, const Watch& watch, PulseMemory& memory);
+/// Simulates a contact as `simulate_variants` does its plain variant, for the score alone. Adds the
+/// further bodies that pressed to `met` when done.
+CrashScore score_crash(const Scene& scene, const CrashQuery& query, const Watch& watch,
+                       std::vector<std::size_t>& met, CrashScratch& scratch);
 
 /// Whether `score_crash` can score the scene.
 bool scored_by_pulses(const Scene& scene);

@@ -29,10 +29,13 @@ void prepare_scratch(const Scene& scene, RefineScratch& scratch) {
   constexpr std::size_t pairs = std::size_t{1} << 17U;
   scratch.evaluate.damage.pairs.reserve(pairs);
   scratch.aftermath.prepare(scene);
-  const Eigen::Vector3d size = scene.ego.model->mesh.bounds().extent().cast<double>();
-  const double longest = size.norm();
-  scratch.pulse.prepare(longest, std::min(longest, size.z() + 0.25 * longest), deepest,
-                        coarse(scene.harm.friction).pulse);
+  std::size_t pieces = scene.ego.vehicle.profile->pieces.size();
+  for (const Body& actor : scene.actors) {
+    pieces = std::max(pieces, actor.vehicle.profile->pieces.size());
+  }
+  scratch.crash.workspace.prepare(pieces, std::min(FixedGroup::most, scene.actors.size()));
+  scratch.crash.group.reserve();
+  scratch.met.reserve(harm_limits::contacts * (1 + FixedGroup::most));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "crashrank/crash/pulse.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "crashrank/report/ranking.hpp"
 
@@ -48,7 +48,7 @@ void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
   Counted fast;
   for (const CandidateResult& ranked : result.ranking) {
     if (std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
-                    [](const Contact& c) { return c.closing_speed_mps > fastest_pulse_mps; })) {
+                    [](const Contact& c) { return c.closing_speed_mps > fastest_contact_mps; })) {
       fast.add({});
     }
   }
@@ -56,7 +56,7 @@ void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
   doubts.push_back(fmt::format(
       "{} somebody at more than {:g} m/s, where the crash model does not hold: its scores fall as "
       "speed rises; rank by closing-energy",
-      fast.many("candidate meets", "candidates meet"), fastest_pulse_mps));
+      fast.many("candidate meets", "candidates meet"), fastest_contact_mps));
 }
 
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,

@@ -1,6 +1,6 @@
 #include "crashrank/report/ranking.hpp"
 
-#include "crashrank/crash/pulse.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "report/damage_summary.hpp"
 
@@ -133,7 +133,7 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
              {"state", state_name(contact.state)},
              {"time_of_impact_s", contact.time_of_impact_s},
              {"closing_speed_mps", contact.closing_speed_mps},
-             {"beyond_crash_model", contact.closing_speed_mps > fastest_pulse_mps},
+             {"beyond_crash_model", contact.closing_speed_mps > fastest_contact_mps},
              {"normal_speed_mps", contact.normal_speed_mps},
              {"closing_energy_j", contact.closing_energy_j},
              {"gap_m", contact.gap_m},

@@ -29,7 +29,7 @@ struct OutlinePiece {
 };
 
 /// Longest piece that outlines are cut into, m; bodies longer than some 100 m get longer ones.
-inline constexpr double longest_piece_m = 0.05;
+inline constexpr double longest_piece_m = 0.1;
 
 /// A body's outlines seen from above, one for each height band: what a crash simulation sees of a
 /// mesh. Made once a model; holes in the surface up to two cells (4 cm on bodies over 5 m, less on

@@ -62,6 +62,10 @@ struct BodyOutcome {
   double delta_v_x_mps = 0.0;          ///< forward, m/s
   double delta_v_y_mps = 0.0;          ///< to the left, m/s
   double yaw_rate_change_radps = 0.0;  ///< to the left, rad/s
+  /// Of the event that the contact belongs to: contacts of one body that overlap in time or lie
+  /// less than 0.1 s apart change its velocity together. What harm reads.
+  double event_delta_v_mps = 0.0;
+  double event_yaw_rate_change_radps = 0.0;  ///< of the event, to the left, rad/s
   double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
   int clock = 12;               ///< the PDOF as an hour, 12 ahead
   double crush_energy_j = 0.0;  ///< from here on 0 unless the crash was simulated
@@ -83,8 +87,6 @@ struct ContactSeverity {
   BodyOutcome ego;            ///< what it does to the ego
   BodyOutcome other;          ///< and to the other
   double harm = 0.0;          ///< persons, as weighted
-  /// What the contact adds to the score in each of RankResult::samples; empty where there are none.
-  std::vector<double> sample_scores;
 };
 
 /// One body hit by a candidate. Points and directions in world coordinates.
@@ -109,6 +111,7 @@ struct Contact {
   BodyDamage ego;        ///< what it damages of the ego
   BodyDamage other;      ///< and of the other
   ContactSeverity severity;  ///< the crash that begins with it
+  std::size_t event = 0;     ///< number of the ego's event that it belongs to, from 1
 };
 
 /// A pass closer than the tolerance that touches nothing.

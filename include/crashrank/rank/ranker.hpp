@@ -67,7 +67,7 @@ struct RankedCandidate {
   std::size_t actor = 0;          ///< index into Scenario::actors
   double time_of_impact_s = 0.0;  ///< from the decision
   /// Of the points that meet. Measures that simulate the crash do not hold above
-  /// `fastest_pulse_mps`.
+  /// `fastest_contact_mps`.
   double closing_speed_mps = 0.0;
 };
 

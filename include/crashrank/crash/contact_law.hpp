@@ -1,0 +1,139 @@
+#pragma once
+
+#include "crashrank/base/box.hpp"
+#include "crashrank/base/export.hpp"
+#include "crashrank/base/pose.hpp"
+#include "crashrank/base/view.hpp"
+#include "crashrank/crash/motion.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace crashrank {
+
+/// The model was checked up to this closing speed, m/s: faster contacts are marked in reports.
+inline constexpr double fastest_contact_mps = 140.0;
+
+/// A body at first contact. The vehicle has to outlive the call.
+struct ContactBody {
+  const Vehicle* vehicle = nullptr;  ///< what it is
+  Pose pose;                         ///< body to world; only position and heading are read
+  Velocity velocity;                 ///< of its origin; a body that nothing moves stands
+};
+
+/// Factors on what is not known exactly.
+struct ContactVariant {
+  double friction = 1.0;     ///< times the friction of the pair of surfaces
+  double strength = 1.0;     ///< times the resistance of both bodies
+  double restitution = 1.0;  ///< times the restitution
+};
+
+/// How a contact is integrated. The defaults are what ranking and validation use.
+struct ContactOptions {
+  double travel_m = 0.06;      ///< relative travel of a step, m
+  double shortest_s = 0.0005;  ///< least step, s
+  double longest_s = 0.004;    ///< greatest step, s
+  double speed_change = 0.1;   ///< share of the closing speed that a step may take
+};
+
+/// What a contact does to one body. World axes unless said otherwise.
+struct BodyContact {
+  Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();   ///< on this body, N·s
+  Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();  ///< of the centre of mass, m/s
+  double delta_yaw_rate_radps = 0.0;                      ///< left positive, rad/s
+  Velocity after;                                         ///< linear: of the centre of mass
+  Eigen::Vector3d moved_m = Eigen::Vector3d::Zero();      ///< of the centre of mass in the contact
+  double turned_rad = 0.0;                                ///< left positive
+  double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
+  double crush_depth_m = 0.0;   ///< greatest, m
+  double crush_energy_j = 0.0;  ///< taken by its deformation, J
+  double intrusion_m = 0.0;     ///< greatest reach into the passenger compartment, m
+  Box damaged;                  ///< bounds of the pressed outline, body coordinates; may be empty
+};
+
+/// What a contact does to two bodies.
+struct ContactOutcome {
+  bool acts = false;  ///< the surfaces pressed against each other
+  /// The surfaces still moved past each other with more than a fifth of the greatest speed at the
+  /// contact when the force ended.
+  bool slides = false;
+  double duration_s = 0.0;    ///< from first contact until the force ends, s
+  double closing_mps = 0.0;   ///< greatest mean closing speed of the pressing surfaces, m/s
+  double restitution = 0.0;   ///< of the rebound, share of the impulse before it
+  double dissipated_j = 0.0;  ///< kinetic energy of all before less after, never negative
+  double friction_j = 0.0;    ///< part of it that sliding took
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< mean point of the force, world, m
+  BodyContact a;                                      ///< what it does to A
+  BodyContact b;                                      ///< and to B
+  std::uint32_t steps = 0;                            ///< of the integration
+  std::uint64_t pieces = 0;  ///< pieces of outlines moved, over all steps: the work done
+};
+
+/// Memory of simulations, one for each thread. Grows with its first uses; a prepared one allocates
+/// nothing.
+class CRASHRANK_API ContactWorkspace {
+public:
+  ContactWorkspace();                                             ///< Empty.
+  ~ContactWorkspace();                                            ///< Frees its memory.
+  ContactWorkspace(ContactWorkspace&&) noexcept;                  ///< Moves.
+  ContactWorkspace& operator=(ContactWorkspace&&) noexcept;       ///< Moves.
+  ContactWorkspace(const ContactWorkspace&) = delete;             ///< One per thread.
+  ContactWorkspace& operator=(const ContactWorkspace&) = delete;  ///< One per thread.
+
+  /// Room for contacts of bodies whose profiles have at most so many pieces, with at most so many
+  /// fixed bodies besides the first.
+  void prepare(std::size_t pieces, std::size_t fixed_bodies);
+
+  struct State;  ///< Its contents, for the library.
+  /// Its contents, for the library.
+  State& state() noexcept { return *state_; }
+
+private:
+  std::unique_ptr<State> state_;
+};
+
+/// Friction between two surfaces: 0.1 where one is steel (sheet metal on steel at high pressure and
+/// speed, 0.1 to 0.2), else 0.3 (what openPASS uses between cars).
+CRASHRANK_API double friction_between(Surface a, Surface b) noexcept;
+
+/// Restitution at a closing speed, m/s: 0.1 + 0.3/(1 + v/4). So 0.33 at 1 m/s, 0.29 at 2.2, 0.16 at
+/// 16, 0.11 at 70: within what SAE 931842 states, 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s and
+/// about 0.1 at medium and high speed.
+CRASHRANK_API double restitution_at(double closing_mps) noexcept;
+
+/// Simulates a contact from its first touch to the end of its force, in the plane: both bodies move
+/// on as rigid bodies with horizontal velocity and yaw, and press on each other where the outlines
+/// of the same height overlap.
+///
+/// Every short piece of one body's outline inside the other meets the pressure at which both
+/// materials together give way by its depth. Depth is counted in the axes of the body that is
+/// pressed in, below its front or rear and below its flank, blended with the squares of the
+/// piece's normal: neither depends on a line chosen at first contact. Pieces of both bodies count,
+/// each in the share in which the other body is the one crushed, so that exchanging the bodies
+/// changes no bit. A piece presses while it advances along its normal further than it has been:
+/// what is crushed stays crushed. Structure of the core hardens and is never used up; the mass of
+/// what is pushed aside adds density·speed². At greatest compression the bodies rebound once, by
+/// `restitution_at` times the impulse until then. docs/guide/crash-model.md has the formulas, the
+/// parameters with their reasons, and what the model leaves out.
+///
+/// Momentum and moment of momentum of movable bodies are conserved to rounding, energy is never
+/// gained. `fixed` are further bodies that nothing moves, which press at the same time as a B that
+/// nothing moves: pieces inside another of them do not press, so a wall cut in parts acts as a
+/// whole. Ends when the bodies part or rest. Two bodies that nothing moves, or that do not give
+/// way, do not act. Deep overlap at the start presses nowhere.
+///
+/// Cost: some 100 microseconds; docs/guide/crash-model.md has measured figures. Safe from any
+/// thread with its own workspace.
+CRASHRANK_API ContactOutcome simulate_contact(const ContactBody& a, const ContactBody& b,
+                                              View<const ContactBody> fixed,
+                                              const Eigen::Vector3d& point_m,
+                                              const ContactVariant& variant,
+                                              ContactWorkspace& workspace,
+                                              const ContactOptions& options = {});
+
+}  // namespace crashrank

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "crashrank/base/export.hpp"
+#include "crashrank/mesh/profile.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crashrank {
+
+/// Greatest and least coordinate of an outline along one body axis, sampled on nodes along the
+/// other. Nodes without outline hold -1e9 and 1e9.
+struct Silhouette {
+  float low_m = 0.0F;        ///< coordinate of the first node, m
+  float nodes_per_m = 0.0F;  ///< 1 over their distance, 1/m
+  std::uint32_t first = 0;   ///< of its nodes in `Silhouettes::nodes`
+  std::uint32_t count = 0;   ///< number of nodes; 0: no outline in the band
+};
+
+/// A node of a silhouette.
+struct SilhouetteNode {
+  float greatest_m = -1e9F;  ///< m
+  float least_m = 1e9F;      ///< m
+};
+
+/// Up to 16 consecutive pieces of an outline, with a circle around them and a cone around their
+/// normals.
+struct PieceBlock {
+  float x = 0.0F;           ///< centre of the circle, m
+  float y = 0.0F;           ///< m
+  float radius_m = 0.0F;    ///< m
+  float normal_x = 0.0F;    ///< mean of the normals, unit; zero where they cancel
+  float normal_y = 0.0F;    ///< see `normal_x`
+  float cosine = -1.0F;     ///< least cosine between a normal and their mean
+  std::uint32_t first = 0;  ///< piece
+  std::uint16_t count = 0;  ///< pieces
+  std::uint16_t band = 0;   ///< height band
+};
+
+/// What contacts read of a profile besides its pieces: the depth of a point below the front, rear
+/// and flanks of the body, by height band, and blocks of pieces. Holes between the silhouettes of a
+/// band are taken to be filled; a body that gives way is a vehicle or a person, whose outline has
+/// no deep bays.
+struct Silhouettes {
+  std::array<Silhouette, profile_bands> along_x{};  ///< x of front and rear over y
+  std::array<Silhouette, profile_bands> along_y{};  ///< y of left and right over x
+  std::vector<SilhouetteNode> nodes;                ///< of all
+  std::vector<PieceBlock> blocks;                   ///< by rising band
+  float min_x = 0.0F;                               ///< bounds of all outlines, m
+  float max_x = 0.0F;                               ///< m
+  float min_y = 0.0F;                               ///< m
+  float max_y = 0.0F;                               ///< m
+
+  /// Smaller side of the bounds, m.
+  double width_m() const { return static_cast<double>(std::min(max_x - min_x, max_y - min_y)); }
+};
+
+/// Samples a profile: nodes every 50 mm, every twentieth of the width of narrow bodies. O(pieces).
+CRASHRANK_API Silhouettes make_silhouettes(const Profile& profile);
+
+}  // namespace crashrank

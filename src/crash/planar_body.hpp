@@ -1,0 +1,76 @@
+#pragma once
+
+#include "crashrank/crash/contact_law.hpp"
+
+#include <Eigen/Core>
+
+#include <cmath>
+
+namespace crashrank::detail {
+
+/// A body that moves in the plane. Coordinates from the point of first contact, world axes.
+struct PlanarBody {
+  double inverse_mass = 0.0;     ///< 0: nothing moves it
+  double inverse_inertia = 0.0;  ///< 1/(kg·m²)
+  double x = 0.0;                ///< centre of mass, m
+  double y = 0.0;
+  double vx = 0.0;  ///< of it, m/s
+  double vy = 0.0;
+  double spin = 0.0;  ///< rad/s, left positive
+  double cosine = 1.0;
+  double sine = 0.0;
+  double turned = 0.0;  ///< since the start, rad
+
+  double energy() const {
+    if (inverse_mass == 0.0) return 0.0;
+    return 0.5 * ((vx * vx + vy * vy) / inverse_mass + spin * spin / inverse_inertia);
+  }
+  void push(double impulse_x, double impulse_y, double moment) {
+    vx += inverse_mass * impulse_x;
+    vy += inverse_mass * impulse_y;
+    spin += inverse_inertia * moment;
+  }
+  void move(double seconds) {
+    x += seconds * vx;
+    y += seconds * vy;
+    if (spin == 0.0) return;
+    // Cayley's rotation: exact in length, the same on every machine; its angle is atan-close to
+    // the true one, (w·t)³/12 off for the small angles of a step.
+    const double t = 0.5 * seconds * spin;
+    const double scale = 1.0 / (1.0 + t * t);
+    const double c = (1.0 - t * t) * scale;
+    const double s = 2.0 * t * scale;
+    const double turned_cosine = c * cosine - s * sine;
+    sine = c * sine + s * cosine;
+    cosine = turned_cosine;
+    turned += seconds * spin;
+  }
+};
+
+/// Force on a body and its moment about the point of first contact, world axes.
+struct PlanarForce {
+  double x = 0.0;       ///< N
+  double y = 0.0;       ///< N
+  double moment = 0.0;  ///< N·m
+};
+
+inline PlanarBody make_planar(const ContactBody& body, const Eigen::Vector3d& origin_m) {
+  const Vehicle& v = *body.vehicle;
+  PlanarBody p;
+  const double length = std::hypot(body.pose.rotation(0, 0), body.pose.rotation(1, 0));
+  p.cosine = length > 0.0 ? body.pose.rotation(0, 0) / length : 1.0;
+  p.sine = length > 0.0 ? body.pose.rotation(1, 0) / length : 0.0;
+  const double arm_x = p.cosine * v.center_m.x() - p.sine * v.center_m.y();
+  const double arm_y = p.sine * v.center_m.x() + p.cosine * v.center_m.y();
+  p.x = body.pose.translation.x() + arm_x - origin_m.x();
+  p.y = body.pose.translation.y() + arm_y - origin_m.y();
+  if (!v.movable()) return p;
+  p.inverse_mass = 1.0 / v.mass_kg;
+  p.inverse_inertia = 1.0 / v.yaw_inertia_kgm2;
+  p.spin = body.velocity.angular_radps.z();
+  p.vx = body.velocity.linear_mps.x() - p.spin * arm_y;
+  p.vy = body.velocity.linear_mps.y() + p.spin * arm_x;
+  return p;
+}
+
+}  // namespace crashrank::detail

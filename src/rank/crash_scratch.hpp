@@ -1,0 +1,14 @@
+#pragma once
+
+#include "crashrank/crash/contact_law.hpp"
+#include "rank/crash_setup.hpp"
+
+namespace crashrank::detail {
+
+/// Memory of simulating contacts, one for each thread.
+struct CrashScratch {
+  ContactWorkspace workspace;
+  FixedGroup group;
+};
+
+}  // namespace crashrank::detail

@@ -1,0 +1,142 @@
+#include "crashrank/vehicle/silhouettes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crashrank {
+namespace {
+
+/// Coordinates along the axis that is sampled over and across it, of a piece's two ends.
+struct Ends {
+  float from = 0.0F;
+  float to = 0.0F;
+  float value_from = 0.0F;
+  float value_to = 0.0F;
+};
+
+Ends ends_of(const OutlinePiece& piece, bool over_x) {
+  const float half_x = -0.5F * piece.length_m * piece.normal_y;
+  const float half_y = 0.5F * piece.length_m * piece.normal_x;
+  Ends ends = over_x ? Ends{piece.x - half_x, piece.x + half_x, piece.y - half_y, piece.y + half_y}
+                     : Ends{piece.y - half_y, piece.y + half_y, piece.x - half_x, piece.x + half_x};
+  if (ends.from > ends.to) {
+    std::swap(ends.from, ends.to);
+    std::swap(ends.value_from, ends.value_to);
+  }
+  return ends;
+}
+
+Silhouette sample(const Profile& profile, std::size_t band, bool over_x, float low, float high,
+                  float step, std::vector<SilhouetteNode>& nodes) {
+  constexpr float rim =
+      2.5F;  // steps beside the outline, so that edges never fall on the last node
+  Silhouette s;
+  if (profile.first[band] == profile.first[band + 1]) return s;
+  s.low_m = low - rim * step;
+  s.nodes_per_m = 1.0F / step;
+  s.first = static_cast<std::uint32_t>(nodes.size());
+  s.count = static_cast<std::uint32_t>((high - low) / step + 2.0F * rim) + 2;
+  nodes.resize(nodes.size() + s.count);
+  SilhouetteNode* const at = nodes.data() + s.first;
+  const auto last = static_cast<int>(s.count) - 1;
+  for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
+    const Ends e = ends_of(profile.pieces[i], over_x);
+    const int from = std::max(0, static_cast<int>(std::ceil((e.from - s.low_m) / step - 1e-3F)));
+    const int to = std::min(last, static_cast<int>(std::floor((e.to - s.low_m) / step + 1e-3F)));
+    for (int k = from; k <= to; ++k) {
+      const float place = s.low_m + step * static_cast<float>(k);
+      const float share =
+          e.to > e.from ? std::clamp((place - e.from) / (e.to - e.from), 0.0F, 1.0F) : 0.5F;
+      const float value = e.value_from + share * (e.value_to - e.value_from);
+      at[k].greatest_m = std::max(at[k].greatest_m, value);
+      at[k].least_m = std::min(at[k].least_m, value);
+    }
+  }
+  // One node beyond each edge repeats the edge, so that interpolation reaches up to it.
+  const std::vector<SilhouetteNode> sampled(at, at + s.count);
+  for (int k = 0; k <= last; ++k) {
+    const auto covered = [&](int j) {
+      return j >= 0 && j <= last && sampled[static_cast<std::size_t>(j)].greatest_m > -1e8F;
+    };
+    if (covered(k)) continue;
+    if (covered(k - 1))
+      at[k] = sampled[static_cast<std::size_t>(k) - 1];
+    else if (covered(k + 1))
+      at[k] = sampled[static_cast<std::size_t>(k) + 1];
+  }
+  return s;
+}
+
+PieceBlock make_block(const Profile& profile, std::size_t band, std::uint32_t first,
+                      std::uint32_t count) {
+  PieceBlock block;
+  block.first = first;
+  block.count = static_cast<std::uint16_t>(count);
+  block.band = static_cast<std::uint16_t>(band);
+  float low_x = std::numeric_limits<float>::max();
+  float low_y = low_x;
+  float high_x = -low_x;
+  float high_y = -low_x;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const OutlinePiece& piece = profile.pieces[i];
+    low_x = std::min(low_x, piece.x);
+    high_x = std::max(high_x, piece.x);
+    low_y = std::min(low_y, piece.y);
+    high_y = std::max(high_y, piece.y);
+    block.normal_x += piece.normal_x;
+    block.normal_y += piece.normal_y;
+  }
+  block.x = 0.5F * (low_x + high_x);
+  block.y = 0.5F * (low_y + high_y);
+  block.radius_m = 0.5F * std::hypot(high_x - low_x, high_y - low_y);
+  const float length = std::hypot(block.normal_x, block.normal_y);
+  if (!(length > 1e-3F)) {
+    block.normal_x = block.normal_y = 0.0F;
+    return block;
+  }
+  block.normal_x /= length;
+  block.normal_y /= length;
+  block.cosine = 1.0F;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const OutlinePiece& piece = profile.pieces[i];
+    block.cosine =
+        std::min(block.cosine, piece.normal_x * block.normal_x + piece.normal_y * block.normal_y);
+  }
+  return block;
+}
+
+}  // namespace
+
+Silhouettes make_silhouettes(const Profile& profile) {
+  constexpr float coarsest_m = 0.05F;
+  constexpr float finest_m = 0.005F;
+  constexpr float nodes_across = 20.0F;
+  constexpr float most_nodes = 4096.0F;
+  constexpr std::uint32_t block_pieces = 16;
+  Silhouettes s;
+  if (profile.pieces.empty()) return s;
+  s.min_x = s.min_y = std::numeric_limits<float>::max();
+  s.max_x = s.max_y = -s.min_x;
+  for (const OutlinePiece& piece : profile.pieces) {
+    s.min_x = std::min(s.min_x, piece.x);
+    s.max_x = std::max(s.max_x, piece.x);
+    s.min_y = std::min(s.min_y, piece.y);
+    s.max_y = std::max(s.max_y, piece.y);
+  }
+  const float width = std::min(s.max_x - s.min_x, s.max_y - s.min_y);
+  const float longest = std::max(s.max_x - s.min_x, s.max_y - s.min_y);
+  const float step =
+      std::max(std::clamp(width / nodes_across, finest_m, coarsest_m), longest / most_nodes);
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    s.along_x[band] = sample(profile, band, false, s.min_y, s.max_y, step, s.nodes);
+    s.along_y[band] = sample(profile, band, true, s.min_x, s.max_x, step, s.nodes);
+    for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += block_pieces) {
+      s.blocks.push_back(
+          make_block(profile, band, i, std::min(block_pieces, profile.first[band + 1] - i)));
+    }
+  }
+  return s;
+}
+
+}  // namespace crashrank

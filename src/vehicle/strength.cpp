@@ -1,0 +1,45 @@
+#include "crashrank/vehicle/strength.hpp"
+
+#include <algorithm>
+
+namespace crashrank {
+
+double CrushStrength::share_of_band(double low, double high) const {
+  const double inside = std::max(0.0, std::min(high, high_m) - std::max(low, low_m));
+  return (inside + rest * (high - low - inside)) / (high_m - low_m);
+}
+
+CrushStrength car_strength(const CarShape& shape) {
+  constexpr double no_crush_mps = 2.2;
+  constexpr double test_mps = 15.6;
+  constexpr double test_crush_m = 0.5;
+  constexpr double b1 = (test_mps - no_crush_mps) / test_crush_m;
+  // Outer faces of the rails at 0.6 of the half width, since front wheels need the rest for
+  // steering and tests of 25 % overlap are made to miss them; hinge pillars inside the doors.
+  constexpr double rails = 0.6;
+  constexpr double cage = 0.8;
+  // The compartment begins behind the wheel housing and ends as far before the rear axle.
+  constexpr double behind_axle = 0.2;
+  constexpr double outside = 0.2;
+  // What does not fold between bumper and compartment: the engine's and gearbox's rigid parts.
+  constexpr double block_m = 0.15;
+  constexpr double least_length_m = 0.3;
+  constexpr double side_length_m = 0.5;
+  CrushStrength strength;
+  strength.front.yield_npm = shape.mass_kg * no_crush_mps * b1 / shape.width_m;
+  strength.front.slope_npm2 = shape.mass_kg * b1 * b1 / shape.width_m;
+  strength.side = {0.5 * strength.front.yield_npm, strength.front.slope_npm2, side_length_m};
+  strength.rear = {strength.front.yield_npm, 0.8 * strength.front.slope_npm2, 0.0};
+  CrushCore& core = strength.core;
+  core.rails_half_width_m = rails * 0.5 * shape.width_m;
+  core.cage_half_width_m = cage * 0.5 * shape.width_m;
+  core.cage_front_m = shape.rear_axle_x_m + (1.0 - behind_axle) * shape.wheelbase_m;
+  core.cage_rear_m = shape.rear_axle_x_m + behind_axle * shape.wheelbase_m;
+  core.outside = outside;
+  core.inside = (1.0 - outside * (1.0 - rails)) / rails;
+  strength.front.length_m = std::max(least_length_m, shape.front_x_m - core.cage_front_m - block_m);
+  strength.rear.length_m = std::max(least_length_m, core.cage_rear_m - shape.rear_x_m);
+  return strength;
+}
+
+}  // namespace crashrank

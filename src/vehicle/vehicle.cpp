@@ -1,0 +1,199 @@
+#include "crashrank/vehicle/vehicle.hpp"
+
+#include "crashrank/base/guarded.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace crashrank {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Slope that stops a body that comes at this closing speed within a distance, borne by a width of
+/// a quarter of a metre: what no crash of this model leaves behind.
+constexpr double rigid_for_mps = 140.0;
+constexpr double rigid_width_m = 0.25;
+/// Engine and chassis harden by this share of it first.
+constexpr double hardening_share = 0.01;
+
+/// Without mirrors.
+double body_width_m(BodyKind kind, const Vector3d& size) {
+  constexpr double without_mirrors = 0.9;
+  const bool mirrors = kind == BodyKind::car || kind == BodyKind::truck || kind == BodyKind::bus;
+  return (mirrors ? without_mirrors : 1.0) * size.y();
+}
+
+struct Axles {
+  double rear_x_m = 0.0;
+  double wheelbase_m = 0.0;
+};
+
+/// Middles of the wheels, where the lowest band shows wheels alone at both ends.
+std::optional<Axles> find_axles(const Profile& profile, double rear_x, double length) {
+  constexpr double longest_wheel_m = 1.1;
+  const double middle = rear_x + 0.5 * length;
+  std::array<double, 2> low{1e9, 1e9};
+  std::array<double, 2> high{-1e9, -1e9};
+  for (std::uint32_t i = profile.first[0]; i < profile.first[1]; ++i) {
+    const auto x = static_cast<double>(profile.pieces[i].x);
+    const std::size_t end = x < middle ? 0 : 1;
+    low[end] = std::min(low[end], x);
+    high[end] = std::max(high[end], x);
+  }
+  for (std::size_t end = 0; end < 2; ++end) {
+    if (!(high[end] > low[end]) || high[end] - low[end] > longest_wheel_m) return std::nullopt;
+  }
+  const double rear = 0.5 * (low[0] + high[0]);
+  return Axles{rear, 0.5 * (low[1] + high[1]) - rear};
+}
+
+CrushStrength even_strength(double yield_npm, double slope_npm2, double length_m, double height_m) {
+  CrushStrength strength;
+  strength.front = {yield_npm, slope_npm2, length_m};
+  strength.side = strength.front;
+  strength.rear = strength.front;
+  strength.low_m = 0.0;
+  strength.high_m = std::max(height_m, 0.1);
+  return strength;
+}
+
+void harden(CrushStrength& strength, double mass_kg, double stop_m, double after_m) {
+  strength.rigid_npm2 = mass_kg * rigid_for_mps * rigid_for_mps / (rigid_width_m * stop_m * stop_m);
+  strength.hardening_npm2 = hardening_share * strength.rigid_npm2;
+  strength.hardening_length_m = after_m;
+}
+
+CrushStrength strength_of(const Vehicle& v, const Box& box) {
+  // Of lorries and buses: bumper and front wall, then a cab with seats (a bus to its rear wall).
+  constexpr double before_cab_m = 0.3;
+  constexpr double cab_m = 2.0;
+  const Vector3d size = box.extent().cast<double>();
+  CarShape shape;
+  shape.mass_kg = v.mass_kg;
+  shape.width_m = body_width_m(v.kind, size);
+  shape.front_x_m = static_cast<double>(box.max.x());
+  shape.rear_x_m = static_cast<double>(box.min.x());
+  shape.rear_axle_x_m = v.rear_axle_x_m;
+  shape.wheelbase_m = v.wheelbase_m;
+  CrushStrength strength;
+  switch (v.kind) {
+    case BodyKind::car:
+      strength = car_strength(shape);
+      harden(strength, v.mass_kg, 0.5, 0.4);
+      return strength;
+    case BodyKind::truck:
+    case BodyKind::bus:
+      // Campbell's line for the mass, borne by the chassis over its whole width.
+      strength = car_strength(shape);
+      strength.core = CrushCore{};
+      strength.core.cage_half_width_m = 0.5 * shape.width_m;
+      strength.core.cage_front_m = shape.front_x_m - before_cab_m;
+      strength.core.cage_rear_m = v.kind == BodyKind::truck ? strength.core.cage_front_m - cab_m
+                                                            : shape.rear_x_m + before_cab_m;
+      strength.low_m = 0.4;
+      strength.high_m = 1.2;
+      strength.front.length_m = 0.5;
+      strength.side.length_m = 0.3;
+      strength.rear.length_m = 0.3;
+      harden(strength, v.mass_kg, 0.5, 0.3);
+      return strength;
+    case BodyKind::motorcycle:
+    case BodyKind::bicycle:
+      // Fork and front wheel fold over 0.35 m, then the engine and the rider follow.
+      strength = even_strength(10e3, 200e3, 0.35, size.z());
+      strength.side.length_m = 0.15;
+      harden(strength, 0.25 * v.mass_kg, 0.1, 0.1);
+      return strength;
+    case BodyKind::pedestrian:
+      // About 5 kN/m at no depth: what a chest bears over its breadth; bones behind 0.1 m.
+      strength = even_strength(5e3, 50e3, 0.1, size.z());
+      harden(strength, 0.25 * v.mass_kg, 0.05, 0.05);
+      return strength;
+    case BodyKind::barrier:
+    case BodyKind::pole:
+    case BodyKind::building:
+      break;
+  }
+  return CrushStrength::unyielding();
+}
+
+void scale(CrushStrength& strength, double factor) {
+  for (CrushLaw* law : {&strength.front, &strength.side, &strength.rear}) {
+    law->yield_npm *= factor;
+    law->slope_npm2 *= factor;
+  }
+  strength.hardening_npm2 *= factor;
+}
+
+Surface surface_of(BodyKind kind) {
+  switch (kind) {
+    case BodyKind::pedestrian:
+      return Surface::person;
+    case BodyKind::pole:
+      return Surface::wood;
+    case BodyKind::barrier:
+    case BodyKind::building:
+      return Surface::concrete;
+    default:
+      return Surface::sheet_metal;
+  }
+}
+
+Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
+                          std::shared_ptr<const Profile> profile) {
+  constexpr double front_load = 0.58;
+  constexpr double gyration = 0.29;
+  Vehicle v;
+  if (profile == nullptr || profile->pieces.empty()) {
+    Result<Profile> made = make_profile(mesh);
+    if (!made) return made.error();
+    profile = std::make_shared<const Profile>(std::move(*made));
+  }
+  v.profile = std::move(profile);
+  v.silhouettes = make_silhouettes(*v.profile);
+  v.kind = facts.kind;
+  const Box box = mesh.bounds();
+  const Vector3d size = box.extent().cast<double>();
+  const auto rear_x = static_cast<double>(box.min.x());
+  v.mass_kg = facts.mass_kg.value_or(guess_mass_kg(facts.kind, size));
+  v.mass_is_guessed = !facts.mass_kg.has_value();
+  v.center_m = box.center().cast<double>();
+  v.leading_edge_m = 0.0;
+  const double flat = (size.x() * size.x() + size.y() * size.y()) / 12.0;
+  double gyration2 = std::max(flat, 1e-6);
+  if (v.kind == BodyKind::car) {
+    const std::optional<Axles> axles = find_axles(*v.profile, rear_x, size.x());
+    v.rear_axle_x_m = axles ? axles->rear_x_m : rear_x + 0.2 * size.x();
+    v.wheelbase_m = axles ? axles->wheelbase_m : 0.6 * size.x();
+    v.center_m.x() = v.rear_axle_x_m + front_load * v.wheelbase_m;
+    gyration2 = std::max(gyration * gyration * size.x() * size.x(), 1e-6);
+  }
+  if (facts.center_of_mass_m) v.center_m = *facts.center_of_mass_m;
+  if (v.movable()) {
+    v.yaw_inertia_kgm2 = facts.yaw_inertia_kgm2.value_or(v.mass_kg * gyration2);
+    // All mass at the ends of the box's diagonal, and a hundredth of a rod's.
+    const double most = v.mass_kg * std::max(3.0 * flat, 1e-4);
+    const double least = 0.01 * v.mass_kg * flat;
+    if (facts.yaw_inertia_kgm2 && !(v.yaw_inertia_kgm2 <= most && v.yaw_inertia_kgm2 >= least)) {
+      return make_error(ErrorCode::bad_input,
+                        "has a yaw inertia that no body of its size and mass can have",
+                        "state it in kg m2 about the centre of mass, or leave it out");
+    }
+    v.density_kgm3 = v.mass_kg / v.profile->volume_m3();
+  }
+  v.strength = v.movable() ? strength_of(v, box) : CrushStrength::unyielding();
+  if (!v.strength.rigid) scale(v.strength, facts.stiffness);
+  v.surface = facts.surface.value_or(surface_of(v.kind));
+  return v;
+}
+
+}  // namespace
+
+Result<Vehicle> describe_vehicle(const TriangleMesh& mesh, const VehicleFacts& facts,
+                                 std::shared_ptr<const Profile> profile) {
+  return detail::guarded([&] { return described(mesh, facts, std::move(profile)); });
+}
+
+}  // namespace crashrank
