@@ -303,7 +303,11 @@ void ContactRun::step() {
   }
   move(0.5 * step_s_);
   const Totals totals = feel();
-  moved_m_ = step_s_ * speed_mps_;
+  // Material of the two near each other, which may lie as far from one centre of mass as from the
+  // other: no faster than this.
+  const PlanarBody& p = state_.bodies[0].motion;
+  const PlanarBody& q = state_.bodies[1].motion;
+  moved_m_ = step_s_ * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
   acceleration_mps2_ = 0.0;
   quiet_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
   if (totals.pressing > 0.0) {

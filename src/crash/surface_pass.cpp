@@ -292,7 +292,11 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
   }
 
   const bool both_yield = !pusher.response.rigid();
-  const auto pusher_width = static_cast<float>(pusher.vehicle->silhouettes.width_m());
+  // A wall is as wide as it is long, a vehicle as it is across.
+  const Silhouettes& shape = pusher.vehicle->silhouettes;
+  const auto pusher_width = pusher.vehicle->movable()
+                                ? static_cast<float>(shape.width_m())
+                                : std::max(shape.max_x - shape.min_x, shape.max_y - shape.min_y);
   const auto own_width = static_cast<float>(target.width_m());
   const float narrow = std::max(std::min(pusher_width, own_width), 1e-3F);
   const float wider = std::max(0.0F, own_width - pusher_width);

@@ -180,11 +180,12 @@ Later ScoreBounds::most_after(const Scene& scene, const Motion& ego, View<const 
   switch (scene.measure) {
     case Measure::energy:
       // What is dissipated is nowhere gained again, and every body is met once.
-      return {true, energy};
+      return {true, energy, endless_v};
     case Measure::delta_v:
       // All energy in the ego's speed, before the crash and after it.
-      return {true, static_cast<double>(left) * slack * 2.0 *
-                        std::sqrt(2.0 * energy / scene.ego.mass_kg)};
+      return {true,
+              static_cast<double>(left) * slack * 2.0 * std::sqrt(2.0 * energy / scene.ego.mass_kg),
+              endless_v};
     default:
       break;
   }
@@ -195,7 +196,7 @@ Later ScoreBounds::most_after(const Scene& scene, const Motion& ego, View<const 
     sum += term_[actor];
     --left;
   }
-  return {true, slack * (sum + property(scene, energy))};
+  return {true, slack * (sum + property(scene, energy)), endless_v};
 }
 
 PendingContact pending_at_contact(const CrashSetup& crash, const Contact& contact) {

@@ -34,9 +34,10 @@ void fill(const ContactBody& body, const Model& model, const BodyContact& from, 
   to.crush_energy_j = from.crush_energy_j;
   to.ees_mps = v.movable() ? std::sqrt(2.0 * from.crush_energy_j / v.mass_kg) : 0.0;
   to.intrusion_m = from.intrusion_m;
-  if (!from.damaged.empty()) {
-    to.cdc = cdc_code({to.pdof_deg, from.damaged, model.mesh.bounds(), from.crush_depth_m, slides});
-  }
+  if (from.damaged.empty()) return;
+  const Box bounds = model.mesh.bounds();
+  to.crush_m = damage_depth_m(from.damaged, bounds);
+  to.cdc = cdc_code({to.pdof_deg, from.damaged, bounds, to.crush_m, slides});
 }
 
 }  // namespace
@@ -59,7 +60,7 @@ EgoAfterContact simulate_variants(const Scene& scene, const EgoAtContact& ego, C
       set_up_crash(scene, ego, contact, {met.data(), met.size()}, scratch.group);
   const ContactOutcome plain = simulate_contact(crash.a, crash.b, crash.fixed, contact.point_m,
                                                 variant_of(scene.plain), scratch.workspace);
-  add_pressed(scratch.workspace.state(), scratch.group, met);
+  add_pressed(scene, scratch.workspace.state(), scratch.group, met);
   ContactSeverity& severity = contact.severity;
   severity.simulated = true;
   severity.slides = plain.slides;

@@ -18,16 +18,37 @@ ContactBody contact_body(const Body& body, const Pose& pose, const Velocity& vel
   return placed;
 }
 
+ContactBody fixed_body(const Scene& scene, std::size_t actor, double time_s) {
+  const std::size_t joined = scene.joined_of[actor];
+  if (joined == Scene::alone) {
+    const Body& body = scene.actors[actor];
+    return contact_body(body, body.motion.pose_at(time_s), {});
+  }
+  const JoinedBodies& bodies = scene.joined[joined];
+  ContactBody placed;
+  placed.vehicle = &bodies.vehicle;
+  placed.pose = scene.actors[bodies.members.front()].motion.pose_at(time_s);
+  return placed;
+}
+
+std::size_t first_of(const Scene& scene, std::size_t actor) {
+  const std::size_t joined = scene.joined_of[actor];
+  return joined == Scene::alone ? actor : scene.joined[joined].members.front();
+}
+
 /// Fixed bodies whose boxes the ego may reach while it is pressed, by actor.
 void find_group(const Scene& scene, const EgoAtContact& ego, const Contact& contact,
                 View<const std::size_t> met, FixedGroup& group) {
   constexpr double seconds = 0.3;
   const double reach =
       2.0 * scene.ego.radius_m + seconds * contact.closing_speed_mps + scene.impact.tolerance_m;
+  const std::size_t own = first_of(scene, contact.actor);
   for (std::size_t i = 0; i < scene.actors.size() && group.bodies.size() < group.most; ++i) {
     const Body& body = scene.actors[i];
-    if (i == contact.actor || body.vehicle.movable()) continue;
-    if (std::find(met.begin(), met.end(), i) != met.end()) continue;
+    if (body.vehicle.movable()) continue;
+    const std::size_t first = first_of(scene, i);
+    if (first == own || std::find(met.begin(), met.end(), first) != met.end()) continue;
+    if (std::find(group.actors.begin(), group.actors.end(), first) != group.actors.end()) continue;
     const Pose pose = body.motion.pose_at(contact.time_of_impact_s);
     // Distance to the body's box along its own axes.
     const Vector3d from =
@@ -35,8 +56,8 @@ void find_group(const Scene& scene, const EgoAtContact& ego, const Contact& cont
     const Vector3d half = body.half_axes_m.cwiseAbs().rowwise().sum();
     const Vector3d beside = (from.cwiseAbs() - half).cwiseMax(0.0);
     if (beside.head<2>().norm() > reach) continue;
-    group.bodies.push_back(contact_body(body, pose, {}));
-    group.actors.push_back(i);
+    group.bodies.push_back(fixed_body(scene, first, contact.time_of_impact_s));
+    group.actors.push_back(first);
   }
 }
 
@@ -45,15 +66,31 @@ void find_group(const Scene& scene, const EgoAtContact& ego, const Contact& cont
 CrashSetup set_up_crash(const Scene& scene, const EgoAtContact& ego, const Contact& contact,
                         View<const std::size_t> met, FixedGroup& group) {
   const Body& other = scene.actors[contact.actor];
-  Pose other_pose;
-  Velocity other_velocity;
-  other.motion.state_at(contact.time_of_impact_s, other_pose, other_velocity);
   group.bodies.clear();
   group.actors.clear();
-  if (!other.vehicle.movable()) find_group(scene, ego, contact, met, group);
-  return {contact_body(scene.ego, ego.pose, ego.left),
-          contact_body(other, other_pose, other_velocity),
-          {group.bodies.data(), group.bodies.size()}};
+  CrashSetup crash;
+  crash.a = contact_body(scene.ego, ego.pose, ego.left);
+  if (other.vehicle.movable()) {
+    Pose pose;
+    Velocity velocity;
+    other.motion.state_at(contact.time_of_impact_s, pose, velocity);
+    crash.b = contact_body(other, pose, velocity);
+  } else {
+    find_group(scene, ego, contact, met, group);
+    crash.b = fixed_body(scene, contact.actor, contact.time_of_impact_s);
+    crash.fixed = {group.bodies.data(), group.bodies.size()};
+  }
+  return crash;
+}
+
+void add_met(const Scene& scene, std::size_t actor, std::vector<std::size_t>& met) {
+  const std::size_t joined = scene.joined_of[actor];
+  if (joined == Scene::alone) {
+    met.push_back(actor);
+    return;
+  }
+  const std::vector<std::size_t>& members = scene.joined[joined].members;
+  met.insert(met.end(), members.begin(), members.end());
 }
 
 RigidState rigid_state(const ContactBody& body) {
@@ -90,10 +127,10 @@ EgoAfterContact after_contact(const CrashSetup& crash, const ContactOutcome& out
   return after;
 }
 
-void add_pressed(const ContactWorkspace::State& state, const FixedGroup& group,
+void add_pressed(const Scene& scene, const ContactWorkspace::State& state, const FixedGroup& group,
                  std::vector<std::size_t>& met) {
   for (std::size_t k = 0; k < group.actors.size() && k + 2 < state.pressed.size(); ++k) {
-    if (state.pressed[k + 2] != 0) met.push_back(group.actors[k]);
+    if (state.pressed[k + 2] != 0) add_met(scene, group.actors[k], met);
   }
 }
 

@@ -15,7 +15,7 @@ namespace crashrank::detail {
 struct FixedGroup {
   static constexpr std::size_t most = 64;
   std::vector<ContactBody> bodies;
-  std::vector<std::size_t> actors;  ///< by body
+  std::vector<std::size_t> actors;  ///< by body; of joined ones the first
 
   void reserve() {
     bodies.reserve(most);
@@ -53,8 +53,11 @@ ContactVariant variant_of(const HarmSample& sample);
 /// What a contact's outcome means for the ego afterwards.
 EgoAfterContact after_contact(const CrashSetup& crash, const ContactOutcome& outcome);
 
+/// Adds an actor, with those it is joined to, to `met`.
+void add_met(const Scene& scene, std::size_t actor, std::vector<std::size_t>& met);
+
 /// Adds the bodies of the group that pressed to `met`.
-void add_pressed(const ContactWorkspace::State& state, const FixedGroup& group,
+void add_pressed(const Scene& scene, const ContactWorkspace::State& state, const FixedGroup& group,
                  std::vector<std::size_t>& met);
 
 }  // namespace crashrank::detail

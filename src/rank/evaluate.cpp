@@ -127,7 +127,7 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
     if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
     const EgoAtContact ego = planned(candidate.motion, hit.impact.time_s);
     contacts.push_back(make_contact(scene, ego, hit.actor, hit.impact));
-    found.met.push_back(hit.actor);
+    add_met(scene, hit.actor, found.met);
     found.effects.emplace_back();
     const EgoAfterContact after = simulate_variants(scene, ego, contacts.back(), found.met,
                                                     scratch.crash, found.effects.back());

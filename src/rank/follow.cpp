@@ -1,6 +1,7 @@
 #include "rank/follow.hpp"
 
 #include "rank/aftermath.hpp"
+#include "rank/crash_setup.hpp"
 #include "rank/damage.hpp"
 #include "rank/meet.hpp"
 #include "rank/near.hpp"
@@ -153,7 +154,7 @@ void follow(const Scene& scene, const Candidate& candidate, const EgoAtContact& 
     if (!hit) break;
     ego = aftermath.at(hit->impact.time_s);
     Contact contact = make_following_contact(scene, ego, *hit);
-    met.push_back(contact.actor);
+    add_met(scene, contact.actor, met);
     found.effects.emplace_back();
     after = simulate_variants(scene, ego, contact, met, scratch.crash, found.effects.back());
     contacts.push_back(std::move(contact));

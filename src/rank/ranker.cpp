@@ -132,7 +132,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
   /// Nothing is known of any candidate but what none can exceed. Touches nothing that workers do.
   void begin(View<const Candidate> asked) noexcept {
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      states[i] = detail::unrefined(scene, bounds, asked[i], i);
+      detail::begin_refining(scene, bounds, asked[i], i, states[i]);
     }
     race.begin(states, asked.size());
   }
@@ -253,6 +253,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->bodies = std::move(bodies);
     state->bounds.prepare(state->scene);
     state->states.resize(options.limits.candidates);
+    for (Refined& refined : state->states) refined.met.reserve(state->scene.actors.size());
     state->ranking.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);

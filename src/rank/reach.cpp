@@ -45,9 +45,15 @@ Other other_of(const Scene& scene, const Body& actor) {
   return other;
 }
 
+/// What one contact adds: to the score but for the ego's people, and to the ego's delta-v.
+struct Term {
+  double score = 0.0;
+  double ego_delta_v_mps = 0.0;
+};
+
 /// What meeting it adds when the ego is no faster and turns no faster than that.
-double most_of_one(const Scene& scene, const Body& actor, const Other& other, double speed_mps,
-                   double turning_j2) {
+Term most_of_one(const Scene& scene, const Body& actor, const Other& other, double speed_mps,
+                 double turning_j2) {
   const double relative = speed_mps + other.speed_mps;
   const double turning = turning_j2 + other.turning_j2;
   const double impulse = speed_slack * other.reduced_kg *
@@ -55,13 +61,13 @@ double most_of_one(const Scene& scene, const Body& actor, const Other& other, do
   const double ego_delta_v = speed_slack * impulse / scene.ego.mass_kg;
   switch (scene.measure) {
     case Measure::delta_v:
-      return ego_delta_v;
+      return {ego_delta_v, ego_delta_v};
     case Measure::energy:
-      return speed_slack * 0.5 * (other.reduced_kg * relative * relative + turning);
+      return {speed_slack * 0.5 * (other.reduced_kg * relative * relative + turning), ego_delta_v};
     case Measure::harm:
       break;
     default:
-      return endless;
+      return {endless, endless};
   }
   // The point of contact is told by the ego's triangles, which may reach past the actor. While a
   // crash still goes on, the ego is met at a velocity between those of its start and its end, whose
@@ -77,7 +83,7 @@ double most_of_one(const Scene& scene, const Body& actor, const Other& other, do
   hit.road_speed_mps = other.speed_mps;
   hit.intrusion_m = most_intrusion_m(actor.vehicle);
   hit.crush_energy_j = speed_slack * 0.5 * (other.reduced_kg * relative * relative + turning);
-  return speed_slack * most_harm(hit, scene.harm);
+  return {speed_slack * most_harm(hit, scene.harm), ego_delta_v};
 }
 
 /// A box that the ego stays in until `until_s`.
@@ -196,17 +202,24 @@ Later most_in_reach(const Scene& scene, const Reach& reach, View<const std::size
   }
 
   memory.last_term.assign(count, 0.0);
+  double last_delta_v = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     if (memory.in_reach_from[i] == 0) continue;
     const Body& actor = scene.actors[i];
-    memory.last_term[i] =
+    const Term term =
         most_of_one(scene, actor, other_of(scene, actor), now.speed_mps, now.turning_j2);
+    memory.last_term[i] = term.score;
+    last_delta_v = std::max(last_delta_v, term.ego_delta_v_mps);
   }
+  double first_delta_v = 0.0;
   double most = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     if (memory.in_reach_from[i] != 1) continue;
     const Body& actor = scene.actors[i];
-    double sum = most_of_one(scene, actor, other_of(scene, actor), first_speed, first_turning);
+    const Term first =
+        most_of_one(scene, actor, other_of(scene, actor), first_speed, first_turning);
+    first_delta_v = std::max(first_delta_v, first.ego_delta_v_mps);
+    double sum = first.score;
     // And the largest of the others, as many as are left.
     double below = endless;
     std::size_t below_index = 0;
@@ -229,7 +242,8 @@ Later most_in_reach(const Scene& scene, const Reach& reach, View<const std::size
     }
     most = std::max(most, sum);
   }
-  return {true, speed_slack * most};
+  const double delta_v = first_delta_v + static_cast<double>(left - 1) * last_delta_v;
+  return {true, speed_slack * most, speed_slack * delta_v};
 }
 
 }  // namespace crashrank::detail

@@ -30,7 +30,7 @@ std::uint64_t tests_of(const RankWork& work) {
          work.damage.bv_tests + work.damage.primitive_tests + work.paths;
 }
 
-View<const std::size_t> met(const Refined& state) { return {state.met.data(), state.met_count}; }
+View<const std::size_t> met(const Refined& state) { return {state.met.data(), state.met.size()}; }
 
 std::size_t contacts_left(const Scene& scene, const Refined& state) {
   const std::size_t most = std::min(scene.harm.after.most_contacts, harm_limits::contacts);
@@ -56,13 +56,17 @@ void expect(const RefineQuery& q, Refined& state, const EgoAtContact& ego, Conta
   state.ego = ego;
   const CrashSetup crash =
       set_up_crash(q.scene, ego, state.pending, met(state), scratch.crash.group);
-  state.met[state.met_count++] = state.pending.actor;
+  add_met(q.scene, state.pending.actor, state.met);
   ++state.contacts;
   const std::size_t left = contacts_left(q.scene, state);
   const Later all = q.bounds.most_after(q.scene, q.candidate.motion, met(state), left);
   const Later near = most_in_reach(q.scene, reach_after(q.scene, q.candidate, crash, state.pending),
                                    met(state), left, scratch.reach, work.box_tests);
-  state.after = {all.any && near.any, all.any && near.any ? std::min(all.most, near.most) : 0.0};
+  state.after = {};
+  if (all.any && near.any) {
+    state.after = {true, std::min(all.most, near.most),
+                   std::min(all.ego_delta_v_mps, near.ego_delta_v_mps)};
+  }
   const Range score =
       state.tally.bounds(q.scene, pending_at_contact(crash, state.pending), state.after);
   narrow(state, score.least, score.most);
@@ -137,7 +141,7 @@ bool search(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWo
 /// Simulates the pending crash and looks for what comes after it.
 bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work,
            std::uint64_t& pulse_work) {
-  scratch.met.assign(state.met.data(), state.met.data() + state.met_count);
+  scratch.met.assign(state.met.begin(), state.met.end());
   const CrashScore scored =
       score_crash(q.scene, {state.ego, state.pending, state.tally, state.after, q.give_up_above},
                   q.watch, scratch.met, scratch.crash);
@@ -162,8 +166,7 @@ bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWor
     if (stopped) return false;
   }
   state.tally = tally;
-  state.met_count = std::min(scratch.met.size(), state.met.size());
-  std::copy_n(scratch.met.begin(), state.met_count, state.met.begin());
+  state.met.assign(scratch.met.begin(), scratch.met.end());
   state.told.stage = RankStage::followed;
   if (!hit) {
     settle(state, tally.score(q.scene, q.scene.plain));
@@ -176,12 +179,14 @@ bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWor
 
 }  // namespace
 
-Refined unrefined(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
-                  std::size_t index) {
-  Refined state;
+void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
+                    std::size_t index, Refined& state) {
+  std::vector<std::size_t> met = std::move(state.met);
+  met.clear();
+  state = {};
+  state.met = std::move(met);
   state.told.candidate = index;
   state.told.interval = {0.0, bounds.most(scene, candidate.motion)};
-  return state;
 }
 
 void settle_as_clear(Refined& state) {

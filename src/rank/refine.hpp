@@ -32,9 +32,9 @@ struct Refined {
   RankedCandidate told;
   bool stuck = false;  ///< a question about it stayed undecided: no step follows
   Tally tally;         ///< of the contacts simulated so far
-  /// Bodies hit, the pending one included, and those that pressed with one of them.
-  std::array<std::size_t, harm_limits::contacts*(1 + FixedGroup::most)> met{};
-  std::size_t met_count = 0;
+  /// Actors hit, the pending one included, with those joined to them or pressing with them. As long
+  /// as there are actors; the Ranker reserves it.
+  std::vector<std::size_t> met;
   std::size_t contacts = 0;  ///< the pending one included
   Contact pending;           ///< whose crash comes next
   EgoAtContact ego;          ///< at that
@@ -59,9 +59,9 @@ struct StepEnd {
   bool finished = true;  ///< false: time was up first; the interval may be narrower all the same
 };
 
-/// A candidate nothing was looked at of.
-Refined unrefined(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
-                  std::size_t index);
+/// Begins with a candidate of which nothing is known yet. Keeps the memory of `state`.
+void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
+                    std::size_t index, Refined& state);
 
 /// The candidate is known to come near nobody.
 void settle_as_clear(Refined& state);

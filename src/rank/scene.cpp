@@ -1,6 +1,7 @@
 #include "rank/scene.hpp"
 
 #include "crashrank/crash/injury.hpp"
+#include "rank/join_fixed.hpp"
 #include "rank/motion_check.hpp"
 
 #include <algorithm>
@@ -149,6 +150,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.actors.back().occupants = actor.occupants;
   }
 
+  if (Status joined = join_fixed(scene); !joined) return joined.error();
   const auto slices =
       static_cast<int>(std::clamp(std::ceil(scenario.horizon_s / slice_length_s), 1.0, max_slices));
   for (int i = 0; i <= slices; ++i) {

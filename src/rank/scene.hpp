@@ -35,11 +35,20 @@ struct Body {
 Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
               double tolerance_m);
 
+/// Bodies that nothing moves and that adjoin each other: one body in a contact.
+struct JoinedBodies {
+  std::vector<std::size_t> members;  ///< actors, rising; the first one's pose is that of all
+  Vehicle vehicle;                   ///< their common outline, in its body coordinates
+};
+
 /// What all candidates of a scenario share, prepared once and then only read.
 struct Scene {
   Body ego;
   Pose ego_start;
   std::vector<Body> actors;
+  std::vector<JoinedBodies> joined;
+  std::vector<std::size_t> joined_of;  ///< by actor: its place in `joined`, or `alone`
+  static constexpr std::size_t alone = static_cast<std::size_t>(-1);
   /// Time is cut into slices; in each the actors' swept boxes are ready to be asked.
   std::vector<double> slice_s;  ///< ends of the slices, from 0 to the horizon
   std::vector<BroadPhase> slices;

@@ -33,7 +33,7 @@ CrashScore score_crash(const Scene& scene, const CrashQuery& q, const Watch& wat
   }
   score.work = run.work();
   const ContactOutcome outcome = run.outcome();
-  add_pressed(scratch.workspace.state(), scratch.group, met);
+  add_pressed(scene, scratch.workspace.state(), scratch.group, met);
   score.effect = effect_of(q.contact, crash, outcome);
   score.after = after_contact(crash, outcome);
   return score;

@@ -33,9 +33,12 @@ void prepare_scratch(const Scene& scene, RefineScratch& scratch) {
   for (const Body& actor : scene.actors) {
     pieces = std::max(pieces, actor.vehicle.profile->pieces.size());
   }
+  for (const JoinedBodies& joined : scene.joined) {
+    pieces = std::max(pieces, joined.vehicle.profile->pieces.size());
+  }
   scratch.crash.workspace.prepare(pieces, std::min(FixedGroup::most, scene.actors.size()));
   scratch.crash.group.reserve();
-  scratch.met.reserve(harm_limits::contacts * (1 + FixedGroup::most));
+  scratch.met.reserve(scene.actors.size());
 }
 
 }  // namespace

@@ -213,7 +213,17 @@ Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Lat
       const double ego_people = people_weight(ego, scene.harm.weights);
       const double other_people = people_weight(theirs, scene.harm.weights);
       const double least_ego = later.any ? before : combined_risk(before, ego_risk.least);
-      const double most_ego = later.any ? 1.0 : combined_risk(before, ego_risk.most);
+      // An occupant's -ln(1 - risk) is convex in delta-v and 0 at 0, so that no way in which later
+      // contacts share their delta-v among events is worse than all of it in this one.
+      double most_ego = combined_risk(before, ego_risk.most);
+      if (later.any) {
+        const Range all{0.0, event.most + later.ego_delta_v_mps};
+        most_ego = has_cage(ego.kind) && std::isfinite(all.most)
+                       ? combined_risk(before, risk_over(scene, ego, scene.ego, all, closing,
+                                                         of_event, other.vehicle.leading_edge_m)
+                                                   .most)
+                       : 1.0;
+      }
       score.least = sum_ + ego_people * least_ego + other_people * other_risk.least;
       score.most = sum_ + ego_people * most_ego + other_people * other_risk.most + later.most +
                    scene.harm.weights.property_per_mj * 1e-6 * pending.dissipated_j.most;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <limits>
 
 namespace crashrank::detail {
 
@@ -80,10 +81,14 @@ struct PendingContact {
   Range dissipated_j;
 };
 
+/// No bound on a speed.
+inline constexpr double endless_v = std::numeric_limits<double>::infinity();
+
 /// What contacts after the pending one may add.
 struct Later {
-  bool any = false;   ///< there may be one
-  double most = 0.0;  ///< all but the ego's people: their harm is at most that of a sure injury
+  bool any = false;                    ///< there may be one
+  double most = 0.0;                   ///< to all but the ego's people
+  double ego_delta_v_mps = endless_v;  ///< summed over them, at most
 };
 
 /// The score of one candidate, contact by contact in time order, in one sample. The same sums in

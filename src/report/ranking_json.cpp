@@ -61,6 +61,8 @@ Json outcome_json(const BodyOutcome& o, bool simulated) {
              {"delta_v_x_mps", o.delta_v_x_mps},
              {"delta_v_y_mps", o.delta_v_y_mps},
              {"yaw_rate_change_dps", o.yaw_rate_change_radps * degrees},
+             {"event_delta_v_mps", o.event_delta_v_mps},
+             {"event_yaw_rate_change_dps", o.event_yaw_rate_change_radps * degrees},
              {"pdof_deg", o.pdof_deg},
              {"clock", o.clock}};
   if (!simulated) return entry;
@@ -129,7 +131,9 @@ Json region(const Box& box) {
 }
 
 Json contact_json(const Scenario& scenario, View<const Model> models, const Contact& contact) {
-  Json entry{{"other", scenario.actors[contact.actor].name},
+  Json entry{{"bodies", {"ego", scenario.actors[contact.actor].name}},
+             {"other", scenario.actors[contact.actor].name},
+             {"event", contact.event},
              {"state", state_name(contact.state)},
              {"time_of_impact_s", contact.time_of_impact_s},
              {"closing_speed_mps", contact.closing_speed_mps},

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace crashrank {
@@ -34,24 +35,28 @@ TEST(Aftermath, AChainOfEqualMassesHalvesTheSpeedEachTime) {
   }
   const RankResult result = scene.ranked();
   const CandidateResult& on = of(result, "on");
-  ASSERT_EQ(on.contacts.size(), 3U);
-  // Bodies that do not rebound share their momentum: v/2, v/4, v/8.
+  ASSERT_GE(on.contacts.size(), 2U);
+  // Equal masses share their momentum, and part by a restitution of at most 0.35: what is left is
+  // half of the closing speed, less half of the rebound.
   double left = speed_mps;
   double harm = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < on.contacts.size(); ++i) {
     const Contact& contact = on.contacts[i];
     EXPECT_EQ(contact.actor, i);
     EXPECT_NEAR(contact.closing_speed_mps, left, 0.02 * speed_mps);
-    EXPECT_NEAR(contact.severity.ego.delta_v_mps, 0.5 * left, 0.02 * speed_mps);
-    EXPECT_NEAR(contact.severity.other.delta_v_mps, 0.5 * left, 0.02 * speed_mps);
+    const double delta_v = contact.severity.ego.delta_v_mps;
+    EXPECT_GE(delta_v, 0.49 * left);
+    EXPECT_LE(delta_v, 0.5 * 1.35 * left);
+    EXPECT_NEAR(contact.severity.other.delta_v_mps, delta_v, 1e-9);
+    EXPECT_EQ(contact.event, i + 1);
     harm += contact.severity.harm;
-    left *= 0.5;
+    sum += delta_v;
+    left -= delta_v;
   }
   EXPECT_NEAR(*on.score, harm, 1e-12);
-  // The road ahead of the second car is 6 m at half the speed.
-  EXPECT_NEAR(on.contacts[1].time_of_impact_s - on.contacts[0].time_of_impact_s, 10.0 / 8.0, 0.15);
   const RankResult delta_v = scene.ranked(Measure::delta_v);
-  EXPECT_NEAR(*of(delta_v, "on").score, speed_mps * (0.5 + 0.25 + 0.125), 0.04 * speed_mps);
+  EXPECT_NEAR(*of(delta_v, "on").score, sum, 1e-9);
 }
 
 TEST(Aftermath, FollowingEndsWhereTheOptionsSay) {
@@ -79,11 +84,11 @@ TEST(Aftermath, TheWayToTheNextIsBraked) {
   const RankResult result = scene.ranked();
   const CandidateResult& on = of(result, "on");
   ASSERT_EQ(on.contacts.size(), 2U);
-  const double half = speed_mps / 2;
+  const double left = speed_mps - on.contacts[0].severity.ego.delta_v_mps;
   // The crash itself takes some of the 5 m.
   const double closing = on.contacts[1].closing_speed_mps;
-  EXPECT_GE(closing, std::sqrt(half * half - 2 * deceleration * 5.0) - 0.3);
-  EXPECT_LE(closing, std::sqrt(half * half - 2 * deceleration * 3.5) + 0.3);
+  EXPECT_GE(closing, std::sqrt(std::max(0.0, left * left - 2 * deceleration * 5.0)) - 0.3);
+  EXPECT_LE(closing, std::sqrt(left * left - 2 * deceleration * 3.0) + 0.3);
   // 8 m/s last for 8 m at that deceleration.
   scene.scenario.actors[1].pose.translation.x() = 24.0;
   EXPECT_EQ(of(scene.ranked(), "on").contacts.size(), 1U);
@@ -107,7 +112,8 @@ TEST(Aftermath, GlancingACarThenAPole) {
   // What the first takes off the second has not.
   const double left =
       std::hypot(speed_mps + glance.severity.ego.delta_v_x_mps, glance.severity.ego.delta_v_y_mps);
-  EXPECT_NEAR(stop.closing_speed_mps, left, 0.12 * speed_mps);
+  // Points of a body that turns are faster or slower than its middle.
+  EXPECT_NEAR(stop.closing_speed_mps, left, 0.25 * speed_mps);
   EXPECT_GT(stop.severity.ego.delta_v_mps, glance.severity.ego.delta_v_mps);
   EXPECT_NEAR(*on.score, glance.severity.harm + stop.severity.harm, 1e-12);
 }
@@ -164,14 +170,19 @@ TEST(Aftermath, HarmAtTheLimitsOfTheMassRatio) {
   all.delta_v_mps = speed_mps;
   const double certain = injury_risk(RiskModel::tum, all);
   const ContactSeverity feather = crash(1.0, BodyKind::car);
-  EXPECT_EQ(feather.ego.harm, 0.0);
-  EXPECT_NEAR(feather.other.delta_v_mps, speed_mps, 0.02 * speed_mps);
+  EXPECT_LT(feather.ego.harm, 1e-4);
+  // All of it, and the rebound.
+  EXPECT_GE(feather.other.delta_v_mps, 0.98 * speed_mps);
+  EXPECT_LE(feather.other.delta_v_mps, 1.4 * speed_mps);
   const ContactSeverity truck = crash(25000.0, BodyKind::truck);
-  EXPECT_NEAR(truck.ego.delta_v_mps, speed_mps * 25.0 / 26.0, 0.02 * speed_mps);
-  EXPECT_NEAR(truck.other.delta_v_mps, speed_mps / 26.0, 0.02 * speed_mps);
+  EXPECT_GE(truck.ego.delta_v_mps, 0.98 * speed_mps * 25.0 / 26.0);
+  EXPECT_LE(truck.ego.delta_v_mps, 1.4 * speed_mps * 25.0 / 26.0);
+  EXPECT_NEAR(truck.other.delta_v_mps, truck.ego.delta_v_mps / 25.0, 1e-9);
   EXPECT_GT(truck.ego.harm, 5.0 * truck.other.harm);
   const ContactSeverity mountain = crash(1e6, BodyKind::truck);
-  EXPECT_NEAR(mountain.ego.harm, certain, 0.05 * certain);
+  EXPECT_GE(mountain.ego.harm, 0.95 * certain);
+  all.delta_v_mps = 1.4 * speed_mps;
+  EXPECT_LE(mountain.ego.harm, injury_risk(RiskModel::tum, all));
 }
 
 TEST(Aftermath, WithoutOverlapThereIsNoHarm) {
@@ -194,7 +205,7 @@ TEST(Aftermath, PeopleOutsideCarsHaveNoCage) {
     EXPECT_EQ(hit.other.intrusion_m, 0.0);
   }
   Scene scene = road();
-  scene.scenario.ego.speed_mps = 45.0;
+  scene.scenario.ego.speed_mps = 69.0;
   const std::size_t wall =
       scene.add_model("wall", box_mesh({0.5F, 3.0F, 1.0F}, 2, {0, 0, 1}), BodyKind::building);
   scene.add_actor("wall", wall, 10.0, 0.0);
