@@ -12,6 +12,9 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double most_cells = 4e6;
+/// What all segments together may be long, in cells: bounds time and memory on meshes of many large
+/// triangles.
+constexpr double most_cells_passed = 10e6;
 
 double cross(const Vector2d& p, const Vector2d& q) { return p.x() * q.y() - p.y() * q.x(); }
 
@@ -40,14 +43,19 @@ struct Raster {
 Raster raster_over(const std::vector<SectionSegment>& segments, double cell_m) {
   Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
   Vector2d high = -low;
+  double length = 0.0;
   for (const SectionSegment& s : segments) {
     for (const Vector2d& p : s) {
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
+    length += (s[1] - s[0]).norm();
   }
   const Vector2d size = high - low;
-  while ((size.x() / cell_m + 10.0) * (size.y() / cell_m + 10.0) > most_cells) cell_m *= 1.25;
+  while ((size.x() / cell_m + 10.0) * (size.y() / cell_m + 10.0) > most_cells ||
+         length / cell_m > most_cells_passed) {
+    cell_m *= 1.25;
+  }
   Raster raster;
   raster.cell_m = cell_m;
   // Not on the grid of round numbers on which the corners of drawn bodies lie.
@@ -59,7 +67,7 @@ Raster raster_over(const std::vector<SectionSegment>& segments, double cell_m) {
 
 /// Segments by the cell that they pass through: `first` by cell, then one index each.
 struct CellSegments {
-  std::vector<std::uint32_t> first;
+  std::vector<std::size_t> first;
   std::vector<std::uint32_t> segment;
 };
 
@@ -84,7 +92,7 @@ CellSegments sort_into_cells(const Raster& raster, const std::vector<SectionSegm
   }
   for (std::size_t i = 1; i < cells.first.size(); ++i) cells.first[i] += cells.first[i - 1];
   cells.segment.resize(cells.first.back());
-  std::vector<std::uint32_t> next(cells.first.begin(), cells.first.end() - 1);
+  std::vector<std::size_t> next(cells.first.begin(), cells.first.end() - 1);
   for (std::uint32_t i = 0; i < segments.size(); ++i) {
     visit_cells(raster, segments[i], [&](std::size_t cell) { cells.segment[next[cell]++] = i; });
   }
@@ -152,7 +160,7 @@ Vector2d snap(const Raster& raster, const std::vector<SectionSegment>& segments,
     for (std::ptrdiff_t i = column - reach; i <= column + reach; ++i) {
       if (i < 0 || j < 0 || i >= raster.columns || j >= raster.rows) continue;
       const std::size_t cell = raster.index(i, j);
-      for (std::uint32_t k = cells.first[cell]; k < cells.first[cell + 1]; ++k) {
+      for (std::size_t k = cells.first[cell]; k < cells.first[cell + 1]; ++k) {
         const SectionSegment& s = segments[cells.segment[k]];
         const Vector2d along = s[1] - s[0];
         const double length2 = along.squaredNorm();
