@@ -71,16 +71,30 @@ struct CellSegments {
   std::vector<std::uint32_t> segment;
 };
 
+/// Calls back for the cells that a segment passes through, each of which shares a side with the one
+/// before; corners that it cuts off by less than an eighth of a cell may be left out.
 template <class Visit>
 void visit_cells(const Raster& raster, const SectionSegment& s, Visit&& visit) {
-  const auto steps =
-      static_cast<int>(std::min((s[1] - s[0]).norm() / (0.25 * raster.cell_m), 1e7)) + 1;
-  std::size_t last = raster.size();
-  for (int i = 0; i <= steps; ++i) {
-    const Vector2d p = s[0] + (static_cast<double>(i) / steps) * (s[1] - s[0]);
-    const std::size_t cell = raster.index(raster.column_of(p), raster.row_of(p));
-    if (cell != last) visit(cell);
-    last = cell;
+  const Vector2d along = s[1] - s[0];
+  const auto steps = static_cast<int>(std::min(along.norm() / (0.25 * raster.cell_m), 1e7)) + 1;
+  std::ptrdiff_t column = raster.column_of(s[0]);
+  std::ptrdiff_t row = raster.row_of(s[0]);
+  visit(raster.index(column, row));
+  for (int i = 1; i <= steps; ++i) {
+    const Vector2d p = s[0] + (static_cast<double>(i) / steps) * along;
+    const std::ptrdiff_t next_column = raster.column_of(p);
+    const std::ptrdiff_t next_row = raster.row_of(p);
+    if (next_column == column && next_row == row) continue;
+    if (next_column != column && next_row != row) {
+      // Across a corner: through the cell beside it on whose side the segment passes.
+      const Vector2d corner =
+          raster.corner(std::max(column, next_column), std::max(row, next_row)) - s[0];
+      const bool column_first = corner.x() / along.x() < corner.y() / along.y();
+      visit(column_first ? raster.index(next_column, row) : raster.index(column, next_row));
+    }
+    column = next_column;
+    row = next_row;
+    visit(raster.index(column, row));
   }
 }
 
@@ -237,7 +251,7 @@ double loop_area_m2(const OutlineLoop& loop) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
     area += cross(loop[i] - loop[0], loop[(i + 1) % loop.size()] - loop[0]);
   }
-  return 0.5 * std::abs(area);
+  return 0.5 * area;
 }
 
 std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segments, double cell_m,
@@ -292,7 +306,10 @@ std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segme
       while (loop.size() > 1 && (loop.front() - loop.back()).norm() <= apart_m) loop.pop_back();
       if (loop.size() < 2) continue;
       loop = simplified(std::move(loop), tolerance_m);
-      if (loop.size() >= 2) loops.push_back(std::move(loop));
+      if (loop.size() < 2) continue;
+      // Around what is thinner than a cell, moving the points onto the segments can turn it over.
+      if (loop_area_m2(loop) < 0.0) std::reverse(loop.begin(), loop.end());
+      loops.push_back(std::move(loop));
     }
   }
   return loops;

@@ -20,7 +20,7 @@ using OutlineLoop = std::vector<Eigen::Vector2d>;
 std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segments, double cell_m,
                                         double tolerance_m);
 
-/// Area that a loop encloses, m²; positive.
+/// Area that a loop encloses, m²; negative where it runs clockwise.
 double loop_area_m2(const OutlineLoop& loop);
 
 }  // namespace crashrank::detail
