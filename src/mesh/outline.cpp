@@ -12,6 +12,9 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double most_cells = 4e6;
+/// What all segments together may be long, in cells: bounds time and memory on meshes of many large
+/// triangles.
+constexpr double most_cells_passed = 10e6;
 
 double cross(const Vector2d& p, const Vector2d& q) { return p.x() * q.y() - p.y() * q.x(); }
 
@@ -40,14 +43,19 @@ struct Raster {
 Raster raster_over(const std::vector<SectionSegment>& segments, double cell_m) {
   Vector2d low = Vector2d::Constant(std::numeric_limits<double>::infinity());
   Vector2d high = -low;
+  double length = 0.0;
   for (const SectionSegment& s : segments) {
     for (const Vector2d& p : s) {
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
+    length += (s[1] - s[0]).norm();
   }
   const Vector2d size = high - low;
-  while ((size.x() / cell_m + 10.0) * (size.y() / cell_m + 10.0) > most_cells) cell_m *= 1.25;
+  while ((size.x() / cell_m + 10.0) * (size.y() / cell_m + 10.0) > most_cells ||
+         length / cell_m > most_cells_passed) {
+    cell_m *= 1.25;
+  }
   Raster raster;
   raster.cell_m = cell_m;
   // Not on the grid of round numbers on which the corners of drawn bodies lie.
@@ -59,20 +67,34 @@ Raster raster_over(const std::vector<SectionSegment>& segments, double cell_m) {
 
 /// Segments by the cell that they pass through: `first` by cell, then one index each.
 struct CellSegments {
-  std::vector<std::uint32_t> first;
+  std::vector<std::size_t> first;
   std::vector<std::uint32_t> segment;
 };
 
+/// Calls back for the cells that a segment passes through, each of which shares a side with the one
+/// before; corners that it cuts off by less than an eighth of a cell may be left out.
 template <class Visit>
 void visit_cells(const Raster& raster, const SectionSegment& s, Visit&& visit) {
-  const auto steps =
-      static_cast<int>(std::min((s[1] - s[0]).norm() / (0.25 * raster.cell_m), 1e7)) + 1;
-  std::size_t last = raster.size();
-  for (int i = 0; i <= steps; ++i) {
-    const Vector2d p = s[0] + (static_cast<double>(i) / steps) * (s[1] - s[0]);
-    const std::size_t cell = raster.index(raster.column_of(p), raster.row_of(p));
-    if (cell != last) visit(cell);
-    last = cell;
+  const Vector2d along = s[1] - s[0];
+  const auto steps = static_cast<int>(std::min(along.norm() / (0.25 * raster.cell_m), 1e7)) + 1;
+  std::ptrdiff_t column = raster.column_of(s[0]);
+  std::ptrdiff_t row = raster.row_of(s[0]);
+  visit(raster.index(column, row));
+  for (int i = 1; i <= steps; ++i) {
+    const Vector2d p = s[0] + (static_cast<double>(i) / steps) * along;
+    const std::ptrdiff_t next_column = raster.column_of(p);
+    const std::ptrdiff_t next_row = raster.row_of(p);
+    if (next_column == column && next_row == row) continue;
+    if (next_column != column && next_row != row) {
+      // Across a corner: through the cell beside it on whose side the segment passes.
+      const Vector2d corner =
+          raster.corner(std::max(column, next_column), std::max(row, next_row)) - s[0];
+      const bool column_first = corner.x() / along.x() < corner.y() / along.y();
+      visit(column_first ? raster.index(next_column, row) : raster.index(column, next_row));
+    }
+    column = next_column;
+    row = next_row;
+    visit(raster.index(column, row));
   }
 }
 
@@ -84,7 +106,7 @@ CellSegments sort_into_cells(const Raster& raster, const std::vector<SectionSegm
   }
   for (std::size_t i = 1; i < cells.first.size(); ++i) cells.first[i] += cells.first[i - 1];
   cells.segment.resize(cells.first.back());
-  std::vector<std::uint32_t> next(cells.first.begin(), cells.first.end() - 1);
+  std::vector<std::size_t> next(cells.first.begin(), cells.first.end() - 1);
   for (std::uint32_t i = 0; i < segments.size(); ++i) {
     visit_cells(raster, segments[i], [&](std::size_t cell) { cells.segment[next[cell]++] = i; });
   }
@@ -152,7 +174,7 @@ Vector2d snap(const Raster& raster, const std::vector<SectionSegment>& segments,
     for (std::ptrdiff_t i = column - reach; i <= column + reach; ++i) {
       if (i < 0 || j < 0 || i >= raster.columns || j >= raster.rows) continue;
       const std::size_t cell = raster.index(i, j);
-      for (std::uint32_t k = cells.first[cell]; k < cells.first[cell + 1]; ++k) {
+      for (std::size_t k = cells.first[cell]; k < cells.first[cell + 1]; ++k) {
         const SectionSegment& s = segments[cells.segment[k]];
         const Vector2d along = s[1] - s[0];
         const double length2 = along.squaredNorm();
@@ -229,7 +251,7 @@ double loop_area_m2(const OutlineLoop& loop) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
     area += cross(loop[i] - loop[0], loop[(i + 1) % loop.size()] - loop[0]);
   }
-  return 0.5 * std::abs(area);
+  return 0.5 * area;
 }
 
 std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segments, double cell_m,
@@ -284,7 +306,10 @@ std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segme
       while (loop.size() > 1 && (loop.front() - loop.back()).norm() <= apart_m) loop.pop_back();
       if (loop.size() < 2) continue;
       loop = simplified(std::move(loop), tolerance_m);
-      if (loop.size() >= 2) loops.push_back(std::move(loop));
+      if (loop.size() < 2) continue;
+      // Around what is thinner than a cell, moving the points onto the segments can turn it over.
+      if (loop_area_m2(loop) < 0.0) std::reverse(loop.begin(), loop.end());
+      loops.push_back(std::move(loop));
     }
   }
   return loops;

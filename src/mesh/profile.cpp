@@ -19,6 +19,36 @@ constexpr double cells_along = 250.0;
 constexpr double tolerance_cells = 0.25;
 constexpr double most_pieces_along = 20000.0;
 
+/// Outlines that enclose less than this times the square of their length enclose nothing: they run
+/// along a sheet and back, and the area is what rounding leaves.
+constexpr double least_area_per_length2 = 1e-9;
+
+/// The box around the vertices that triangles use. Errors: bad_input.
+Result<Box> surface_bounds(const TriangleMesh& mesh) {
+  Box box;
+  for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index >= mesh.vertices.size()) {
+        return make_error(ErrorCode::bad_input, "has a triangle with a vertex that is not there",
+                          "make the mesh again");
+      }
+      const Eigen::Vector3f& vertex = mesh.vertices[index];
+      // Not finite: neither.
+      if (!(vertex.cwiseAbs().cast<double>().array() <= max_profile_coordinate_m).all()) {
+        return make_error(ErrorCode::bad_input,
+                          "has a vertex more than 1e6 m from its origin, or not finite",
+                          "check its scale and its origin");
+      }
+      box.grow(vertex);
+    }
+  }
+  if (box.empty()) {
+    return make_error(ErrorCode::bad_input, "has no triangle to take an outline from",
+                      "give it a mesh with a surface");
+  }
+  return box;
+}
+
 /// Section of the mesh by a horizontal plane, body coordinates.
 void cut(const TriangleMesh& mesh, double height, std::vector<detail::SectionSegment>& segments) {
   segments.clear();
@@ -37,6 +67,16 @@ void cut(const TriangleMesh& mesh, double height, std::vector<detail::SectionSeg
     }
     if (count == 2) segments.push_back({point[0], point[1]});
   }
+}
+
+/// Area that a loop encloses, m²; 0 where that is rounding.
+double enclosed_m2(const detail::OutlineLoop& loop) {
+  double length = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    length += (loop[(i + 1) % loop.size()] - loop[i]).norm();
+  }
+  const double area = detail::loop_area_m2(loop);
+  return area > least_area_per_length2 * length * length ? area : 0.0;
 }
 
 void add_pieces(const detail::OutlineLoop& loop, double longest_m,
@@ -61,15 +101,12 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
   constexpr double below_ground_m = 0.3;
   constexpr double beside_vertices_m = 1.3e-6;
   Profile profile;
-  const Box box = mesh.bounds();
-  if (box.empty()) {
-    return make_error(ErrorCode::bad_input, "has no triangle to take an outline from",
-                      "give it a mesh with a surface");
+  const Result<Box> box = surface_bounds(mesh);
+  if (!box) return box.error();
+  if (static_cast<double>(box->min.z()) < -below_ground_m) {
+    profile.ground_m = static_cast<double>(box->min.z());
   }
-  if (static_cast<double>(box.min.z()) < -below_ground_m) {
-    profile.ground_m = static_cast<double>(box.min.z());
-  }
-  const double longest = static_cast<double>(std::max(box.extent().x(), box.extent().y()));
+  const double longest = static_cast<double>(std::max(box->extent().x(), box->extent().y()));
   const double cell_m = std::clamp(longest / cells_along, finest_cell_m, coarsest_cell_m);
   const double piece_m =
       std::max(std::min(longest_piece_m, longest / 16.0), longest / most_pieces_along);
@@ -82,7 +119,12 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
     for (const detail::OutlineLoop& loop :
          detail::trace_outlines(segments, cell_m, tolerance_cells * cell_m)) {
       add_pieces(loop, piece_m, profile.pieces);
-      area += detail::loop_area_m2(loop);
+      area += enclosed_m2(loop);
+      if (profile.pieces.size() > max_profile_pieces) {
+        return make_error(ErrorCode::limit_exceeded,
+                          "has outlines of more than 2 million pieces between 0 and 4 m",
+                          "simplify it, or check its scale");
+      }
     }
     profile.area_m2[band] = static_cast<float>(area);
   }

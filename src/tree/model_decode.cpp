@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -37,6 +38,9 @@ Status check_counts(const ModelHeader& header) {
   }
   if ((header.wide_nodes == 0) != (header.clusters == 0)) {
     return refused("head", "there are wide nodes without clusters or the reverse");
+  }
+  if (header.first_piece.back() > max_profile_pieces) {
+    return refused("head", "there are more than 2 million outline pieces");
   }
   return Success{};
 }
@@ -97,6 +101,34 @@ void read_properties(const ModelHeader& header, StoredModel& stored) {
   stored.mass.inertia_per_kg_m2 = header.inertia_per_kg_m2;
 }
 
+/// Null where the file holds none.
+std::shared_ptr<const Profile> read_profile(const ModelHeader& header,
+                                            View<const unsigned char> bytes,
+                                            const SectionPlace& place) {
+  if (place.bytes == 0) return nullptr;
+  auto profile = std::make_shared<Profile>();
+  profile->pieces.resize(place.bytes / sizeof(OutlinePiece));
+  std::memcpy(profile->pieces.data(), bytes.data() + place.offset, place.bytes);
+  profile->first = header.first_piece;
+  profile->area_m2 = header.band_area_m2;
+  profile->ground_m = header.ground_m;
+  return profile;
+}
+
+/// A file without a profile says so in one way, and only where its mesh has none: otherwise it
+/// would be written again as another file.
+Status check_missing_profile(const ModelHeader& header, const TriangleMesh& mesh) {
+  const auto* const head = reinterpret_cast<const unsigned char*>(&header);
+  if (std::any_of(head + offsetof(ModelHeader, ground_m), head + offsetof(ModelHeader, unused),
+                  [](unsigned char byte) { return byte != 0; })) {
+    return refused("profile", "it has no piece");
+  }
+  const Result<Profile> made = make_profile(mesh);
+  if (made) return refused("profile", "there is none, though the mesh has outlines");
+  if (means_no_profile(made.error())) return Success{};
+  return made.error();
+}
+
 Error with_remedy(Error error) {
   error.remedy = compile_again;
   return error;
@@ -154,11 +186,15 @@ Result<LoadedModel> decode_model(View<const unsigned char> bytes,
     model.wide.lanes_of = column<WideLanes>(bytes, at[section_lanes], keeper);
   }
   read_properties(header, loaded.stored);
+  model.profile = read_profile(header, bytes, at[section_pieces]);
 
   if (Status status = check_stored(loaded.stored); !status) return with_remedy(status.error());
   // Read only: the columns would copy what they borrow for anybody who could change it.
   const Model& read = model;
   if (Status status = validate(read); !status) return with_remedy(status.error());
+  if (model.profile == nullptr) {
+    if (Status status = check_missing_profile(header, read.mesh); !status) return status.error();
+  }
   return loaded;
 }
 

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace crashrank {
@@ -88,6 +90,85 @@ Status check_properties(const StoredModel& stored) {
   return Success{};
 }
 
+/// Where a mesh's outlines can lie: its box, grown by more than a cell of any raster.
+struct OutlineBounds {
+  double low_x, low_y, low_z, high_x, high_y, high_z;
+
+  explicit OutlineBounds(const Box& box)
+      : low_x(static_cast<double>(box.min.x())),
+        low_y(static_cast<double>(box.min.y())),
+        low_z(static_cast<double>(box.min.z())),
+        high_x(static_cast<double>(box.max.x())),
+        high_y(static_cast<double>(box.max.y())),
+        high_z(static_cast<double>(box.max.z())) {
+    const double beside_m = 0.1 + 0.01 * std::max(high_x - low_x, high_y - low_y);
+    low_x -= beside_m;
+    low_y -= beside_m;
+    high_x += beside_m;
+    high_y += beside_m;
+  }
+
+  bool hold(const OutlinePiece& piece) const {
+    const auto x = static_cast<double>(piece.x);
+    const auto y = static_cast<double>(piece.y);
+    return x >= low_x && x <= high_x && y >= low_y && y <= high_y &&
+           std::max(std::abs(x), std::abs(y)) <= max_profile_coordinate_m * 1.01;
+  }
+  double area_m2() const { return (high_x - low_x) * (high_y - low_y); }
+};
+
+bool is_unit(float x, float y) {
+  constexpr double rounding = 1e-3;
+  const auto p = static_cast<double>(x);
+  const auto q = static_cast<double>(y);
+  return std::abs(std::sqrt(p * p + q * q) - 1.0) <= rounding;
+}
+
+Status check_bands(const Profile& profile, double most_area_m2) {
+  const auto& first = profile.first;
+  if (first.front() != 0 || !std::is_sorted(first.begin(), first.end()) ||
+      first.back() != profile.pieces.size()) {
+    return broken("profile", "its bands do not follow each other or do not share out its pieces");
+  }
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    const auto area = static_cast<double>(profile.area_m2[band]);
+    if (!(area >= 0.0 && area <= most_area_m2) || (area > 0.0 && first[band] == first[band + 1])) {
+      return broken("profile", "the area of a band is negative, not finite or not within its mesh");
+    }
+  }
+  return Success{};
+}
+
+Status check_profile(const Profile& profile, const TriangleMesh& mesh) {
+  if (profile.pieces.empty()) return broken("profile", "it has no piece");
+  if (profile.pieces.size() > max_profile_pieces) {
+    Error error = broken("profile", "it has more than 2 million pieces");
+    error.code = ErrorCode::limit_exceeded;
+    return error;
+  }
+  const OutlineBounds bounds(mesh.bounds());
+  // A body that floats stands over a ground that is below it, one that was sunk on its lowest
+  // point.
+  if (!(profile.ground_m >= std::min(bounds.low_z, 0.0) &&
+        profile.ground_m <= std::max(bounds.high_z, 0.0))) {
+    return broken("profile", "its ground is not a finite height within its mesh");
+  }
+  if (Status status = check_bands(profile, bounds.area_m2()); !status) return status;
+  for (std::size_t i = 0; i < profile.pieces.size(); ++i) {
+    const OutlinePiece& piece = profile.pieces[i];
+    const auto refuse = [&](const char* reason) {
+      return broken("outline piece " + std::to_string(i), reason);
+    };
+    if (!bounds.hold(piece)) return refuse("it does not lie within its mesh");
+    if (!is_unit(piece.normal_x, piece.normal_y)) return refuse("its normal is not a unit vector");
+    if (!(piece.length_m > 0.0F && static_cast<double>(piece.length_m) <= max_piece_m)) {
+      return refuse("its length is not above 0 and at most 1 km");
+    }
+  }
+  if (!(profile.volume_m3() > 0.0)) return broken("profile", "its outlines enclose nothing");
+  return Success{};
+}
+
 }  // namespace
 
 std::uint32_t checksum_of(View<const unsigned char> bytes, const ModelLayout& layout) {
@@ -97,7 +178,9 @@ std::uint32_t checksum_of(View<const unsigned char> bytes, const ModelLayout& la
 Status check_stored(const StoredModel& stored) {
   if (Status status = check_properties(stored); !status) return status;
   if (Status status = check_vertices(stored.model.mesh); !status) return status;
-  return check_parts(stored.model.mesh);
+  if (Status status = check_parts(stored.model.mesh); !status) return status;
+  if (stored.model.profile == nullptr) return Success{};
+  return check_profile(*stored.model.profile, stored.model.mesh);
 }
 
 namespace {
@@ -106,7 +189,16 @@ template <class T> std::array<T, 3> three(const Eigen::Matrix<T, 3, 1>& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-ModelHeader header_of(const StoredModel& stored, std::size_t name_bytes) {
+/// The model's profile; made if it has none; null if its mesh has none. Errors: out_of_memory.
+Result<std::shared_ptr<const Profile>> profile_of(const Model& model) {
+  if (model.profile != nullptr) return model.profile;
+  Result<Profile> made = make_profile(model.mesh);
+  if (made) return std::shared_ptr<const Profile>(std::make_shared<Profile>(std::move(*made)));
+  if (means_no_profile(made.error())) return std::shared_ptr<const Profile>();
+  return made.error();
+}
+
+ModelHeader header_of(const StoredModel& stored, const Profile* profile, std::size_t name_bytes) {
   const Model& model = stored.model;
   ModelHeader header{};
   header.magic = model_magic;
@@ -133,6 +225,11 @@ ModelHeader header_of(const StoredModel& stored, std::size_t name_bytes) {
   header.origin_m = three(stored.transform.origin_m);
   header.up = static_cast<std::uint32_t>(stored.transform.up);
   header.forward = static_cast<std::uint32_t>(stored.transform.forward);
+  if (profile != nullptr) {
+    header.ground_m = profile->ground_m;
+    header.first_piece = profile->first;
+    header.band_area_m2 = profile->area_m2;
+  }
   return header;
 }
 
@@ -155,7 +252,9 @@ Result<std::vector<unsigned char>> encode(const StoredModel& stored) {
   if (names.size() > std::numeric_limits<std::uint32_t>::max()) {
     return make_error(ErrorCode::limit_exceeded, "the names of the parts are too long together");
   }
-  ModelHeader header = header_of(stored, names.size());
+  const Result<std::shared_ptr<const Profile>> profile = profile_of(model);
+  if (!profile) return profile.error();
+  ModelHeader header = header_of(stored, profile->get(), names.size());
   const ModelLayout layout = layout_of(header);
   header.file_bytes = layout.end;
 
@@ -172,6 +271,7 @@ Result<std::vector<unsigned char>> encode(const StoredModel& stored) {
   put<WideNode>(bytes, at[section_wide_nodes], model.wide.nodes);
   put<TriangleCluster>(bytes, at[section_clusters], model.wide.clusters);
   put<WideLanes>(bytes, at[section_lanes], model.wide.lanes_of);
+  if (*profile != nullptr) put<OutlinePiece>(bytes, at[section_pieces], (*profile)->pieces);
 
   const std::uint32_t checksum = checksum_of(bytes, layout);
   std::memcpy(bytes.data() + offsetof(ModelHeader, checksum), &checksum, sizeof checksum);

@@ -43,10 +43,15 @@ struct ModelHeader {
   std::array<double, 3> origin_m;
   std::uint32_t up;
   std::uint32_t forward;
-  std::array<std::uint64_t, 6> unused;  ///< 0
+  double ground_m;  ///< the members of the profile; 0, all of them, where there is none
+  /// Of each band, then the number of pieces.
+  std::array<std::uint32_t, profile_bands + 1> first_piece;
+  std::array<float, profile_bands> band_area_m2;
+  std::array<std::uint32_t, 5> unused;  ///< 0
 };
-static_assert(sizeof(ModelHeader) == 320);
-static_assert(offsetof(ModelHeader, axes) == 64 && offsetof(ModelHeader, unused) == 272);
+static_assert(sizeof(ModelHeader) == 384);
+static_assert(offsetof(ModelHeader, axes) == 64 && offsetof(ModelHeader, ground_m) == 272);
+static_assert(offsetof(ModelHeader, band_area_m2) == 324 && offsetof(ModelHeader, unused) == 364);
 
 /// Where the checksum begins. It ends where the corners begin: they and the clusters repeat what
 /// other sections hold, and are compared with it bit for bit.
@@ -60,7 +65,7 @@ struct StoredPart {
 
 static_assert(sizeof(StoredPart) == 8 && sizeof(Eigen::Vector3f) == 12 && sizeof(Node) == 32);
 static_assert(sizeof(Triangle) == 36 && sizeof(WideLanes) == 8);
-static_assert(sizeof(std::array<std::uint32_t, 3>) == 12);
+static_assert(sizeof(std::array<std::uint32_t, 3>) == 12 && sizeof(OutlinePiece) == 20);
 
 enum Section : std::size_t {
   section_parts,
@@ -71,14 +76,15 @@ enum Section : std::size_t {
   section_order,
   section_wide_nodes,
   section_lanes,
+  section_pieces,
   section_corners,
   section_clusters,
   section_count
 };
 
 inline constexpr std::array<const char*, section_count> section_names_of{
-    "parts", "names",      "vertices", "triangles", "nodes",
-    "order", "wide nodes", "lanes",    "corners",   "clusters"};
+    "parts",      "names", "vertices",       "triangles", "nodes",   "order",
+    "wide nodes", "lanes", "outline pieces", "corners",   "clusters"};
 
 /// Sections begin at multiples of this; what lies between them is 0.
 inline constexpr std::size_t section_alignment = 64;
@@ -106,6 +112,7 @@ inline ModelLayout layout_of(const ModelHeader& header) {
       bytes(header.triangles, sizeof(std::uint32_t)),
       bytes(header.wide_nodes, sizeof(WideNode)),
       bytes(header.wide_nodes == 0 ? 0 : header.nodes, sizeof(WideLanes)),
+      bytes(header.first_piece.back(), sizeof(OutlinePiece)),
       bytes(header.triangles, sizeof(Triangle)),
       bytes(header.clusters, sizeof(TriangleCluster))};
   ModelLayout layout;
@@ -123,8 +130,17 @@ std::uint32_t checksum_of(View<const unsigned char> bytes, const ModelLayout& la
 
 /// What is checked of a stored model beyond its trees, when written and when read: parts that cover
 /// the triangles in order with names that are unique, UTF-8 and at most `max_part_name_bytes` long;
-/// finite vertices; finite properties. Errors: bad_input.
+/// finite vertices; finite properties; a sound profile, or none. Errors: bad_input, limit_exceeded.
 Status check_stored(const StoredModel& stored);
+
+/// Longest outline piece in a model file, m.
+inline constexpr double max_piece_m = 1e3;
+
+/// Whether `make_profile` ends with this where a mesh has no profile: such a model is stored
+/// without one. Other errors (out_of_memory) say nothing of the mesh.
+inline bool means_no_profile(const Error& error) {
+  return error.code == ErrorCode::bad_input || error.code == ErrorCode::limit_exceeded;
+}
 
 /// `load_model` from memory. The checksum need not be compared: for tests that have to reach what
 /// it shields.

@@ -1,5 +1,6 @@
 // Model files: whatever the bytes, loading them either says what is wrong or gives a model whose
-// queries are right, on both engines, and which is written again as the same bytes.
+// queries are right, on both engines, whose profile is sound, and which is written again as the
+// same bytes.
 
 #include "crashrank/collide/wide_collide.hpp"
 #include "fuzz/target.hpp"
@@ -105,6 +106,14 @@ std::vector<Bytes> seeds() {
       made.push_back(encoded(count, options));
     }
   }
+  const auto without_profile = [](const Bytes& bytes) {
+    detail::ModelHeader header{};
+    std::memcpy(&header, bytes.data(), sizeof header);
+    return header.first_piece.back() == 0;
+  };
+  const auto without = std::count_if(made.begin(), made.end(), without_profile);
+  require(without > 0 && without < static_cast<std::ptrdiff_t>(made.size()),
+          "the seeds are all with or all without a profile");
   return made;
 }
 
@@ -179,6 +188,10 @@ bool take(const Bytes& bytes) {
     return false;
   }
   const StoredModel& stored = loaded->stored;
+  const Profile* const profile = stored.model.profile.get();
+  require(profile == nullptr || (profile->pieces.size() == profile->first.back() &&
+                                 !profile->pieces.empty() && profile->volume_m3() > 0.0),
+          "a profile is unsound");
   const Result<std::vector<unsigned char>> again = encode_model(stored);
   require(again.ok() && again->size() == bytes.size(), "what loads cannot be written");
   Bytes first = bytes;

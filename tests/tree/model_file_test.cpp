@@ -14,7 +14,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -69,6 +71,22 @@ StoredModel sample(std::size_t triangles, const BuildOptions& options = {}) {
   return stored;
 }
 
+/// Of few triangles, and with outlines: those of a soup of few enclose nothing.
+StoredModel sample_box() {
+  TriangleMesh mesh;
+  for (unsigned i = 0; i < 8; ++i) {
+    mesh.vertices.push_back(
+        {(i & 1U) != 0 ? 0.3F : 0.0F, (i & 2U) != 0 ? 0.2F : 0.0F, (i & 4U) != 0 ? 0.25F : 0.0F});
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  mesh.parts = {{"lid", 0, 2}, {"walls", 2, 10}};
+  StoredModel stored;
+  stored.mass = shell_properties(mesh);
+  stored.model = *make_model(std::move(mesh));
+  return stored;
+}
+
 Bytes encoded(const StoredModel& stored) {
   const Result<Bytes> bytes = encode_model(stored);
   EXPECT_TRUE(bytes.ok());
@@ -89,6 +107,22 @@ Result<LoadedModel> decoded(const Bytes& bytes, bool compare_checksum = true) {
 template <class T> bool same_bytes(const Column<T>& a, const Column<T>& b) {
   return a.size() == b.size() &&
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+void expect_same(const Profile& a, const Profile& b) {
+  EXPECT_EQ(a.first, b.first);
+  EXPECT_EQ(a.area_m2, b.area_m2);
+  EXPECT_EQ(a.ground_m, b.ground_m);
+  ASSERT_EQ(a.pieces.size(), b.pieces.size());
+  EXPECT_EQ(std::memcmp(a.pieces.data(), b.pieces.data(), a.pieces.size() * sizeof(OutlinePiece)),
+            0);
+}
+
+/// A model without a profile is stored with the one that its mesh has.
+std::shared_ptr<const Profile> profile_as_stored(const Model& model) {
+  if (model.profile != nullptr) return model.profile;
+  Result<Profile> made = make_profile(model.mesh);
+  return made ? std::make_shared<const Profile>(std::move(*made)) : nullptr;
 }
 
 void expect_same(const StoredModel& a, const StoredModel& b) {
@@ -112,6 +146,10 @@ void expect_same(const StoredModel& a, const StoredModel& b) {
   EXPECT_TRUE(same_bytes(p.wide.nodes, q.wide.nodes));
   EXPECT_TRUE(same_bytes(p.wide.clusters, q.wide.clusters));
   EXPECT_TRUE(same_bytes(p.wide.lanes_of, q.wide.lanes_of));
+  const std::shared_ptr<const Profile> outlines = profile_as_stored(p);
+  const std::shared_ptr<const Profile> others = profile_as_stored(q);
+  ASSERT_EQ(outlines == nullptr, others == nullptr);
+  if (outlines != nullptr) expect_same(*outlines, *others);
   EXPECT_EQ(a.transform.scale, b.transform.scale);
   EXPECT_EQ(a.transform.up, b.transform.up);
   EXPECT_EQ(a.transform.forward, b.transform.forward);
@@ -148,6 +186,8 @@ TEST_F(ModelFile, GivesBackEveryBit) {
       ASSERT_TRUE(loaded.ok()) << loaded.error().message();
       expect_same(stored, loaded->stored);
       EXPECT_TRUE(loaded->stored.model.tree.nodes.borrowed());
+      ASSERT_NE(loaded->stored.model.profile, nullptr);
+      EXPECT_GT(loaded->stored.model.profile->pieces.size(), 100U);
       EXPECT_EQ(loaded->facts.version, model_file_version);
       EXPECT_EQ(loaded->facts.bytes, fs::file_size(file));
       EXPECT_EQ(encoded(loaded->stored), encoded(stored)) << "written again, it is the same file";
@@ -298,7 +338,7 @@ TEST_F(ModelFile, RefusesEveryOtherLength) {
 }
 
 TEST_F(ModelFile, RefusesEveryFlippedBit) {
-  const Bytes bytes = encoded(sample(12));
+  const Bytes bytes = encoded(sample_box());
   ASSERT_TRUE(decoded(bytes).ok());
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (unsigned bit = 0; bit < 8; ++bit) {
@@ -309,9 +349,18 @@ TEST_F(ModelFile, RefusesEveryFlippedBit) {
   }
 }
 
+detail::ModelHeader head_of(const Bytes& bytes) {
+  detail::ModelHeader header{};
+  std::memcpy(&header, bytes.data(), sizeof header);
+  return header;
+}
+
+std::size_t loaded_pieces(const Bytes& bytes) { return head_of(bytes).first_piece.back(); }
+
 // Somebody who can forge the checksum: what is then accepted has to be a sound model all the same.
 TEST_F(ModelFile, AForgedFileIsRefusedOrSound) {
-  const Bytes bytes = encoded(sample(12));
+  const Bytes bytes = encoded(sample_box());
+  ASSERT_GT(loaded_pieces(bytes), 50U);
   std::size_t accepted = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (unsigned bit = 0; bit < 8; ++bit) {
@@ -324,9 +373,180 @@ TEST_F(ModelFile, AForgedFileIsRefusedOrSound) {
       ASSERT_TRUE(validate(model).ok()) << "byte " << i << " bit " << bit;
     }
   }
-  // Names, the properties and the transform can be others; boxes can be larger.
+  // Names, the properties, the transform and the outlines can be others; boxes can be larger.
   EXPECT_GT(accepted, 100U);
-  EXPECT_LT(accepted, 8 * bytes.size() / 4);
+  const std::size_t outlines = sizeof(OutlinePiece) * loaded_pieces(bytes);
+  EXPECT_LT(accepted, 8 * (outlines + (bytes.size() - outlines) / 4));
+}
+
+Bytes with_other_head(const Bytes& bytes, const std::function<void(detail::ModelHeader&)>& change) {
+  Bytes other = bytes;
+  detail::ModelHeader header = head_of(bytes);
+  change(header);
+  std::memcpy(other.data(), &header, sizeof header);
+  return other;
+}
+
+Bytes with_other_piece(const Bytes& bytes, std::size_t index,
+                       const std::function<void(OutlinePiece&)>& change) {
+  Bytes other = bytes;
+  const std::size_t at = detail::layout_of(head_of(bytes)).section[detail::section_pieces].offset +
+                         index * sizeof(OutlinePiece);
+  OutlinePiece piece;
+  std::memcpy(&piece, other.data() + at, sizeof piece);
+  change(piece);
+  std::memcpy(other.data() + at, &piece, sizeof piece);
+  return other;
+}
+
+void expect_refused(const Bytes& bytes, const std::string& place, const std::string& reason) {
+  const Result<LoadedModel> loaded = decoded(bytes, false);
+  ASSERT_FALSE(loaded.ok()) << place << ": " << reason;
+  EXPECT_EQ(loaded.error().place, place);
+  EXPECT_EQ(loaded.error().reason, reason);
+  EXPECT_EQ(loaded.error().remedy, "compile it again from its mesh");
+}
+
+TEST_F(ModelFile, RefusesForgedPieces) {
+  const Bytes bytes = encoded(sample(60));
+  const std::size_t pieces = loaded_pieces(bytes);
+  ASSERT_GT(pieces, 100U);
+  const std::size_t last = pieces - 1;
+  const auto refuse = [&](std::size_t index, const std::string& reason,
+                          const std::function<void(OutlinePiece&)>& change) {
+    expect_refused(with_other_piece(bytes, index, change), "outline piece " + std::to_string(index),
+                   reason);
+  };
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const float wrong : {std::nanf(""), infinity, -infinity, 1.4F, -0.2F, 1e30F}) {
+    refuse(0, "it does not lie within its mesh", [&](OutlinePiece& p) { p.x = wrong; });
+    refuse(last, "it does not lie within its mesh", [&](OutlinePiece& p) { p.y = wrong; });
+  }
+  for (const float wrong : {std::nanf(""), infinity, -infinity, 1.01F, 1e30F}) {
+    refuse(1, "its normal is not a unit vector", [&](OutlinePiece& p) { p.normal_x = wrong; });
+    refuse(last, "its normal is not a unit vector", [&](OutlinePiece& p) { p.normal_y = wrong; });
+  }
+  refuse(2, "its normal is not a unit vector", [](OutlinePiece& p) {
+    p.normal_x *= 0.998F;
+    p.normal_y *= 0.998F;
+  });
+  for (const float wrong : {std::nanf(""), infinity, 0.0F, -0.0F, -0.05F, 1000.1F}) {
+    refuse(3, "its length is not above 0 and at most 1 km",
+           [&](OutlinePiece& p) { p.length_m = wrong; });
+  }
+  EXPECT_TRUE(
+      decoded(with_other_piece(bytes, 3, [](OutlinePiece& p) { p.length_m = 1e3F; }), false).ok());
+}
+
+TEST_F(ModelFile, RefusesForgedBands) {
+  const Bytes bytes = encoded(sample(60));
+  const auto refuse = [&](const std::string& reason,
+                          const std::function<void(detail::ModelHeader&)>& change) {
+    expect_refused(with_other_head(bytes, change), "profile", reason);
+  };
+  constexpr const char* bands = "its bands do not follow each other or do not share out its pieces";
+  constexpr const char* areas = "the area of a band is negative, not finite or not within its mesh";
+  constexpr const char* ground = "its ground is not a finite height within its mesh";
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const detail::ModelHeader head = head_of(bytes);
+  ASSERT_LT(head.first_piece[2], head.first_piece[3]);
+  refuse(bands, [](detail::ModelHeader& h) { h.first_piece[0] = 1; });
+  refuse(bands, [](detail::ModelHeader& h) { std::swap(h.first_piece[2], h.first_piece[3]); });
+  refuse(bands, [](detail::ModelHeader& h) { h.first_piece[9] = h.first_piece[10] + 1; });
+  refuse(bands, [](detail::ModelHeader& h) { h.first_piece[1] = 0xffffffffU; });
+  for (const float wrong : {std::nanf(""), infinity, -infinity, -1e-6F, 2.0F}) {
+    refuse(areas, [&](detail::ModelHeader& h) { h.band_area_m2[2] = wrong; });
+  }
+  ASSERT_EQ(head.first_piece[9], head.first_piece[10]) << "a band without a piece has no area";
+  refuse(areas, [](detail::ModelHeader& h) { h.band_area_m2[9] = 0.1F; });
+  for (const double wrong : {std::nan(""), -0.1, 1.3, 1e300, -HUGE_VAL, HUGE_VAL}) {
+    refuse(ground, [&](detail::ModelHeader& h) { h.ground_m = wrong; });
+  }
+  refuse("its outlines enclose nothing", [](detail::ModelHeader& h) { h.band_area_m2 = {}; });
+
+  // Another number of pieces does not fit the size of the file; one that does is limited.
+  const Bytes fewer =
+      with_other_head(bytes, [](detail::ModelHeader& h) { h.first_piece[10] -= 64; });
+  expect_refused(fewer, "head", "the numbers of elements do not add up to the size of the file");
+  Bytes many = with_other_head(
+      bytes, [](detail::ModelHeader& h) { h.first_piece[10] = max_profile_pieces + 1; });
+  many.resize(detail::layout_of(head_of(many)).end, 0);
+  many = with_other_head(many, [&](detail::ModelHeader& h) { h.file_bytes = many.size(); });
+  expect_refused(many, "head", "there are more than 2 million outline pieces");
+}
+
+TEST_F(ModelFile, RefusesToWriteAnUnsoundProfile) {
+  StoredModel stored = sample(60);
+  const Profile sound = *make_profile(stored.model.mesh);
+  const auto written = [&](const Profile& profile) {
+    stored.model.profile = std::make_shared<const Profile>(profile);
+    return encode_model(stored);
+  };
+  ASSERT_TRUE(written(sound).ok());
+  EXPECT_EQ(*written(sound), encoded(sample(60))) << "as the profile that would be made";
+  Profile wrong = sound;
+  wrong.pieces[7].normal_x = 2.0F;
+  EXPECT_EQ(written(wrong).error().message(), "outline piece 7: its normal is not a unit vector");
+  wrong = sound;
+  wrong.pieces.pop_back();
+  EXPECT_FALSE(written(wrong).ok());
+  wrong = sound;
+  wrong.ground_m = 17.0;
+  EXPECT_FALSE(written(wrong).ok());
+  EXPECT_EQ(written(Profile{}).error().message(), "profile: it has no piece");
+  wrong.pieces.resize(max_profile_pieces + 1);
+  EXPECT_EQ(written(wrong).error().code, ErrorCode::limit_exceeded);
+}
+
+// A profile that is not the one that the mesh has is stored as it is: outlines may come from
+// elsewhere.
+TEST_F(ModelFile, StoresTheProfileOfTheModel) {
+  StoredModel stored = sample(60);
+  Profile other = *make_profile(stored.model.mesh);
+  for (OutlinePiece& piece : other.pieces) piece.x += 0.03125F;
+  other.ground_m = 0.25;
+  stored.model.profile = std::make_shared<const Profile>(other);
+  const Bytes bytes = encoded(stored);
+  const Result<LoadedModel> loaded = decoded(bytes);
+  ASSERT_TRUE(loaded.ok());
+  expect_same(*loaded->stored.model.profile, other);
+  EXPECT_EQ(encoded(loaded->stored), bytes);
+}
+
+// A flat plate on the ground has no outline, and yet can be collided with.
+TEST_F(ModelFile, StoresAMeshWithoutOutlinesWithoutAProfile) {
+  TriangleMesh plate;
+  test::add_triangle(plate, {0, 0, 0}, {2, 0, 0}, {2, 2, 0});
+  test::add_triangle(plate, {0, 0, 0}, {2, 2, 0}, {0, 2, 0});
+  StoredModel stored;
+  stored.mass = shell_properties(plate);
+  stored.model = *make_model(plate);
+  const Bytes bytes = encoded(stored);
+  EXPECT_EQ(loaded_pieces(bytes), 0U);
+  const Result<LoadedModel> loaded = decoded(bytes);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().message();
+  EXPECT_EQ(loaded->stored.model.profile, nullptr);
+  EXPECT_EQ(encoded(loaded->stored), bytes);
+  expect_refused(with_other_head(bytes, [](detail::ModelHeader& h) { h.band_area_m2[4] = 1.0F; }),
+                 "profile", "it has no piece");
+  expect_refused(with_other_head(bytes, [](detail::ModelHeader& h) { h.ground_m = -0.0; }),
+                 "profile", "it has no piece");
+
+  // Only where there is none: a model has one file.
+  const Bytes whole = encoded(sample(60));
+  Bytes without = with_other_head(whole, [](detail::ModelHeader& h) {
+    h.first_piece = {};
+    h.band_area_m2 = {};
+    h.ground_m = 0.0;
+  });
+  const auto& from = detail::layout_of(head_of(whole)).section;
+  const auto& to = detail::layout_of(head_of(without)).section;
+  without.erase(
+      without.begin() + static_cast<std::ptrdiff_t>(to[detail::section_corners].offset),
+      without.begin() + static_cast<std::ptrdiff_t>(from[detail::section_corners].offset));
+  without =
+      with_other_head(without, [&](detail::ModelHeader& h) { h.file_bytes = without.size(); });
+  expect_refused(without, "profile", "there is none, though the mesh has outlines");
 }
 
 TEST_F(ModelFile, SaysWhichVersionItFoundAndWhatToDo) {
@@ -403,7 +623,7 @@ TEST_F(ModelFile, IsTheSameFileEverywhere) {
     const Bytes bytes = encoded(stored);
     detail::ModelHeader header{};
     std::memcpy(&header, bytes.data(), sizeof header);
-    EXPECT_EQ(header.checksum, 3938937065U) << threads << " threads, " << bytes.size() << " bytes";
+    EXPECT_EQ(header.checksum, 3625693441U) << threads << " threads, " << bytes.size() << " bytes";
   }
 }
 

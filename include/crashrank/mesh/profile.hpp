@@ -25,11 +25,16 @@ struct OutlinePiece {
   float y = 0.0F;         ///< m
   float normal_x = 1.0F;  ///< unit, outward
   float normal_y = 0.0F;  ///< unit, outward
-  float length_m = 0.0F;  ///< > 0, at most `longest_piece_m`
+  float length_m = 0.0F;  ///< > 0, see `longest_piece_m`
 };
 
-/// Longest piece that outlines are cut into, m; bodies longer than some 100 m get longer ones.
+/// Longest piece that outlines are cut into, m. Bodies longer than 1 km get longer ones: a
+/// 20,000th of their length, 100 m at most.
 inline constexpr double longest_piece_m = 0.1;
+/// Most pieces of a profile.
+inline constexpr std::size_t max_profile_pieces = 2'000'000;
+/// Largest coordinate of a mesh with a profile, each way, m.
+inline constexpr double max_profile_coordinate_m = 1e6;
 
 /// A body's outlines seen from above, one for each height band: what a crash simulation sees of a
 /// mesh. Made once a model; holes in the surface up to two cells (4 cm on bodies over 5 m, less on
@@ -44,8 +49,12 @@ struct Profile {
   CRASHRANK_API double volume_m3() const;
 };
 
-/// Takes the outlines of a mesh at the middle of each band. O(triangles + cells of a raster of at
-/// most 4 million). Errors: bad_input when no band has an outline that encloses anything.
+/// Takes the outlines of a mesh at the middle of each band: the same bits on every machine. Of the
+/// vertices only those that triangles use count. O(triangles + cells that the section passes +
+/// cells of a raster of at most 4 million) a band. Errors: bad_input for vertices that are not
+/// finite, too far out or not there, and when no band has an outline that encloses anything (a
+/// single sheet, a flat plate on the ground, a body higher than 4 m over the ground throughout);
+/// limit_exceeded above `max_profile_pieces`.
 CRASHRANK_API Result<Profile> make_profile(const TriangleMesh& mesh);
 
 }  // namespace crashrank

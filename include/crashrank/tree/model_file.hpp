@@ -16,12 +16,12 @@
 namespace crashrank {
 
 /// The version of model files that this library writes, and the only one that it reads.
-inline constexpr std::uint32_t model_file_version = 1;
+inline constexpr std::uint32_t model_file_version = 2;
 
-/// A body as a model file keeps it: ready for queries, with what else is known of it.
-/// docs/model-file.md has the file byte by byte.
+/// A body as a model file stores it: ready for queries and for ranking, with its import transform
+/// and mass properties. docs/model-file.md has the file byte by byte.
 struct StoredModel {
-  Model model;  ///< ready for queries
+  Model model;  ///< ready for queries; its profile is null where its mesh has no outline
   /// How the file that the mesh came from was turned into body coordinates; done already.
   ImportTransform transform;
   ShellProperties mass;  ///< of the body
@@ -78,7 +78,9 @@ CRASHRANK_API Result<LoadedModel> load_model(View<const unsigned char> bytes,
                                              std::shared_ptr<const void> keeper);
 
 /// The bytes of a model file: the same for the same model on every machine. Checks first what
-/// `load_model` would refuse. Errors: bad_input, limit_exceeded, out_of_memory.
+/// `load_model` would refuse. Makes the profile if the model has none; a mesh that has no profile
+/// (see `make_profile`) is stored without one: queries work on it, `rank` reports why it cannot
+/// rank it. Errors: bad_input, limit_exceeded, out_of_memory.
 CRASHRANK_API Result<std::vector<unsigned char>> encode_model(const StoredModel& stored);
 
 /// Writes a model file, as a whole or not at all: it is written beside its place under another
