@@ -34,10 +34,10 @@
 #include "crashrank/vehicle/body_kind.hpp"
 #include "crashrank/vehicle/surface.hpp"
 
-#include "crashrank/crash/injury.hpp"
-#include "crashrank/crash/motion.hpp"
 #include "crashrank/crash/cdc.hpp"
 #include "crashrank/crash/contact_law.hpp"
+#include "crashrank/crash/injury.hpp"
+#include "crashrank/crash/motion.hpp"
 #include "crashrank/crash/pdof.hpp"
 #include "crashrank/crash/time_of_impact.hpp"
 

@@ -54,8 +54,8 @@ void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
   }
   if (fast.count == 0) return;
   doubts.push_back(fmt::format(
-      "{} somebody at more than {:g} m/s, where the crash model does not hold: its scores fall as "
-      "speed rises; rank by closing-energy",
+      "{} somebody at more than {:g} m/s, faster than the crash model was checked for; rank by "
+      "closing-energy",
       fast.many("candidate meets", "candidates meet"), fastest_contact_mps));
 }
 

@@ -97,13 +97,13 @@ private:
   std::unique_ptr<State> state_;
 };
 
-/// Friction between two surfaces: 0.1 where one is steel (sheet metal on steel at high pressure and
-/// speed, 0.1 to 0.2), else 0.3 (what openPASS uses between cars).
+/// Friction between two surfaces: 0.5 where one is rubber; 0.1 where one is steel (sheet metal on
+/// steel at high pressure and speed, 0.1 to 0.2); else 0.3 (what openPASS uses between cars).
 CRASHRANK_API double friction_between(Surface a, Surface b) noexcept;
 
-/// Restitution at a closing speed, m/s: 0.1 + 0.3/(1 + v/4). So 0.33 at 1 m/s, 0.29 at 2.2, 0.16 at
-/// 16, 0.11 at 70: within what SAE 931842 states, 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s and
-/// about 0.1 at medium and high speed.
+/// Restitution of fresh structure at a closing speed, m/s: 0.2 + 0.15/(1 + v/4). A contact takes
+/// the share of it that its free crush length has left, so that it ends within what SAE 931842
+/// states: 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s, about 0.1 at medium and high speed.
 CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 
 /// Simulates a contact from its first touch to the end of its force, in the plane: both bodies move
@@ -127,7 +127,7 @@ CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 /// whole. Ends when the bodies part or rest. Two bodies that nothing moves, or that do not give
 /// way, do not act. Deep overlap at the start presses nowhere.
 ///
-/// Cost: some 100 microseconds; docs/guide/crash-model.md has measured figures. Safe from any
+/// Cost: 0.2 to 1 milliseconds; docs/guide/crash-model.md has measured figures. Safe from any
 /// thread with its own workspace.
 CRASHRANK_API ContactOutcome simulate_contact(const ContactBody& a, const ContactBody& b,
                                               View<const ContactBody> fixed,

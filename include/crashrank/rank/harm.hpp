@@ -30,7 +30,7 @@ namespace crashrank {
 // of both. The struck speed lies between 0 and the closing speed, see `struck_speed_mps`.
 //
 // Bounds on the inputs, for two bodies of masses m1, m2 with the relative velocity v of their
-// centres of mass and the yaw rates w1, w2 (inertias I1, I2), since the pulse conserves momentum
+// centres of mass and the yaw rates w1, w2 (inertias I1, I2), since a contact conserves momentum
 // and never gains energy, with M = m1·m2/(m1 + m2), or the movable body's mass:
 //   delta_v of body i  <=  M/m_i · (|v| + sqrt(v² + (I1·w1² + I2·w2²)/M))
 //   both crush energies together  <=  (M·v² + I1·w1² + I2·w2²)/2
@@ -60,7 +60,7 @@ struct HarmRanges {
   double most_friction = 0.6;   ///< between the bodies
   double least_strength = 0.7;  ///< stiffness, times the default strength of all bodies
   double most_strength = 1.4;   ///< times the default
-  /// Restitution: delta-v times 1 + e, for a rebound that the pulse leaves out.
+  /// Rebound beyond the simulated one: delta-v times 1 + this.
   double least_restitution = 0.0;
   double most_restitution = 0.15;  ///< share of delta-v
   /// Times the speed at which the risk curves are read, for the width of the curves themselves; of
@@ -91,7 +91,7 @@ struct HarmOptions {
   /// Without effect: a contact that transfers no velocity injures nobody, and the fall of a brushed
   /// rider comes from `HarmExposure::road_speed_mps`. Profiles and scenarios may still contain it.
   double least_struck_share = 0.3;
-  bool intervals = true;  ///< evaluate the samples, too: five pulses a contact in place of one
+  bool intervals = true;  ///< evaluate the samples: five simulations a contact in place of one
   /// Age and sex of all pedestrians, for the curves that have coefficients of them; empty: the mean
   /// person of the curve's sample.
   PedestrianDescription pedestrian;

@@ -78,7 +78,7 @@ struct BodyOutcome {
 
 /// The crash with one body: it as it moves when met, the ego as the contacts before left it.
 struct ContactSeverity {
-  /// Crush and harm were told (measures that need them). The changes of velocity are the pulse's in
+  /// Harm was evaluated (measures that need it). The changes of velocity are the simulation's in
   /// any case: the same numbers under every measure.
   bool simulated = false;
   bool slides = false;        ///< past each other rather than into
@@ -233,7 +233,7 @@ struct RankResult {
 /// `area` adds their areas, `closing-energy` and `energy` the contacts' energies, `delta-v` the
 /// ego's changes of velocity, `intrusion` both bodies', `harm` everybody's risk as weighted.
 /// Measures that simulate the crash (harm, delta-v, energy, intrusion) go on after a contact: the
-/// ego leaves it with the velocity and yaw rate of the pulse, slowed evenly (AfterImpact), and what
+/// ego leaves it with the velocity and yaw rate of the crash, slowed evenly (AfterImpact), and what
 /// it meets then is a further contact that begins with what is left, up to a limit of contacts and
 /// time. Bodies met at the same time are taken in turn. No body is met twice, and bodies that were
 /// hit are not followed. The other measures take the planned motion and each contact by itself.

@@ -92,7 +92,7 @@ struct RankerAnswer {
 /// goes through: the bodies that its swept boxes meet (none: the score is 0); the search for its
 /// contact (none: 0; otherwise what nobody can exceed at that closing speed); then its crashes, one
 /// by one, each left as soon as the score can no longer be the lowest. Bounds rest on what the
-/// pulse promises, momentum conserved and energy never gained: see harm.hpp.
+/// contact promises, momentum conserved and energy never gained: see harm.hpp.
 ///
 /// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls are those by
 /// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and `intrusion`,
