@@ -48,8 +48,9 @@ double relative_error(double simulated, double measured) {
 }
 
 std::string relative_error_text(double simulated, const std::optional<double>& measured) {
-  return measured ? fmt::format("{:+.0f} %", 100.0 * relative_error(simulated, *measured))
-                  : std::string();
+  if (!measured) return {};
+  const double rounded = std::round(100.0 * relative_error(simulated, *measured));
+  return fmt::format("{:+.0f} %", rounded == 0.0 ? 0.0 : rounded);  // -0 prints as 0
 }
 
 void TestErrors::add_delta_v(double simulated, const std::optional<double>& measured) {
