@@ -1,5 +1,7 @@
 #include "crash_test_rig.hpp"
 
+#include "crash_test_prism.hpp"
+
 #include "crashrank/crash/time_of_impact.hpp"
 #include "crashrank/tree/model.hpp"
 
@@ -13,11 +15,13 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Outline = std::vector<Vector2d>;
 
 constexpr double wall_width_m = 1.5;
 constexpr double wall_height_m = 1.524;
 constexpr double wall_depth_m = 2.5;
+// A wall that is wider and higher than any car.
+constexpr double full_half_width_m = 5.0;
+constexpr double full_height_m = 4.0;
 // The plate of the small overlap barrier ends in an arc of 115 degrees: behind the corner the
 // barrier draws back by 25.
 constexpr double arc_deg = 115.0;
@@ -29,30 +33,6 @@ constexpr double honeycomb_low_m = 0.2;
 constexpr double honeycomb_high_m = 0.85;
 
 double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
-
-/// An upright prism over an outline, counter-clockwise from above and star-shaped about its mean.
-TriangleMesh prism(const Outline& outline, double low, double high) {
-  TriangleMesh mesh;
-  const auto count = static_cast<std::uint32_t>(outline.size());
-  Vector2d middle = Vector2d::Zero();
-  for (const Vector2d& p : outline) middle += p / static_cast<double>(count);
-  for (const double z : {low, high}) {
-    for (const Vector2d& p : outline) {
-      mesh.vertices.emplace_back(Vector3d(p.x(), p.y(), z).cast<float>());
-    }
-  }
-  for (const double z : {low, high}) {
-    mesh.vertices.emplace_back(Vector3d(middle.x(), middle.y(), z).cast<float>());
-  }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t j = (i + 1) % count;
-    mesh.triangles.push_back({i, j, count + j});
-    mesh.triangles.push_back({i, count + j, count + i});
-    mesh.triangles.push_back({2 * count, j, i});
-    mesh.triangles.push_back({2 * count + 1, count + i, count + j});
-  }
-  return mesh;
-}
 
 void add_arc(const Vector2d& center, double radius, double from_deg, double to_deg, int pieces,
              Outline& outline) {
@@ -66,6 +46,10 @@ void add_arc(const Vector2d& center, double radius, double from_deg, double to_d
 TriangleMesh barrier_mesh(const CrashTest& test, double inner_y) {
   constexpr int arc_pieces = 48;
   const double r = test.radius_m;
+  if (test.barrier == Barrier::full) {
+    return box_prism({0.0, -full_half_width_m, 0.0},
+                     {wall_depth_m, full_half_width_m, full_height_m});
+  }
   Outline outline;
   if (test.barrier == Barrier::pole) {
     const double last = 360.0 - 360.0 / (2 * arc_pieces);
@@ -89,39 +73,6 @@ TriangleMesh barrier_mesh(const CrashTest& test, double inner_y) {
   add_arc({r, low_y + r}, r, 180.0, 180.0 + arc_deg, arc_pieces, outline);
   close();
   return prism(outline, 0.0, wall_height_m);
-}
-
-/// The overhangs are stretched alike, the wheelbase on its own.
-TriangleMesh morphed(const RigCar& car, const CrashTest& test) {
-  TriangleMesh mesh = car.mesh;
-  const Box box = mesh.bounds();
-  const double length = static_cast<double>(box.extent().x());
-  const double overhangs = (test.length_m - test.wheelbase_m) / (length - car.wheelbase_m);
-  const double across = test.width_m / car.width_m;
-  const double up = test.height_m / static_cast<double>(box.max.z());
-  for (Eigen::Vector3f& vertex : mesh.vertices) {
-    Vector3d p = vertex.cast<double>();
-    if (p.x() < 0.0) {
-      p.x() *= overhangs;
-    } else if (p.x() > car.wheelbase_m) {
-      p.x() = test.wheelbase_m + (p.x() - car.wheelbase_m) * overhangs;
-    } else {
-      p.x() *= test.wheelbase_m / car.wheelbase_m;
-    }
-    p.y() *= across;
-    p.z() *= up;
-    vertex = p.cast<float>();
-  }
-  return mesh;
-}
-
-TriangleMesh box_around(const Box& box, double half_width) {
-  const Vector3d low = box.min.cast<double>();
-  const Vector3d high = box.max.cast<double>();
-  const double right = half_width > 0.0 ? -half_width : low.y();
-  const double left = half_width > 0.0 ? half_width : high.y();
-  return prism({{high.x(), right}, {high.x(), left}, {low.x(), left}, {low.x(), right}}, low.z(),
-               high.z());
 }
 
 Result<Vehicle> barrier_vehicle(Barrier barrier, const TriangleMesh& mesh) {
@@ -152,17 +103,19 @@ Result<Barrier> barrier_from_name(const std::string& name) {
   if (name == "flat") return Barrier::flat;
   if (name == "pole") return Barrier::pole;
   if (name == "deformable") return Barrier::deformable;
+  if (name == "full") return Barrier::full;
   return make_error(ErrorCode::bad_input, "there is no barrier \"" + name + "\"",
-                    "choose one of wall, flat, pole, deformable");
+                    "choose one of wall, flat, pole, deformable, full");
 }
 
 Result<ContactOutcome> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape) {
   constexpr double run_up_m = 0.5;
-  TriangleMesh body = morphed(car, test);
-  TriangleMesh obstacle = barrier_mesh(test, test.width_m * (0.5 - test.overlap));
+  TriangleMesh body = stretched_car(car, test.size);
+  TriangleMesh obstacle = barrier_mesh(test, test.size.width_m * (0.5 - test.overlap));
   if (shape == RigShape::boxes) {
-    body = box_around(body.bounds(), 0.5 * test.width_m);
-    obstacle = box_around(obstacle.bounds(), 0.0);
+    body = car_box(body, test.size.width_m);
+    const Box box = obstacle.bounds();
+    obstacle = box_prism(box.min.cast<double>(), box.max.cast<double>());
   }
   const Result<Model> a = make_model(std::move(body));
   if (!a) return a.error();
@@ -181,7 +134,7 @@ Result<ContactOutcome> run_crash_test(const RigCar& car, const CrashTest& test, 
   drive.velocity.linear_mps.x() = test.speed_mps;
   const Motion motion(drive);
   ImpactWorkspace workspace;
-  const double until_s = (2.0 * run_up_m + test.length_m) / test.speed_mps;
+  const double until_s = (2.0 * run_up_m + test.size.length_m) / test.speed_mps;
   const Impact impact = time_of_impact(a->tree, motion, b->tree, Motion(), 0.0, until_s, workspace);
   if (!impact.hit()) return ContactOutcome{};
   ContactBody moving;

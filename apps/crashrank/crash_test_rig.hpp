@@ -1,49 +1,36 @@
 #pragma once
 
+#include "crash_test_car.hpp"
+
 #include "crashrank/base/result.hpp"
 #include "crashrank/crash/contact_law.hpp"
-#include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <optional>
 #include <string>
 
 namespace crashrank::cli {
 
-/// What a car is driven into. All are rigid but the honeycomb.
+/// Obstacle of a crash test. All are rigid but the honeycomb.
 enum class Barrier {
   wall,        ///< steel face; the overlap is counted to the outermost point of its rounded corner
   flat,        ///< the overlap is counted on the flat face, the rounded corner comes on top
   pole,        ///< upright cylinder
   deformable,  ///< aluminium honeycomb before a rigid block
+  full,        ///< steel wall over the full width; radius and overlap have no effect
 };
 
 Result<Barrier> barrier_from_name(const std::string& name);
 
-/// One crash test: a car, and how it meets a barrier on its left. SI units.
+/// Crash test of a car into a barrier on its left. SI units.
 struct CrashTest {
   std::string id;
-  double length_m = 0.0;
-  double width_m = 0.0;
-  double height_m = 0.0;
-  double wheelbase_m = 0.0;
+  CarSize size;
   double mass_kg = 0.0;
   std::optional<double> izz_kgm2;  ///< absent: derived as for a ranking
   Barrier barrier = Barrier::wall;
   double radius_m = 0.0;
   double overlap = 0.0;  ///< share of the width that the barrier covers
   double speed_mps = 0.0;
-};
-
-/// The car that is stretched to each test's measures.
-struct RigCar {
-  TriangleMesh mesh;  ///< origin on the ground under the rear axle
-  double wheelbase_m = 0.0;
-  double width_m = 0.0;  ///< without mirrors
-};
-
-enum class RigShape {
-  meshes,
-  boxes,  ///< car and barrier are replaced by their bounding boxes, for comparison
 };
 
 /// Drives the car into the barrier: first contact of the meshes, then `simulate_contact` as `rank`

@@ -143,6 +143,7 @@ class Answers(unittest.TestCase):
     def test_validate(self):
         car = str(DATA / "models" / "sedan.obj")
         self.check("validate", "rows.csv", "--boxes", "--car", car)
+        self.check("validate", str(DATA / "validation" / "car_to_car.csv"), "--car", car)
 
 
 if __name__ == "__main__":
