@@ -658,7 +658,6 @@ TEST(ContactLaw, EveryContactEndsWithFiniteNumbers) {
         const ContactOutcome r = simulate(scene, any_variant(i));
         // The longest that a contact is followed, and a step.
         EXPECT_LT(r.duration_s, 1.505);
-        if (speed >= 0.3) std::printf("DUR %g %.3f\n", speed, r.duration_s);
         EXPECT_GE(r.duration_s, 0.0);
         EXPECT_LT(r.steps, 20000U);
         EXPECT_TRUE(r.point_m.allFinite());
