@@ -213,7 +213,8 @@ void ContactRun::push() {
     PlanarForce& sum = state_.impulses[k];
     sum.x += seconds * f.x;
     sum.y += seconds * f.y;
-    sum.moment += seconds * f.moment;
+    const PlanarBody& at = state_.bodies[k].motion;
+    sum.moment += seconds * (f.moment + at.x * f.y - at.y * f.x);
   }
   lost_j_ += before - moving_j();
   const double impulse = seconds * force;
@@ -246,6 +247,11 @@ void ContactRun::rebound(const Totals& totals, double passing_mps) {
   const double e = std::min(0.5, restitution_at(most_closing_mps_) * variant_.restitution) *
                    (totals.fresh / totals.pressing) *
                    std::min(1.0, totals.pressing / most_pressing_) * sticks;
+  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
+    const PlanarBody& body = state_.bodies[k].motion;
+    PlanarForce& i = state_.impulses[k];
+    i.moment -= body.x * i.y - body.y * i.x;
+  }
   double slope = 0.0;
   double bend = 0.0;
   for (std::size_t k = 0; k < state_.bodies.size(); ++k) {

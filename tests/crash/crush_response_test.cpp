@@ -1,0 +1,171 @@
+#include "crash/crush_response.hpp"
+
+#include "crash/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace crashrank {
+namespace {
+
+using detail::CrushCurve;
+using detail::CrushResponse;
+using detail::share_crush;
+using test::Random;
+
+float log_uniform(Random& random, double low, double high) {
+  return static_cast<float>(std::exp(random.uniform(std::log(low), std::log(high))));
+}
+
+/// A curve with parts of it absent now and then.
+CrushCurve any_curve(Random& random) {
+  CrushCurve curve;
+  curve.yield = random.below(5) == 0 ? 0.0F : log_uniform(random, 1e2, 1e6);
+  curve.slope = log_uniform(random, 3e4, 3e6);
+  curve.length = random.below(5) == 0 ? 1e6F : log_uniform(random, 0.05, 2.0);
+  curve.hardening = random.below(5) == 0 ? 0.0F : log_uniform(random, 1e3, 1e8);
+  curve.hardening_length = log_uniform(random, 0.02, 0.5);
+  curve.rigid = random.below(5) == 0 ? 0.0F : log_uniform(random, 1e5, 1e9);
+  return curve;
+}
+
+constexpr int cases = 20000;
+
+TEST(CrushCurve, DepthInvertsForce) {
+  constexpr std::uint64_t seed = 201;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  for (int i = 0; i < cases; ++i) {
+    const CrushCurve curve = any_curve(random);
+    const float depth = log_uniform(random, 1e-3, 3.0);
+    const float force = curve.force_at(depth);
+    // Force carries the rounding of the yield, which the slope turns into depth.
+    const float rounding = 1e-6F * force / curve.slope;
+    ASSERT_NEAR(curve.depth_at(force), depth, 1e-4F * depth + rounding) << "case " << i;
+    ASSERT_GE(curve.force_at(depth * 1.01F), force) << "case " << i;
+    ASSERT_EQ(curve.depth_at(curve.yield), 0.0F);
+    ASSERT_EQ(curve.depth_at(0.5F * curve.yield), 0.0F);
+  }
+}
+
+TEST(CrushCurve, ForceHasItsThreeSlopes) {
+  CrushCurve curve;
+  curve.yield = 1e5F;
+  curve.slope = 1e6F;
+  curve.length = 0.5F;
+  curve.hardening = 4e6F;
+  curve.hardening_length = 0.25F;
+  curve.rigid = 1e8F;
+  EXPECT_FLOAT_EQ(curve.force_at(0.0F), 1e5F);
+  EXPECT_FLOAT_EQ(curve.force_at(0.5F), 6e5F);
+  EXPECT_FLOAT_EQ(curve.force_at(0.75F), 1.85e6F);
+  EXPECT_FLOAT_EQ(curve.force_at(1.0F), 1.85e6F + 0.25F * 1.05e8F);
+}
+
+TEST(ShareCrush, BothCurvesBearTheSameForce) {
+  constexpr std::uint64_t seed = 202;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  double most = 0.0;
+  for (int i = 0; i < cases; ++i) {
+    const CrushCurve a = any_curve(random);
+    const CrushCurve b = any_curve(random);
+    const float depth = log_uniform(random, 1e-3, 3.0);
+    const detail::SharedCrush shared = share_crush(a, b, depth);
+    ASSERT_GE(shared.depth_a, 0.0F) << "case " << i;
+    ASSERT_LE(shared.depth_a, depth) << "case " << i;
+    ASSERT_GE(shared.force, std::min(a.yield, b.yield) * (1.0F - 1e-5F)) << "case " << i;
+    // The depths of both at that force add up to the whole.
+    const float own = a.depth_at(shared.force);
+    const float other = b.depth_at(shared.force);
+    const float rounding = 1e-6F * shared.force * (1.0F / a.slope + 1.0F / b.slope);
+    ASSERT_NEAR(own + other, depth, 1e-4F * depth + rounding) << "case " << i;
+    ASSERT_NEAR(own, shared.depth_a, 1e-4F * depth + rounding) << "case " << i;
+    // A body that gives way bears the force of its own depth.
+    for (const auto& [curve, part] :
+         {std::pair{&a, shared.depth_a}, std::pair{&b, depth - shared.depth_a}}) {
+      if (shared.force <= curve->yield * 1.0001F) continue;
+      const float steepest = curve->slope + curve->hardening + curve->rigid;
+      const float expected = curve->force_at(part);
+      most = std::max(most, static_cast<double>(std::abs(expected - shared.force) / shared.force));
+      ASSERT_NEAR(expected, shared.force,
+                  1e-4F * shared.force + steepest * (1e-6F * depth + rounding))
+          << "case " << i;
+    }
+  }
+  std::printf("forces differ by at most %.3g\n", most);
+}
+
+TEST(ShareCrush, RisesWithTheDepth) {
+  constexpr std::uint64_t seed = 203;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  for (int i = 0; i < cases / 20; ++i) {
+    const CrushCurve a = any_curve(random);
+    const CrushCurve b = any_curve(random);
+    detail::SharedCrush before;
+    for (float depth = 0.002F; depth < 3.0F; depth *= 1.2F) {
+      const detail::SharedCrush shared = share_crush(a, b, depth);
+      ASSERT_GE(shared.force, before.force) << "case " << i << " at " << depth;
+      ASSERT_GE(shared.depth_a, before.depth_a - 1e-6F * depth) << "case " << i << " at " << depth;
+      before = shared;
+    }
+  }
+}
+
+TEST(ShareCrush, ExchangeOfTheCurvesExchangesTheDepths) {
+  constexpr std::uint64_t seed = 204;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  for (int i = 0; i < cases; ++i) {
+    const CrushCurve a = any_curve(random);
+    const CrushCurve b = any_curve(random);
+    const float depth = log_uniform(random, 1e-3, 3.0);
+    const detail::SharedCrush one = share_crush(a, b, depth);
+    const detail::SharedCrush other = share_crush(b, a, depth);
+    ASSERT_NEAR(one.force, other.force, 1e-5F * one.force) << "case " << i;
+    ASSERT_NEAR(one.depth_a + other.depth_a, depth, 1e-4F * depth) << "case " << i;
+  }
+}
+
+TEST(CrushResponse, BandsShareTheLawOfAnEvenBody) {
+  CrushStrength strength;
+  strength.front = {100e3, 1000e3, 0.5};
+  strength.side = {50e3, 500e3, 0.3};
+  strength.rear = {80e3, 700e3, 0.4};
+  strength.low_m = 0.0;
+  strength.high_m = 1.0;
+  const CrushResponse response(strength, 2.0);
+  EXPECT_FALSE(response.rigid());
+  const auto sum = [&](float nx, float ny, float depth) {
+    double force = 0.0;
+    for (std::size_t band = 0; band < profile_bands && profile_edges_m[band] < 1.0; ++band) {
+      force += static_cast<double>(response.at(band, 0.0F, 0.0F, nx, ny).force_at(depth));
+    }
+    return force;
+  };
+  // Pressed from ahead, from the left and from behind: normals of what presses point inward.
+  EXPECT_NEAR(sum(-1, 0, 0.2F), 2 * (100e3 + 0.2 * 1000e3), 1.0);
+  EXPECT_NEAR(sum(0, -1, 0.2F), 2 * (50e3 + 0.2 * 500e3), 1.0);
+  EXPECT_NEAR(sum(1, 0, 0.2F), 2 * (80e3 + 0.2 * 700e3), 1.0);
+  EXPECT_TRUE(CrushResponse(CrushStrength::unyielding(), 1.0).rigid());
+}
+
+TEST(CrushResponse, TheCompartmentIsMeasuredFromItsNearestSide) {
+  CrushStrength strength;
+  strength.core.cage_half_width_m = 0.7;
+  strength.core.cage_front_m = 2.0;
+  strength.core.cage_rear_m = 0.5;
+  const CrushResponse response(strength, 1.0);
+  EXPECT_FLOAT_EQ(response.inside_compartment(1.75F, 0.0F), 0.25F);
+  EXPECT_FLOAT_EQ(response.inside_compartment(0.6F, 0.0F), 0.1F);
+  EXPECT_FLOAT_EQ(response.inside_compartment(1.2F, -0.5F), 0.2F);
+  EXPECT_LE(response.inside_compartment(2.5F, 0.0F), 0.0F);
+  EXPECT_LE(response.inside_compartment(1.2F, 0.8F), 0.0F);
+}
+
+}  // namespace
+}  // namespace crashrank

@@ -1,0 +1,140 @@
+#include "crashrank/vehicle/silhouettes.hpp"
+
+#include "crash/random.hpp"
+#include "crash/shapes.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
+#include "oracle/shipped_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+/// Greatest and least coordinate at a place along a silhouette's axis.
+SilhouetteNode sample(const Silhouettes& all, const Silhouette& s, double place) {
+  const double at = (place - static_cast<double>(s.low_m)) * static_cast<double>(s.nodes_per_m);
+  EXPECT_GE(at, 0.0);
+  const auto i = static_cast<std::uint32_t>(at);
+  EXPECT_LT(i + 1, s.count);
+  const auto t = static_cast<float>(at - i);
+  const SilhouetteNode& p = all.nodes[s.first + i];
+  const SilhouetteNode& q = all.nodes[s.first + i + 1];
+  return {p.greatest_m + t * (q.greatest_m - p.greatest_m),
+          p.least_m + t * (q.least_m - p.least_m)};
+}
+
+TEST(Silhouettes, OfABoxAreItsFaces) {
+  constexpr std::uint64_t seed = 401;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  test::Random random(seed);
+  for (int i = 0; i < 20; ++i) {
+    const double length = random.uniform(0.2, 8.0);
+    const double width = random.uniform(0.2, 3.0);
+    const double x = random.uniform(-2, 2);
+    const double y = random.uniform(-2, 2);
+    const Result<Profile> profile =
+        make_profile(test::box_mesh({0.5 * length, 0.5 * width, 0.5}, {x, y, 0.5}));
+    ASSERT_TRUE(profile);
+    const Silhouettes s = make_silhouettes(*profile);
+    // Outlines keep to within a quarter of a cell of their raster.
+    const double off_m = 0.25 * std::clamp(std::max(length, width) / 250.0, 0.002, 0.02);
+    EXPECT_NEAR(s.width_m(), std::min(length, width), 2.0 * off_m);
+    for (std::size_t band = 0; band < profile_bands; ++band) {
+      if (profile_edges_m[band] >= 1.0) {
+        EXPECT_EQ(s.along_x[band].count, 0U);
+        EXPECT_EQ(s.along_y[band].count, 0U);
+        continue;
+      }
+      for (int k = 0; k < 50; ++k) {
+        const SilhouetteNode ends =
+            sample(s, s.along_x[band], y + width * random.uniform(-0.499, 0.499));
+        ASSERT_NEAR(ends.greatest_m, x + 0.5 * length, off_m);
+        ASSERT_NEAR(ends.least_m, x - 0.5 * length, off_m);
+        const SilhouetteNode flanks =
+            sample(s, s.along_y[band], x + length * random.uniform(-0.499, 0.499));
+        ASSERT_NEAR(flanks.greatest_m, y + 0.5 * width, off_m);
+        ASSERT_NEAR(flanks.least_m, y - 0.5 * width, off_m);
+      }
+    }
+  }
+}
+
+TEST(Silhouettes, BlocksCoverAllPiecesAndConesHoldAllNormals) {
+  for (const char* name : {"sedan", "hatch", "truck", "motorcycle", "pedestrian", "pole"}) {
+    const Result<TriangleMesh> mesh =
+        oracle::read_obj(std::string(CRASHRANK_MODEL_FOLDER "/") + name + ".obj");
+    ASSERT_TRUE(mesh);
+    const Result<Profile> profile = make_profile(*mesh);
+    ASSERT_TRUE(profile);
+    const Silhouettes s = make_silhouettes(*profile);
+    std::vector<int> covered(profile->pieces.size(), 0);
+    std::size_t narrow = 0;
+    for (const PieceBlock& block : s.blocks) {
+      ASSERT_GT(block.count, 0U);
+      ASSERT_LE(block.count, 16U);
+      ASSERT_GE(block.first, profile->first[block.band]);
+      ASSERT_LE(block.first + block.count, profile->first[block.band + 1U]);
+      narrow += block.cosine > 0.0F ? 1U : 0U;
+      for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
+        const OutlinePiece& piece = profile->pieces[i];
+        ++covered[i];
+        ASSERT_LE(std::hypot(piece.x - block.x, piece.y - block.y), block.radius_m + 1e-5F);
+        const float cosine = piece.normal_x * block.normal_x + piece.normal_y * block.normal_y;
+        if (block.cosine > -1.0F) {
+          ASSERT_GE(cosine, block.cosine - 1e-6F) << name;
+        }
+        ASSERT_GE(piece.x, s.min_x);
+        ASSERT_LE(piece.x, s.max_x);
+        ASSERT_GE(piece.y, s.min_y);
+        ASSERT_LE(piece.y, s.max_y);
+      }
+    }
+    for (const int times : covered) ASSERT_EQ(times, 1) << name;
+    std::printf("%s: %zu pieces in %zu blocks, %zu of them with a cone\n", name,
+                profile->pieces.size(), s.blocks.size(), narrow);
+    EXPECT_GT(narrow, 0U) << name;
+  }
+}
+
+TEST(Silhouettes, FewPiecesLieOutsideThem) {
+  for (const char* name : {"sedan", "truck", "motorcycle", "pedestrian"}) {
+    const Profile profile =
+        *make_profile(*oracle::read_obj(std::string(CRASHRANK_MODEL_FOLDER "/") + name + ".obj"));
+    const Silhouettes s = make_silhouettes(profile);
+    const double step = 1.0 / static_cast<double>(s.along_x[2].nodes_per_m);
+    std::size_t outside = 0;
+    double furthest = 0.0;
+    for (std::size_t band = 0; band < profile_bands; ++band) {
+      for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
+        const OutlinePiece& piece = profile.pieces[i];
+        const SilhouetteNode ends = sample(s, s.along_x[band], static_cast<double>(piece.y));
+        const SilhouetteNode flanks = sample(s, s.along_y[band], static_cast<double>(piece.x));
+        const float beyond =
+            std::max(std::max(piece.x - ends.greatest_m, ends.least_m - piece.x),
+                     std::max(piece.y - flanks.greatest_m, flanks.least_m - piece.y));
+        // Where an outline turns or ends between two nodes, interpolation cuts its corner.
+        outside += static_cast<double>(beyond) > 0.5 * step ? 1U : 0U;
+        furthest = std::max(furthest, static_cast<double>(beyond));
+      }
+    }
+    const double share = static_cast<double>(outside) / static_cast<double>(profile.pieces.size());
+    std::printf("%s: %.2f %% of the pieces over half a node outside, furthest %.3f m\n", name,
+                100.0 * share, furthest);
+    EXPECT_LT(share, 0.2) << name << ": the goal is none";
+  }
+}
+
+TEST(Silhouettes, OfNothingAreEmpty) {
+  const Silhouettes s = make_silhouettes(Profile{});
+  EXPECT_TRUE(s.nodes.empty());
+  EXPECT_TRUE(s.blocks.empty());
+}
+
+}  // namespace
+}  // namespace crashrank
