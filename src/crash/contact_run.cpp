@@ -294,10 +294,11 @@ void ContactRun::move(double seconds) {
 
 void ContactRun::step() {
   // Ends: bodies that have travelled this far without force have parted; a force that gave less
-  // than this share of the impulse in such a time has all but ended; bodies that never pressed
-  // within this travel brushed past each other.
+  // than this share of the impulse in such a time and travel has all but ended; bodies that never
+  // pressed within this travel brushed past each other.
   constexpr double parted_m = 0.15;
   constexpr double faded_s = 0.03;
+  constexpr double faded_m = 0.1;
   constexpr double faded_share = 0.02;
   constexpr double missed_m = 0.5;
   constexpr double least_speed_mps = 0.5;
@@ -316,6 +317,7 @@ void ContactRun::step() {
   moved_m_ = step_s_ * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
   acceleration_mps2_ = 0.0;
   quiet_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
+  late_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
   if (totals.pressing > 0.0) {
     acts_ = true;
     const double closing = totals.closing / totals.pressing;
@@ -345,10 +347,11 @@ void ContactRun::step() {
     end_second_ = state_.bodies[1].motion;
   }
   over_ = quiet_m_ > (acts_ ? parted_m : missed_m) || time_s_ > longest_contact_s;
-  if (acts_ && time_s_ - late_from_s_ > faded_s) {
+  if (acts_ && time_s_ - late_from_s_ > faded_s && late_m_ > faded_m) {
     over_ = over_ || late_ns_ < faded_share * impulse_ns_;
     late_ns_ = 0.0;
     late_from_s_ = time_s_;
+    late_m_ = 0.0;
   }
 }
 

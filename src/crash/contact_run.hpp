@@ -128,6 +128,7 @@ private:
   double impulse_ns_ = 0.0;  ///< sum of lengths
   double late_ns_ = 0.0;
   double late_from_s_ = 0.0;
+  double late_m_ = 0.0;  ///< travel since then
   double quiet_m_ = 0.0;
   double friction_j_ = 0.0;
   double crush_first_j_ = 0.0;

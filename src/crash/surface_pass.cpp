@@ -15,7 +15,7 @@ constexpr float closing_share = 0.1F;
 constexpr float sliding_share = 0.15F;
 constexpr float least_even_mps = 0.2F;
 /// Narrow bodies engage material beside them: width per metre of depth, on each side.
-constexpr float spread = 0.5F;
+constexpr float spread = 0.35F;
 /// Share in which flanks count their depth below the body's side, bounded by that below its end:
 /// what is swept aside has less behind it than what is pressed from the front.
 constexpr float flank_share = 0.65F;

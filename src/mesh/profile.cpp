@@ -17,6 +17,8 @@ constexpr double coarsest_cell_m = 0.02;
 constexpr double finest_cell_m = 0.002;
 constexpr double cells_along = 250.0;
 constexpr double tolerance_cells = 0.25;
+/// Two across a motorcycle's tyre: pieces act at their middles.
+constexpr double usual_piece_m = 0.5 * longest_piece_m;
 constexpr double most_pieces_along = 20000.0;
 
 /// Outlines that enclose less than this times the square of their length enclose nothing: they run
@@ -109,7 +111,7 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
   const double longest = static_cast<double>(std::max(box->extent().x(), box->extent().y()));
   const double cell_m = std::clamp(longest / cells_along, finest_cell_m, coarsest_cell_m);
   const double piece_m =
-      std::max(std::min(longest_piece_m, longest / 16.0), longest / most_pieces_along);
+      std::max(std::min(usual_piece_m, longest / 16.0), longest / most_pieces_along);
   std::vector<detail::SectionSegment> segments;
   for (std::size_t band = 0; band < profile_bands; ++band) {
     profile.first[band] = static_cast<std::uint32_t>(profile.pieces.size());

@@ -19,12 +19,12 @@ CrushStrength car_strength(const CarShape& shape) {
   constexpr double rails = 0.6;
   constexpr double cage = 0.8;
   // The compartment begins behind the wheel housing and ends as far before the rear axle.
-  constexpr double behind_axle = 0.2;
+  constexpr double behind_axle = 0.21;
   constexpr double outside = 0.2;
   // What does not fold between bumper and compartment: the engine's and gearbox's rigid parts.
-  constexpr double block_m = 0.15;
+  constexpr double block_m = 0.07;
   constexpr double least_length_m = 0.3;
-  constexpr double side_length_m = 0.5;
+  constexpr double side_length_m = 0.6;
   CrushStrength strength;
   strength.front.yield_npm = shape.mass_kg * no_crush_mps * b1 / shape.width_m;
   strength.front.slope_npm2 = shape.mass_kg * b1 * b1 / shape.width_m;
