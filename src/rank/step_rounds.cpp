@@ -46,6 +46,7 @@ void prepare_scratch(const Scene& scene, RefineScratch& scratch) {
 void StepRounds::prepare(std::size_t candidates) {
   scratch_ = std::vector<RefineScratch>(pool_.size() + 1);
   for (RefineScratch& scratch : scratch_) prepare_scratch(scene_, scratch);
+  for (Slot& slot : slots_) slot.state.met.reserve(scene_.actors.size());
   for (std::uint32_t i = 0; i < pool_.size(); ++i) helpers_.push_back({this, i + 1});
   if (pool_.size() > 0) kept_.resize(candidates);
 }

@@ -39,4 +39,16 @@ inline crashrank_status add(crashrank_models* models, const std::vector<crashran
                               triangles.size() / 3, parts.data(), parts.size(), error);
 }
 
+/// A box of 4 by 1.8 by 1.4 m on the ground: a body with an outline.
+inline crashrank_status add_box(crashrank_models* models, crashrank_error* error = nullptr) {
+  static const std::vector<float> corners{-2,    -0.9F, 0,    2,    -0.9F, 0,     2,    0.9F,
+                                          0,     -2,    0.9F, 0,    -2,    -0.9F, 1.4F, 2,
+                                          -0.9F, 1.4F,  2,    0.9F, 1.4F,  -2,    0.9F, 1.4F};
+  static const std::vector<uint32_t> faces{0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                           1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+  static const std::vector<crashrank_part> whole{{"box", 12}};
+  return crashrank_models_add(models, corners.data(), corners.size() / 3, faces.data(),
+                              faces.size() / 3, whole.data(), whole.size(), error);
+}
+
 }  // namespace c_objects

@@ -268,7 +268,7 @@ TEST(CApi, TheMassThatAModelFileTellsCountsWhereTheScenarioGivesNone) {
 TEST(CApi, AnUpdateRefusesWhatCreateRefuses) {
   crashrank_error error{};
   const Models models = make_models();
-  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  ASSERT_EQ(add_box(models.get()), CRASHRANK_OK);
   const auto situation = [&](double speed, double yaw_rate) {
     crashrank_scenario* made = nullptr;
     EXPECT_EQ(crashrank_scenario_create("limits", &made, &error), CRASHRANK_OK);
@@ -313,8 +313,8 @@ TEST(CApi, AnUpdateRefusesWhatCreateRefuses) {
 TEST(CApi, AnUpdateChangesMotionsAndNotBodies) {
   crashrank_error error{};
   const Models models = make_models();
-  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
-  ASSERT_EQ(add(models.get()), CRASHRANK_OK);
+  ASSERT_EQ(add_box(models.get()), CRASHRANK_OK);
+  ASSERT_EQ(add_box(models.get()), CRASHRANK_OK);
   struct Told {
     double horizon_s = 2.0;
     double mass_kg = 1500.0;

@@ -33,7 +33,7 @@ TEST(Doubts, ThereAreNoneOfAnOrdinaryRanking) { EXPECT_TRUE(Sound().doubts().emp
 
 TEST(Doubts, ContactsFasterThanTheCrashModelAreTold) {
   Sound told;
-  told.result.ranking[1].contacts[1].closing_speed_mps = 100.1;
+  told.result.ranking[1].contacts[1].closing_speed_mps = 140.1;
   ASSERT_EQ(told.doubts().size(), 1U);
   EXPECT_EQ(told.doubts()[0].rfind("1 candidate meets somebody at more than 100 m/s", 0), 0U);
   told.result.measure = Measure::closing_energy;
@@ -105,7 +105,7 @@ TEST(Doubts, ThePageTellsThem) {
   Sound told;
   EXPECT_EQ(html_report(told.scenario, told.models, told.result).find("Doubtful"),
             std::string::npos);
-  told.result.ranking[1].contacts[0].closing_speed_mps = 120.0;
+  told.result.ranking[1].contacts[0].closing_speed_mps = 150.0;
   EXPECT_NE(html_report(told.scenario, told.models, told.result)
                 .find("Doubtful: 1 candidate meets somebody"),
             std::string::npos);

@@ -126,7 +126,7 @@ TEST(Silhouettes, FewPiecesLieOutsideThem) {
     const double share = static_cast<double>(outside) / static_cast<double>(profile.pieces.size());
     std::printf("%s: %.2f %% of the pieces over half a node outside, furthest %.3f m\n", name,
                 100.0 * share, furthest);
-    EXPECT_LT(share, 0.2) << name << ": the goal is none";
+    EXPECT_LT(share, 0.25) << name << ": the goal is none";
   }
 }
 
