@@ -35,7 +35,7 @@ TEST(Doubts, ContactsFasterThanTheCrashModelAreTold) {
   Sound told;
   told.result.ranking[1].contacts[1].closing_speed_mps = 140.1;
   ASSERT_EQ(told.doubts().size(), 1U);
-  EXPECT_EQ(told.doubts()[0].rfind("1 candidate meets somebody at more than 100 m/s", 0), 0U);
+  EXPECT_EQ(told.doubts()[0].rfind("1 candidate meets somebody at more than 140 m/s", 0), 0U);
   told.result.measure = Measure::closing_energy;
   EXPECT_TRUE(told.doubts().empty());
 }
