@@ -17,7 +17,7 @@ constexpr float interlocked_friction = 1.0F;
 /// Share of the closing speed under which bodies count as at rest against each other.
 constexpr double at_rest = 0.03;
 /// A contact that still moves past at a quarter of its speed or more does not rebound.
-constexpr double sliding_share = 0.25;
+constexpr double slipping_share = 0.25;
 /// Kept at the end of the force, a contact counts as sliding.
 constexpr double slides_share = 0.2;
 
@@ -243,7 +243,7 @@ ContactRun::AtForce ContactRun::at_force(const Totals& totals) const {
 /// slides, where it has all but ended, and where it would give back more energy than e².
 void ContactRun::rebound(const Totals& totals, double passing_mps) {
   const double sticks =
-      std::clamp(1.0 - passing_mps / (sliding_share * most_passing_mps_), 0.0, 1.0);
+      std::clamp(1.0 - passing_mps / (slipping_share * most_passing_mps_), 0.0, 1.0);
   const double e = std::min(0.5, restitution_at(most_closing_mps_) * variant_.restitution) *
                    (totals.fresh / totals.pressing) *
                    std::min(1.0, totals.pressing / most_pressing_) * sticks;
