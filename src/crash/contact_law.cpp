@@ -32,7 +32,7 @@ double friction_between(Surface a, Surface b) noexcept {
 }
 
 double restitution_at(double closing_mps) noexcept {
-  return 0.2 + 0.15 / (1.0 + closing_mps / 4.0);
+  return 0.26 + 0.15 / (1.0 + closing_mps / 4.0);
 }
 
 ContactOutcome simulate_contact(const ContactBody& a, const ContactBody& b,

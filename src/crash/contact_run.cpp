@@ -124,6 +124,7 @@ ContactRun::Totals ContactRun::feel() {
   Totals totals;
   std::fill(state_.forces.begin(), state_.forces.end(), PlanarForce{});
   const auto add = [&](const PassSums& sums, bool own_is_first) {
+    totals.approaching = totals.approaching || sums.approaching;
     totals.pressing += sums.pressing;
     totals.closing += sums.closing;
     totals.passing += sums.passing;
@@ -316,6 +317,7 @@ void ContactRun::step() {
   const PlanarBody& q = state_.bodies[1].motion;
   moved_m_ = step_s_ * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
   acceleration_mps2_ = 0.0;
+  if (totals.approaching) quiet_m_ = 0.0;
   quiet_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
   late_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
   if (totals.pressing > 0.0) {

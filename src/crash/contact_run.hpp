@@ -66,6 +66,7 @@ public:
 
 private:
   struct Totals {
+    bool approaching = false;
     double pressing = 0.0;
     double closing = 0.0;
     double passing = 0.0;

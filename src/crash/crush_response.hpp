@@ -22,6 +22,14 @@ struct CrushCurve {
   float hardening_length = 0.0F;  ///< m
   float rigid = 0.0F;             ///< N/m²
 
+  /// No curve is longer than the material there is: what the crush of a thin place has used up is
+  /// rigid, so that nothing leaves a body through its back. `thickness` in the measure of depths.
+  void shorten(float thickness) {
+    constexpr float folds = 0.35F;
+    constexpr float hardens = 0.2F;
+    length = std::min(length, folds * thickness);
+    hardening_length = std::min(hardening_length, hardens * thickness);
+  }
   float force_at(float depth) const {
     return yield + slope * depth + hardening * std::max(0.0F, depth - length) +
            rigid * std::max(0.0F, depth - length - hardening_length);
@@ -100,6 +108,7 @@ public:
     cage_ = bounded(strength.core.cage_half_width_m);
     cage_front_ = bounded(strength.core.cage_front_m);
     cage_rear_ = bounded(strength.core.cage_rear_m);
+    engine_ = static_cast<float>(strength.core.engine_m);
     inside_ = static_cast<float>(strength.core.inside);
     outside_ = static_cast<float>(strength.core.outside);
     hardening_ = static_cast<float>(strength.hardening_npm2);
@@ -132,17 +141,19 @@ public:
     CrushCurve curve;
     curve.yield = share * (ahead * end.yield + across * flank_.yield);
     curve.slope = share * (ahead * end.slope + across * flank_.slope);
-    curve.length = ahead * end.length + across * flank_.length;
+    const float engine = nx < 0.0F ? engine_ * in_rails : 0.0F;
+    curve.length = ahead * (end.length - engine) + across * flank_.length;
     curve.hardening = share_[band] * in_core * hardening_;
     curve.hardening_length = hardening_length_;
     curve.rigid = share_[band] * in_core * rigid_slope_;
     return curve;
   }
 
-  /// How far a place lies inside the passenger compartment, m; at most 0 outside and for bodies
-  /// without one.
-  float inside_compartment(float x, float y) const {
-    return std::min(std::min(cage_front_ - x, x - cage_rear_), cage_ - std::abs(y));
+  /// How far a place pressed along nx (body axes) lies inside the passenger compartment, m; at most
+  /// 0 outside and for bodies without one. From the front the engine arrives before the surface.
+  float inside_compartment(float x, float y, float nx) const {
+    const float engine = nx < 0.0F && std::abs(y) < rails_ ? nx * nx * engine_ : 0.0F;
+    return std::min(std::min(cage_front_ + engine - x, x - cage_rear_), cage_ - std::abs(y));
   }
 
 private:
@@ -158,6 +169,7 @@ private:
   float cage_ = 0.0F;
   float cage_front_ = 0.0F;
   float cage_rear_ = 0.0F;
+  float engine_ = 0.0F;
   float inside_ = 1.0F;
   float outside_ = 1.0F;
   float hardening_ = 0.0F;

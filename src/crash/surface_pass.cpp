@@ -16,9 +16,9 @@ constexpr float sliding_share = 0.15F;
 constexpr float least_even_mps = 0.2F;
 /// Narrow bodies engage material beside them: width per metre of depth, on each side.
 constexpr float spread = 0.35F;
-/// Share in which flanks count their depth below the body's side, bounded by that below its end:
-/// what is swept aside has less behind it than what is pressed from the front.
-constexpr float flank_share = 0.65F;
+/// Mass that is pushed aside, times the mean density: a vehicle's mass lies in the lower half of
+/// its volume, and what is pushed drags about as much beside it along.
+constexpr float dragged = 4.0F;
 /// Folds of two crushed vehicles hook into each other over the size of a rail.
 constexpr float interlock_m = 0.15F;
 /// List of pieces: those within this distance of the other body, m.
@@ -27,6 +27,8 @@ constexpr double near_m = 0.15;
 /// is found inside later without having been followed there.
 constexpr float inside_m = 0.05F;
 constexpr float never = -1e9F;
+/// Least slant of a piece's way to the surface that its first depth reckons with, as 1/sine.
+constexpr float most_slanted = 10.0F;
 
 /// Rigid transformation from one body's axes to another's, and the velocity of the first one's
 /// material against the second one's, in the second one's axes.
@@ -180,6 +182,7 @@ void list_near(const PressedBody& pusher, const PressedBody& pressed, const Carr
       if (near.listed[i] + 1 != near.list) {
         near.furthest[i] = 0.0F;
         near.s[i] = 0.0F;
+        near.way[i] = 0.0F;
         const float at_x = to.c * piece.x - to.s * piece.y + to.x;
         const float at_y = to.s * piece.x + to.c * piece.y + to.y;
         if (depths_at(target, block.band, at_x, at_y).least() > allowed_m ||
@@ -251,7 +254,7 @@ void NearPieces::resize(std::size_t pieces) {
   if (listed.size() >= pieces) return;
   for (std::vector<float>* field :
        {&x, &y, &normal_x, &normal_y, &length, &at_x, &at_y, &at_normal_x, &at_normal_y, &advance,
-        &s_now, &furthest_now, &fresh, &s, &furthest}) {
+        &s_now, &furthest_now, &fresh, &s, &furthest, &way}) {
     field->resize(pieces);
   }
   piece.resize(pieces);
@@ -290,6 +293,7 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
     near.pressing[pressing] = static_cast<std::uint32_t>(i);
     pressing += presses ? 1 : 0;
   }
+  sums.approaching = pressing > 0;
 
   const bool both_yield = !pusher.response.rigid();
   // A wall is as wide as it is long, a vehicle as it is across.
@@ -318,17 +322,28 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
     const float nx = near.at_normal_x[i];
     const float ny = near.at_normal_y[i];
     const float advance = near.advance[i];
-    const float end = nx < 0.0F ? d.front : d.rear;
+    const float vx = to.vx - to.spin * y;
+    const float vy = to.vy + to.spin * x;
+    const float speed = std::sqrt(vx * vx + vy * vy);
+    // No depth counts that the piece has not travelled: what enters through a flank is not deep
+    // below the front. The first step of a piece inside begins at the surface.
+    const float travel = speed * static_cast<float>(settings.step_s);
+    float& way = near.way[near.piece[i]];
+    way = way > 0.0F ? way + travel
+                     : std::min(travel, least * std::min(most_slanted, speed / advance));
+    const float end = std::min(nx < 0.0F ? d.front : d.rear, way);
     const float flank = ny < 0.0F ? d.left : d.right;
     const float depth = nx * nx * end + flank_share * ny * ny * std::min(flank, end);
-    const CrushCurve own = pressed.response.at(band, x, y, nx, ny);
+    CrushCurve own = pressed.response.at(band, x, y, nx, ny);
+    own.shorten(nx * nx * (d.front + d.rear) + flank_share * ny * ny * (d.left + d.right));
     float force = 0.0F;
     float own_depth = depth;
     float friction = settings.friction;
     float fresh = 0.0F;
     if (both_yield) {
-      const CrushCurve others =
+      CrushCurve others =
           pusher.response.at(band, near.x[i], near.y[i], -near.normal_x[i], -near.normal_y[i]);
+      others.shorten(shape.thickness_m[near.piece[i]]);
       const SharedCrush shared = share_crush(own, others, depth);
       force = shared.force;
       own_depth = shared.depth_a;
@@ -347,10 +362,7 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
     const float own_share = depth > 1e-6F ? own_depth / depth : 0.5F;
     force *= 1.0F + std::min(2.0F * spread * depth, wider) / narrow;
     const auto height = static_cast<float>(profile_edges_m[band + 1] - profile_edges_m[band]);
-    const float vx = to.vx - to.spin * y;
-    const float vy = to.vy + to.spin * x;
-    const float speed = std::sqrt(vx * vx + vy * vy);
-    const float whole = (force + density * advance * advance * height) *
+    const float whole = (force + dragged * density * advance * advance * height) *
                         std::min(1.0F, least / soft_m) * own_share * near.length[i];
     const float normal =
         whole * std::min(1.0F, advance / std::max(least_even_mps, closing_share * speed));
@@ -382,14 +394,14 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
     record.own.grow(Eigen::Vector3f(px, py, low));
     record.own.grow(Eigen::Vector3f(px, py, low + height));
     record.intrusion_own =
-        std::max(record.intrusion_own, pressed.response.inside_compartment(px, py));
+        std::max(record.intrusion_own, pressed.response.inside_compartment(px, py, nx));
     if (both_yield) {
       const float back_x = near.x[i] - other_depth * near.normal_x[i];
       const float back_y = near.y[i] - other_depth * near.normal_y[i];
       record.other.grow(Eigen::Vector3f(near.x[i], near.y[i], low));
       record.other.grow(Eigen::Vector3f(near.x[i], near.y[i], low + height));
       record.intrusion_other =
-          std::max(record.intrusion_other, pusher.response.inside_compartment(back_x, back_y));
+          std::max(record.intrusion_other, pusher.response.inside_compartment(back_x, back_y, -near.normal_x[i]));
     }
   }
 

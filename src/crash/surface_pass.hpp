@@ -41,9 +41,10 @@ struct NearPieces {
   std::vector<float> fresh;         ///< > 0: it advances into what it has not been in
   std::vector<std::uint32_t> pressing;  ///< places of those that may press
   std::size_t count = 0;
-  // By piece of the profile, of pieces not listed.
-  std::vector<float> s;
-  std::vector<float> furthest;
+  // By piece of the profile.
+  std::vector<float> s;         ///< of pieces that are not listed
+  std::vector<float> furthest;  ///< of pieces that are not listed
+  std::vector<float> way;       ///< how far it has travelled inside the other body, m
   std::vector<std::uint32_t> listed;  ///< number of the last list that the piece was in
   std::uint32_t list = 0;             ///< number of the present list
   double valid_for_m = -1e9;          ///< relative travel until the list has to be made anew
@@ -55,6 +56,7 @@ struct NearPieces {
 
 /// Sums of one pass.
 struct PassSums {
+  bool approaching = false;  ///< pieces within the other's bounds advance, pressing or not yet
   PlanarForce on_pressed;    ///< on the body whose material is pressed in
   double pressing = 0.0;     ///< N, without the gate of the advance
   double closing = 0.0;      ///< N·m/s: pressing times advance

@@ -29,14 +29,14 @@ Ends ends_of(const OutlinePiece& piece, bool over_x) {
 
 Silhouette sample(const Profile& profile, std::size_t band, bool over_x, float low, float high,
                   float step, std::vector<SilhouetteNode>& nodes) {
-  constexpr float rim =
-      2.5F;  // steps beside the outline, so that edges never fall on the last node
+  constexpr float rim = 2.5F;  // steps beside the outline, so that no edge falls on the last node
   Silhouette s;
   if (profile.first[band] == profile.first[band + 1]) return s;
-  s.low_m = low - rim * step;
   s.nodes_per_m = 1.0F / step;
   s.first = static_cast<std::uint32_t>(nodes.size());
   s.count = static_cast<std::uint32_t>((high - low) / step + 2.0F * rim) + 2;
+  // About the middle, so that a mirrored body has mirrored nodes.
+  s.low_m = 0.5F * (low + high) - 0.5F * step * static_cast<float>(s.count - 1);
   nodes.resize(nodes.size() + s.count);
   SilhouetteNode* const at = nodes.data() + s.first;
   const auto last = static_cast<int>(s.count) - 1;
@@ -106,6 +106,17 @@ PieceBlock make_block(const Profile& profile, std::size_t band, std::uint32_t fi
   return block;
 }
 
+/// Greatest less least value at a coordinate; 0 beside the outline.
+float chord(const Silhouettes& s, const Silhouette& of, float at) {
+  const float place = (at - of.low_m) * of.nodes_per_m;
+  const auto i = static_cast<std::uint32_t>(std::max(place, 0.0F));
+  if (i + 1 >= of.count) return 0.0F;
+  const SilhouetteNode* const node = s.nodes.data() + of.first + i;
+  const float share = place - static_cast<float>(i);
+  const float first = node[0].greatest_m - node[0].least_m;
+  return std::max(0.0F, first + share * (node[1].greatest_m - node[1].least_m - first));
+}
+
 }  // namespace
 
 Silhouettes make_silhouettes(const Profile& profile) {
@@ -131,6 +142,13 @@ Silhouettes make_silhouettes(const Profile& profile) {
   for (std::size_t band = 0; band < profile_bands; ++band) {
     s.along_x[band] = sample(profile, band, false, s.min_y, s.max_y, step, s.nodes);
     s.along_y[band] = sample(profile, band, true, s.min_x, s.max_x, step, s.nodes);
+    for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
+      constexpr float least_m = 0.02F;
+      const OutlinePiece& p = profile.pieces[i];
+      s.thickness_m.push_back(
+          std::max(least_m, p.normal_x * p.normal_x * chord(s, s.along_x[band], p.y) +
+                                flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x)));
+    }
     for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += block_pieces) {
       s.blocks.push_back(
           make_block(profile, band, i, std::min(block_pieces, profile.first[band + 1] - i)));

@@ -11,12 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Slope that stops a body that comes at this closing speed within a distance, borne by a width of
+/// Slopes that stop a body that comes at this closing speed within a distance, borne by a width of
 /// a quarter of a metre: what no crash of this model leaves behind.
 constexpr double rigid_for_mps = 140.0;
 constexpr double rigid_width_m = 0.25;
-/// Engine and chassis harden by this share of it first.
-constexpr double hardening_share = 0.01;
 
 /// Without mirrors.
 double body_width_m(BodyKind kind, const Vector3d& size) {
@@ -59,9 +57,15 @@ CrushStrength even_strength(double yield_npm, double slope_npm2, double length_m
   return strength;
 }
 
+/// Engine and chassis would stop the body from that speed within `stop_m`, what is behind `after_m`
+/// of them within a hundredth of it.
 void harden(CrushStrength& strength, double mass_kg, double stop_m, double after_m) {
-  strength.rigid_npm2 = mass_kg * rigid_for_mps * rigid_for_mps / (rigid_width_m * stop_m * stop_m);
-  strength.hardening_npm2 = hardening_share * strength.rigid_npm2;
+  constexpr double rigid_share = 0.01;
+  const auto slope = [mass_kg](double within_m) {
+    return mass_kg * rigid_for_mps * rigid_for_mps / (rigid_width_m * within_m * within_m);
+  };
+  strength.hardening_npm2 = slope(stop_m);
+  strength.rigid_npm2 = slope(rigid_share * stop_m);
   strength.hardening_length_m = after_m;
 }
 
@@ -81,7 +85,7 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
   switch (v.kind) {
     case BodyKind::car:
       strength = car_strength(shape);
-      harden(strength, v.mass_kg, 0.5, 0.4);
+      harden(strength, v.mass_kg, 5.0, 0.4);
       return strength;
     case BodyKind::truck:
     case BodyKind::bus:
@@ -97,19 +101,19 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
       strength.front.length_m = 0.5;
       strength.side.length_m = 0.3;
       strength.rear.length_m = 0.3;
-      harden(strength, v.mass_kg, 0.5, 0.3);
+      harden(strength, v.mass_kg, 5.0, 0.3);
       return strength;
     case BodyKind::motorcycle:
     case BodyKind::bicycle:
       // Fork and front wheel fold over 0.35 m, then the engine and the rider follow.
       strength = even_strength(10e3, 200e3, 0.35, size.z());
       strength.side.length_m = 0.15;
-      harden(strength, 0.25 * v.mass_kg, 0.1, 0.1);
+      harden(strength, v.mass_kg, 1.0, 0.1);
       return strength;
     case BodyKind::pedestrian:
       // About 5 kN/m at no depth: what a chest bears over its breadth; bones behind 0.1 m.
       strength = even_strength(5e3, 50e3, 0.1, size.z());
-      harden(strength, 0.25 * v.mass_kg, 0.05, 0.05);
+      harden(strength, v.mass_kg, 0.5, 0.05);
       return strength;
     case BodyKind::barrier:
     case BodyKind::pole:

@@ -37,8 +37,8 @@ struct ContactVariant {
 struct ContactOptions {
   double travel_m = 0.06;      ///< relative travel of a step, m
   double shortest_s = 0.0005;  ///< least step, s
-  double longest_s = 0.004;    ///< greatest step, s
-  double speed_change = 0.1;   ///< share of the closing speed that a step may take
+  double longest_s = 0.008;    ///< greatest step, s
+  double speed_change = 0.05;  ///< share of the closing speed that a step may take
 };
 
 /// What a contact does to one body. World axes unless said otherwise.

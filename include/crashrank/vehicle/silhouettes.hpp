@@ -40,6 +40,10 @@ struct PieceBlock {
   std::uint16_t band = 0;   ///< height band
 };
 
+/// Share in which flanks count their depth below the body's side: what is swept aside has less
+/// behind it than what is pressed from the front.
+inline constexpr float flank_share = 0.65F;
+
 /// What contacts read of a profile besides its pieces: the depth of a point below the front, rear
 /// and flanks of the body, by height band, and blocks of pieces. Holes between the silhouettes of a
 /// band are taken to be filled; a body that gives way is a vehicle or a person, whose outline has
@@ -49,6 +53,9 @@ struct Silhouettes {
   std::array<Silhouette, profile_bands> along_y{};  ///< y of left and right over x
   std::vector<SilhouetteNode> nodes;                ///< of all
   std::vector<PieceBlock> blocks;                   ///< by rising band
+  /// By piece: the body's chords through it along x and across, blended as depths are by the
+  /// squares of its normal, those across times `flank_share`, m.
+  std::vector<float> thickness_m;
   float min_x = 0.0F;                               ///< bounds of all outlines, m
   float max_x = 0.0F;                               ///< m
   float min_y = 0.0F;                               ///< m

@@ -24,6 +24,9 @@ struct CrushCore {
   double cage_half_width_m = std::numeric_limits<double>::infinity();   ///< of the compartment, m
   double cage_front_m = 0.0;  ///< where the compartment begins, x, m
   double cage_rear_m = 0.0;   ///< where it ends, x, m
+  /// Rigid parts between the rails before the compartment, along x, m: what they are pushed by
+  /// comes off the free crush length of the front and reaches the compartment.
+  double engine_m = 0.0;
   double inside = 1.0;        ///< share of the mean law in the core
   double outside = 1.0;       ///< and beside it
 };
