@@ -84,7 +84,7 @@ double enclosed_m2(const detail::OutlineLoop& loop) {
 void add_pieces(const detail::OutlineLoop& loop, double longest_m,
                 std::vector<OutlinePiece>& pieces) {
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vector2d from = loop[i];
+    const Vector2d& from = loop[i];
     const Vector2d along = loop[(i + 1) % loop.size()] - from;
     const double length = along.norm();
     if (!(length > 1e-6)) continue;
