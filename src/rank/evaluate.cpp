@@ -127,18 +127,19 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
     if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
     const EgoAtContact ego = planned(candidate.motion, hit.impact.time_s);
     contacts.push_back(make_contact(scene, ego, hit.actor, hit.impact));
+    const std::size_t met_before = found.met.size();
     add_met(scene, hit.actor, found.met);
     found.effects.emplace_back();
     const EgoAfterContact after = simulate_variants(scene, ego, contacts.back(), found.met,
                                                     scratch.crash, found.effects.back());
     contacts.back().severity.simulated = scene.pulses;
     if (contacts.size() == 1) {
-      last_s = hit.impact.time_s + window_s(scene, contacts.front().closing_speed_mps);
+      last_s = hit.impact.time_s + same_crash_s;
       first = ego;
       left = after;
     }
-    found.plans.push_back(plan_damage(scene, candidate.motion, contacts.back(),
-                                      hit.impact.triangle_a, hit.impact.triangle_b));
+    found.plans.push_back(plan_damage(scene, contacts.back(), hit.impact, scratch.crash.motion,
+                                      found.met_since(met_before)));
     if (scene.pulses) break;
   }
   found.result.collides = !contacts.empty();
@@ -153,9 +154,8 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
                        FoundDamage found, Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(approach.result);
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
-    read_damage(scene, approach.motion(candidate, i), approach.plans[i], found, result.contacts[i],
-                scratch.damage, work);
-    found.first += approach.plans[i].poses.size();
+    read_damage(scene, approach.plans[i], found, result.contacts[i], scratch.damage, work);
+    found.first += approach.plans[i].queries();
   }
   sum_up_ego(scene, result);
   if (approach.decided) {

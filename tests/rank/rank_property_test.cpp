@@ -52,7 +52,6 @@ Scene random_scene(std::uint64_t seed, std::size_t actors = 10) {
   scene.scenario.ego.speed_mps = random.real(5, 30);
   scene.scenario.horizon_s = random.real(1.0, 3.0);
   scene.scenario.grid = CandidateGrid{3, 5};
-  if (random.chance(0.5)) scene.scenario.crush.depth_m = random.real(0.0, 0.5);
   for (std::size_t i = 0; i < actors; ++i) {
     const auto model = static_cast<std::size_t>(random.integer(1, 4));
     const double range = random.real(4, 45);
@@ -248,38 +247,6 @@ TEST(RankProperty, NoSampledPoseTouchesBeforeTheReportedTime) {
       }
     }
   }
-}
-
-// All triangles that intersect at the end of the crush are among the damaged ones.
-TEST(RankProperty, DamageHoldsWhatIntersectsInTheEnd) {
-  std::size_t checked = 0;
-  for (std::uint64_t seed = 41; seed <= 46; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Scene scene = random_scene(seed);
-    scene.scenario.crush = Crush{};
-    const Scenario& s = scene.scenario;
-    const RankResult result = scene.ranked();
-    for (const CandidateResult& c : result.ranking) {
-      for (const Contact& contact : c.contacts) {
-        const double t = contact.time_of_impact_s + s.crush.time_s;
-        const ScenarioActor& actor = s.actors[contact.actor];
-        std::vector<Pair> pairs;
-        collide(scene.models[s.ego.model].tree, scene.models[actor.model].tree,
-                relative(result.candidates[c.candidate].motion.pose_at(t),
-                         make_motion(actor)->pose_at(t)),
-                pairs);
-        for (const Pair& pair : pairs) {
-          EXPECT_TRUE(std::binary_search(contact.ego.triangles.begin(), contact.ego.triangles.end(),
-                                         static_cast<std::uint32_t>(pair.a)));
-          EXPECT_TRUE(std::binary_search(contact.other.triangles.begin(),
-                                         contact.other.triangles.end(),
-                                         static_cast<std::uint32_t>(pair.b)));
-          ++checked;
-        }
-      }
-    }
-  }
-  EXPECT_GT(checked, 100U);
 }
 
 TEST(RankProperty, TheRankingIsATotalOrderOverAllCandidates) {
