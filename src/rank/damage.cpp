@@ -45,30 +45,26 @@ Box wider(const Box& box, float by) {
   return result;
 }
 
-// How far the corner of the ego's box that moves most gets in the other's frame.
-double way_of_ego(const Scene& scene, const ContactPoses& from, const ContactPoses& to) {
+// How far a point in the ego's coordinates moves in the frame of the other.
+double way_of_point(const ContactPoses& from, const ContactPoses& to,
+                    const Eigen::Vector3d& in_ego_m) {
   const Pose before = relative(from.b, from.a);
   const Pose after = relative(to.b, to.a);
+  return (after.rotation * in_ego_m + after.translation -
+          (before.rotation * in_ego_m + before.translation))
+      .norm();
+}
+
+// How far the corner of the ego's box that moves most gets in the other's frame.
+double way_of_ego(const Scene& scene, const ContactPoses& from, const ContactPoses& to) {
   double way_m = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
                                (corner & 4) != 0 ? 1.0 : -1.0);
     const Eigen::Vector3d point = scene.ego.center_m + scene.ego.half_axes_m * sign;
-    way_m = std::max(way_m, (after.rotation * point + after.translation -
-                             (before.rotation * point + before.translation))
-                                .norm());
+    way_m = std::max(way_m, way_of_point(from, to, point));
   }
   return way_m;
-}
-
-// How far a point that is fixed to the ego moves in the frame of the other.
-double way_of_point(const ContactPoses& from, const ContactPoses& to,
-                    const Eigen::Vector3d& point_m) {
-  const Eigen::Vector3d in_ego = from.a.rotation.transpose() * (point_m - from.a.translation);
-  const Eigen::Vector3d before = from.b.rotation.transpose() * (point_m - from.b.translation);
-  const Eigen::Vector3d after =
-      to.b.rotation.transpose() * (to.a.rotation * in_ego + to.a.translation - to.b.translation);
-  return (after - before).norm();
 }
 
 // Entries of a record that stand for all: the first, the one at which the contact point has got
@@ -125,8 +121,9 @@ void sum_up(const TriangleMesh& mesh, BodyDamage& damage) {
   }
 }
 
-DamagePlan plan_damage(const Scene& scene, const Contact& contact, const Impact& impact,
-                       const ContactMotion& motion, View<const std::size_t> pressed) {
+DamagePlan plan_damage(const Scene& scene, const Pose& ego, const Contact& contact,
+                       const Impact& impact, const ContactMotion& motion,
+                       View<const std::size_t> pressed) {
   const View<const ContactPoses> record = motion.all();
   const Body& other = scene.actors[contact.actor];
   DamagePlan plan;
@@ -134,9 +131,10 @@ DamagePlan plan_damage(const Scene& scene, const Contact& contact, const Impact&
   plan.triangle_other = impact.triangle_b;
   plan.first_pose = contact.state == ImpactState::contact ? 1 : 0;
   plan.crush_s = record[record.size() - 1].time_s;
+  const Eigen::Vector3d point_m = ego.rotation.transpose() * (contact.point_m - ego.translation);
   std::size_t furthest = 0;
   for (std::size_t i = 1; i < record.size(); ++i) {
-    const double way_m = way_of_point(record[0], record[i], contact.point_m);
+    const double way_m = way_of_point(record[0], record[i], point_m);
     if (!(way_m > plan.crush_m)) continue;
     plan.crush_m = way_m;
     furthest = i;
@@ -160,7 +158,7 @@ DamagePlan plan_damage(const Scene& scene, const Contact& contact, const Impact&
   for (const std::size_t actor : pressed) {
     if (actor != contact.actor) add_path(actor);
   }
-  plan.ego = record[0].a;
+  plan.ego = ego;
   plan.other =
       other.vehicle.movable() ? record[0].b : other.motion.pose_at(contact.time_of_impact_s);
   return plan;

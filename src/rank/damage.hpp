@@ -56,11 +56,12 @@ struct DamagePlan {
   }
 };
 
-/// Says where to look for the damage of a contact. `motion` is that of the plain variant, A the
-/// ego; `pressed` are the actors that the ego pressed on in it, the contact's own and those that
-/// are joined to it included.
-DamagePlan plan_damage(const Scene& scene, const Contact& contact, const Impact& impact,
-                       const ContactMotion& motion, View<const std::size_t> pressed);
+/// Says where to look for the damage of a contact that begins with the ego at `ego`. `motion` is
+/// that of the plain variant, A the ego; `pressed` are the actors that the ego pressed on in it,
+/// the contact's own may be among them.
+DamagePlan plan_damage(const Scene& scene, const Pose& ego, const Contact& contact,
+                       const Impact& impact, const ContactMotion& motion,
+                       View<const std::size_t> pressed);
 
 /// Pairs found before, `queries[first + i]` at the plan's i-th pose; without lists each pose is
 /// asked when it is needed.

@@ -94,6 +94,13 @@ double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>
   return tally.score(scene, scene.plain);
 }
 
+/// How the bodies of a contact along the plan moved, and where the actors that the ego has met
+/// until then end in the list of them.
+struct SimulatedContact {
+  ContactMotion motion;
+  std::size_t met_end = 0;
+};
+
 // What the candidate scores in every sample, and the interval of those under its own risk model.
 void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
                  CandidateResult& result) {
@@ -121,6 +128,7 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
   found.decided = find_hits(scene, candidate.motion, scratch, work);
   double last_s = std::numeric_limits<double>::infinity();
   std::vector<Contact>& contacts = found.result.contacts;
+  std::vector<SimulatedContact> simulated;
   EgoAtContact first;
   EgoAfterContact left;
   for (const Scratch::Hit& hit : scratch.hits) {
@@ -128,7 +136,9 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
     const EgoAtContact ego = planned(candidate.motion, hit.impact.time_s);
     contacts.push_back(make_contact(scene, ego, hit.actor, hit.impact));
     const std::size_t met_before = found.met.size();
-    add_met(scene, hit.actor, found.met);
+    const auto place = static_cast<std::size_t>(
+        std::find(found.met.begin(), found.met.end(), hit.actor) - found.met.begin());
+    if (place == met_before) add_met(scene, hit.actor, found.met);
     found.effects.emplace_back();
     const EgoAfterContact after = simulate_variants(scene, ego, contacts.back(), found.met,
                                                     scratch.crash, found.effects.back());
@@ -138,8 +148,14 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
       first = ego;
       left = after;
     }
-    found.plans.push_back(plan_damage(scene, contacts.back(), hit.impact, scratch.crash.motion,
-                                      found.met_since(met_before)));
+    simulated.push_back({scratch.crash.motion, found.met.size()});
+    // A body that the ego pressed on in an earlier contact is damaged along that one's motion.
+    const auto pressing =
+        std::find_if(simulated.begin(), simulated.end(),
+                     [place](const SimulatedContact& earlier) { return place < earlier.met_end; });
+    found.plans.push_back(
+        plan_damage(scene, ego.pose, contacts.back(), hit.impact, pressing->motion,
+                    place < met_before ? View<const std::size_t>() : found.met_since(met_before)));
     if (scene.pulses) break;
   }
   found.result.collides = !contacts.empty();

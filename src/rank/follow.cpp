@@ -159,8 +159,8 @@ void follow(const Scene& scene, const Candidate& candidate, const EgoAtContact& 
     found.effects.emplace_back();
     after = simulate_variants(scene, ego, contact, met, scratch.crash, found.effects.back());
     contacts.push_back(std::move(contact));
-    found.plans.push_back(plan_damage(scene, contacts.back(), hit->impact, scratch.crash.motion,
-                                      found.met_since(met_before)));
+    found.plans.push_back(plan_damage(scene, ego.pose, contacts.back(), hit->impact,
+                                      scratch.crash.motion, found.met_since(met_before)));
   }
 }
 

@@ -108,7 +108,9 @@ struct Contact {
   /// together and their velocities passed through the common centre of mass.
   double closing_energy_j = 0.0;
   /// Duration of the simulated motion along which the damage was read, from first contact to the
-  /// end of the force, s: `severity.duration_s`. 0 where the bodies do not press on each other.
+  /// end of the force, s. 0 where the bodies do not press on each other. It is
+  /// `severity.duration_s`, but for a body that nothing moves and that the ego pressed on in an
+  /// earlier contact along its plan already: that contact's motion then holds for both.
   double crush_s = 0.0;
   /// Greatest distance in that motion of the ego's point at `point_m` from where it was at first
   /// contact, in the other body's frame, m. Both bodies' crush together in a square hit; more where
