@@ -88,6 +88,7 @@ ContactRun::ContactRun(const ContactBody& a, const ContactBody& b, View<const Co
 
   start_first_ = end_first_ = state_.bodies[0].motion;
   start_second_ = end_second_ = state_.bodies[1].motion;
+  record_.begin(start_first_, start_second_);
   friction_ = friction_between(given_first_.vehicle->surface, given_second_.vehicle->surface);
   rim_m_ = rim_of(*given_first_.vehicle);
   if (given_second_.vehicle->movable()) {
@@ -347,6 +348,7 @@ void ContactRun::step() {
     duration_s_ = time_s_;
     end_first_ = state_.bodies[0].motion;
     end_second_ = state_.bodies[1].motion;
+    record_.add(time_s_, end_first_, end_second_);
   }
   over_ = quiet_m_ > (acts_ ? parted_m : missed_m) || time_s_ > longest_contact_s;
   if (acts_ && time_s_ - late_from_s_ > faded_s && late_m_ > faded_m) {
@@ -432,6 +434,7 @@ ContactOutcome ContactRun::outcome() const {
   }
   result.a = swapped_ ? second : first;
   result.b = swapped_ ? first : second;
+  result.motion = record_.motion(given_first_, given_second_, swapped_);
   return result;
 }
 

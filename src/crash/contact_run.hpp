@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crash/motion_record.hpp"
 #include "crash/surface_pass.hpp"
 
 #include "crashrank/crash/contact_law.hpp"
@@ -103,6 +104,7 @@ private:
   PlanarBody start_second_;
   PlanarBody end_first_;  ///< when the force last acted
   PlanarBody end_second_;
+  MotionRecord record_;
   double friction_ = 0.3;
   double rim_m_ = 0.0;  ///< no outline is further from its body's centre of mass
 

@@ -60,6 +60,7 @@ EgoAfterContact simulate_variants(const Scene& scene, const EgoAtContact& ego, C
       set_up_crash(scene, ego, contact, {met.data(), met.size()}, scratch.group);
   const ContactOutcome plain = simulate_contact(crash.a, crash.b, crash.fixed, contact.point_m,
                                                 variant_of(scene.plain), scratch.workspace);
+  scratch.motion = plain.motion;
   add_pressed(scene, scratch.workspace.state(), scratch.group, met);
   ContactSeverity& severity = contact.severity;
   severity.simulated = true;

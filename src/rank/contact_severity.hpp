@@ -33,7 +33,7 @@ struct CrashScratch;
 
 /// Simulates a contact in the plain variant and in those of the scene's samples; fills in
 /// `contact.severity`. `effects` gets the plain effect, then one for each variant in the order of
-/// the samples; `met` the further bodies that pressed.
+/// the samples; `met` the further bodies that pressed, `scratch.motion` how both moved.
 EgoAfterContact simulate_variants(const Scene& scene, const EgoAtContact& ego, Contact& contact,
                                   std::vector<std::size_t>& met, CrashScratch& scratch,
                                   std::vector<ContactEffect>& effects);

@@ -9,6 +9,7 @@ namespace crashrank::detail {
 struct CrashScratch {
   ContactWorkspace workspace;
   FixedGroup group;
+  ContactMotion motion;  ///< plain variant of what `simulate_variants` simulated last
 };
 
 }  // namespace crashrank::detail

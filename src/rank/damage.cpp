@@ -3,13 +3,14 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
 
-constexpr double sample_length_m = 0.5;
-constexpr double max_samples = 8.0;
+/// The ego moves no further than this from one pose to the next, unless the record's neighbours are
+/// further apart: what lies between them is found by following corners.
+constexpr double pose_spacing_m = 0.1;
 
 Box bounds_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
   Box box;
@@ -44,74 +45,47 @@ Box wider(const Box& box, float by) {
   return result;
 }
 
-// Where along the crush the bodies are, from first contact (0) to the end of it (1).
-class CrushPath {
-public:
-  CrushPath(const Scene& scene, const Motion& ego, const Contact& contact)
-      : ego_(ego), other_(scene.actors[contact.actor].motion), contact_(contact) {
-    Velocity ego_velocity;
-    Velocity other_velocity;
-    ego_.state_at(contact.time_of_impact_s, ego_start_, ego_velocity);
-    other_.state_at(contact.time_of_impact_s, other_start_, other_velocity);
-    if (scene.crush.depth_m) {
-      const Eigen::Vector3d relative_velocity =
-          velocity_of_point(ego_velocity, ego_start_.translation, contact.point_m) -
-          velocity_of_point(other_velocity, other_start_.translation, contact.point_m);
-      const double speed = relative_velocity.norm();
-      if (speed > 0.0) shift_m_ = relative_velocity * (*scene.crush.depth_m / speed);
-      length_m_ = shift_m_.norm();
-      return;
+// How far a point in the ego's coordinates moves in the frame of the other.
+double way_of_point(const ContactPoses& from, const ContactPoses& to,
+                    const Eigen::Vector3d& in_ego_m) {
+  const Pose before = relative(from.b, from.a);
+  const Pose after = relative(to.b, to.a);
+  return (after.rotation * in_ego_m + after.translation -
+          (before.rotation * in_ego_m + before.translation))
+      .norm();
+}
+
+// How far the corner of the ego's box that moves most gets in the other's frame.
+double way_of_ego(const Scene& scene, const ContactPoses& from, const ContactPoses& to) {
+  double way_m = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
+                               (corner & 4) != 0 ? 1.0 : -1.0);
+    const Eigen::Vector3d point = scene.ego.center_m + scene.ego.half_axes_m * sign;
+    way_m = std::max(way_m, way_of_point(from, to, point));
+  }
+  return way_m;
+}
+
+// Entries of a record that stand for all: the first, the one at which the contact point has got
+// furthest, the last, and as many between them as keep neighbours close.
+std::vector<std::size_t> choose_entries(const Scene& scene, View<const ContactPoses> record,
+                                        std::size_t furthest) {
+  std::vector<std::size_t> chosen{0};
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    if (i == furthest || i + 1 == record.size() ||
+        way_of_ego(scene, record[chosen.back()], record[i + 1]) > pose_spacing_m) {
+      chosen.push_back(i);
     }
-    seconds_ = scene.crush.time_s;
-    const Pose before = relative(other_start_, ego_start_);
-    const Pose after = relative(other_at(1.0), ego_at(1.0));
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
-                                 (corner & 4) != 0 ? 1.0 : -1.0);
-      const Eigen::Vector3d point = scene.ego.center_m + scene.ego.half_axes_m * sign;
-      const Eigen::Vector3d way = after.rotation * point + after.translation -
-                                  (before.rotation * point + before.translation);
-      length_m_ = std::max(length_m_, way.norm());
-    }
   }
+  return chosen;
+}
 
-  double seconds() const { return seconds_; }
-  /// How far the corners of the ego's box get in the frame of the other, the one that gets
-  /// furthest.
-  double length_m() const { return length_m_; }
-
-  Pose ego_at(double share) const {
-    if (seconds_ > 0.0) return ego_.pose_at(contact_.time_of_impact_s + share * seconds_);
-    Pose pose = ego_start_;
-    pose.translation += share * shift_m_;
-    return pose;
-  }
-  Pose other_at(double share) const {
-    return seconds_ > 0.0 ? other_.pose_at(contact_.time_of_impact_s + share * seconds_)
-                          : other_start_;
-  }
-
-private:
-  const Motion& ego_;
-  const Motion& other_;
-  const Contact& contact_;
-  Pose ego_start_;
-  Pose other_start_;
-  Eigen::Vector3d shift_m_ = Eigen::Vector3d::Zero();
-  double seconds_ = 0.0;
-  double length_m_ = 0.0;
-};
-
-// How far a point that is fixed to the ego moves in the frame of the other.
-double way_of_point(const Pose& ego_first, const Pose& other_first, const Pose& ego_last,
-                    const Pose& other_last, const Eigen::Vector3d& point_m) {
-  const Eigen::Vector3d in_ego = ego_first.rotation.transpose() * (point_m - ego_first.translation);
-  const Eigen::Vector3d before =
-      other_first.rotation.transpose() * (point_m - other_first.translation);
-  const Eigen::Vector3d after =
-      other_last.rotation.transpose() *
-      (ego_last.rotation * in_ego + ego_last.translation - other_last.translation);
-  return (after - before).norm();
+// Whether a body can touch the ego at one of the poses.
+bool comes_near(const Body& ego, const Body& other, const std::vector<Pose>& poses) {
+  const double reach_m = ego.radius_m + other.radius_m;
+  return std::any_of(poses.begin(), poses.end(),
+                     [reach_m](const Pose& pose) { return pose.translation.norm() <= reach_m; });
 }
 
 void add_all(const TriangleMesh& mesh, TriangleSet& set) {
@@ -147,84 +121,119 @@ void sum_up(const TriangleMesh& mesh, BodyDamage& damage) {
   }
 }
 
-DamagePlan plan_damage(const Scene& scene, const Motion& ego_motion, const Contact& contact,
-                       std::int32_t triangle_ego, std::int32_t triangle_other) {
-  const CrushPath path(scene, ego_motion, contact);
+DamagePlan plan_damage(const Scene& scene, const Pose& ego, const Contact& contact,
+                       const Impact& impact, const ContactMotion& motion,
+                       View<const std::size_t> pressed) {
+  const View<const ContactPoses> record = motion.all();
+  const Body& other = scene.actors[contact.actor];
   DamagePlan plan;
-  plan.triangle_ego = triangle_ego;
-  plan.triangle_other = triangle_other;
-  const auto samples =
-      static_cast<int>(std::clamp(std::ceil(path.length_m() / sample_length_m), 1.0, max_samples));
-  // Bodies that were apart until now have met with the first pair alone.
-  const int first_sample = contact.state == ImpactState::contact ? 1 : 0;
-  for (int k = first_sample; k <= samples; ++k) {
-    const double share = static_cast<double>(k) / samples;
-    plan.poses.push_back(relative(path.ego_at(share), path.other_at(share)));
+  plan.triangle_ego = impact.triangle_a;
+  plan.triangle_other = impact.triangle_b;
+  plan.first_pose = contact.state == ImpactState::contact ? 1 : 0;
+  plan.crush_s = record[record.size() - 1].time_s;
+  const Eigen::Vector3d point_m = ego.rotation.transpose() * (contact.point_m - ego.translation);
+  std::size_t furthest = 0;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double way_m = way_of_point(record[0], record[i], point_m);
+    if (!(way_m > plan.crush_m)) continue;
+    plan.crush_m = way_m;
+    furthest = i;
   }
+  const std::vector<std::size_t> chosen = choose_entries(scene, record, furthest);
+  const auto add_path = [&](std::size_t actor) {
+    const Body& body = scene.actors[actor];
+    // Of joined bodies the record has the common pose.
+    const bool stands = !body.vehicle.movable();
+    const Pose standing = body.motion.pose_at(contact.time_of_impact_s);
+    DamagePath path;
+    path.actor = actor;
+    for (const std::size_t i : chosen) {
+      path.poses.push_back(relative(record[i].a, stands ? standing : record[i].b));
+    }
+    if (actor == contact.actor || comes_near(scene.ego, body, path.poses)) {
+      plan.paths.push_back(std::move(path));
+    }
+  };
+  add_path(contact.actor);
+  for (const std::size_t actor : pressed) {
+    if (actor != contact.actor) add_path(actor);
+  }
+  plan.ego = ego;
+  plan.other =
+      other.vehicle.movable() ? record[0].b : other.motion.pose_at(contact.time_of_impact_s);
   return plan;
 }
 
-void read_damage(const Scene& scene, const Motion& ego_motion, const DamagePlan& plan,
-                 const FoundDamage& found, Contact& contact, DamageScratch& scratch,
-                 RankWork& work) {
+void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& found,
+                 Contact& contact, DamageScratch& scratch, RankWork& work) {
   const Body& other = scene.actors[contact.actor];
   const Model& ego_model = *scene.ego.model;
   const Model& other_model = *other.model;
-  const CrushPath path(scene, ego_motion, contact);
   scratch.ego.clear(ego_model.mesh.size());
   scratch.other.clear(other_model.mesh.size());
-  scratch.met.clear();
+  scratch.overlaps.clear();
 
-  const Pose ego_first = path.ego_at(0.0);
-  const Pose other_first = path.other_at(0.0);
   if (plan.triangle_ego >= 0 && plan.triangle_other >= 0) {
     scratch.ego.add(static_cast<std::uint32_t>(plan.triangle_ego));
     scratch.other.add(static_cast<std::uint32_t>(plan.triangle_other));
-    scratch.met.push_back(relative(ego_first, other_first));
+    scratch.overlaps.push_back({relative(plan.ego, plan.other), {}});
   }
   if (contact.state == ImpactState::contained) {
     const bool ego_is_inside = scene.ego.radius_m < other.radius_m;
     add_all(ego_is_inside ? ego_model.mesh : other_model.mesh,
             ego_is_inside ? scratch.ego : scratch.other);
   }
-  const auto add = [&scratch](View<const Pair> pairs) {
-    for (const Pair& pair : pairs) {
-      scratch.ego.add(static_cast<std::uint32_t>(pair.a));
-      scratch.other.add(static_cast<std::uint32_t>(pair.b));
+  std::size_t query = found.first;
+  for (const DamagePath& path : plan.paths) {
+    const bool own = path.actor == contact.actor;
+    const Body& body = scene.actors[path.actor];
+    const auto add = [&scratch, own](View<const Pair> pairs) {
+      for (const Pair& pair : pairs) {
+        scratch.ego.add(static_cast<std::uint32_t>(pair.a));
+        if (own) scratch.other.add(static_cast<std::uint32_t>(pair.b));
+      }
+    };
+    for (std::size_t i = plan.first_pose; i < path.poses.size(); ++i, ++query) {
+      ++work.damage_queries;
+      if (found.lists != nullptr) {
+        if (found.lists->count(query) == 0) continue;
+        found.lists->for_each_run(query, add);
+      } else {
+        const CollideResult result =
+            collide(ego_model, *body.model, path.poses[i], scratch.pairs, scratch.collide);
+        work.damage += result.work;
+        if (!result.intersecting) continue;
+        add(scratch.pairs);
+      }
+      scratch.overlaps.push_back({path.poses[i], own ? Box{} : body.model->mesh.bounds()});
     }
-  };
-  for (std::size_t i = 0; i < plan.poses.size(); ++i) {
-    ++work.damage_queries;
-    if (found.lists != nullptr) {
-      if (found.lists->count(found.first + i) == 0) continue;
-      found.lists->for_each_run(found.first + i, add);
-    } else {
-      const CollideResult result =
-          collide(ego_model, other_model, plan.poses[i], scratch.pairs, scratch.collide);
-      work.damage += result.work;
-      if (!result.intersecting) continue;
-      add(scratch.pairs);
-    }
-    scratch.met.push_back(plan.poses[i]);
   }
-  const Pose b_in_a_first = relative(ego_first, other_first);
-  const Pose b_in_a_last = relative(path.ego_at(1.0), path.other_at(1.0));
-  work.paths += add_passed(scene.ego, inverse(b_in_a_first), inverse(b_in_a_last), other,
-                           scratch.ego, scratch.passed);
-  work.paths +=
-      add_passed(other, b_in_a_first, b_in_a_last, scene.ego, scratch.other, scratch.passed);
-  finish(ego_model.mesh, scratch.ego, ego_first, contact.ego);
-  finish(other_model.mesh, scratch.other, other_first, contact.other);
-  contact.crush_s = path.seconds();
-  contact.crush_m =
-      way_of_point(ego_first, other_first, path.ego_at(1.0), path.other_at(1.0), contact.point_m);
+  for (const DamagePath& path : plan.paths) {
+    const Body& body = scene.actors[path.actor];
+    for (std::size_t i = 1; i < path.poses.size(); ++i) {
+      const Pose& from = path.poses[i - 1];
+      const Pose& to = path.poses[i];
+      work.paths +=
+          add_passed(scene.ego, inverse(from), inverse(to), body, scratch.ego, scratch.passed);
+      if (path.actor != contact.actor) continue;
+      work.paths += add_passed(body, from, to, scene.ego, scratch.other, scratch.passed);
+    }
+  }
+  finish(ego_model.mesh, scratch.ego, plan.ego, contact.ego);
+  finish(other_model.mesh, scratch.other, plan.other, contact.other);
+  contact.crush_s = plan.crush_s;
+  contact.crush_m = plan.crush_m;
 
   const Box ego_box = bounds_of(ego_model.mesh, contact.ego.triangles);
   const Box other_box = bounds_of(other_model.mesh, contact.other.triangles);
   if (ego_box.empty() || other_box.empty()) return;
   const auto reach = static_cast<float>(contact.gap_m) + 1e-5F;
-  for (const Pose& b_in_a : scratch.met) {
-    contact.ego.region.grow(common(ego_box, wider(carried(b_in_a, other_box), reach)));
+  for (const DamageScratch::Overlap& overlap : scratch.overlaps) {
+    const Pose& b_in_a = overlap.other_in_ego;
+    const bool own = overlap.other.empty();
+    contact.ego.region.grow(
+        common(ego_box, wider(carried(b_in_a, own ? other_box : overlap.other), reach)));
+    if (!own) continue;
     contact.other.region.grow(common(other_box, wider(carried(inverse(b_in_a), ego_box), reach)));
   }
 }

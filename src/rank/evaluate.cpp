@@ -94,6 +94,13 @@ double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>
   return tally.score(scene, scene.plain);
 }
 
+/// How the bodies of a contact along the plan moved, and where the actors that the ego has met
+/// until then end in the list of them.
+struct SimulatedContact {
+  ContactMotion motion;
+  std::size_t met_end = 0;
+};
+
 // What the candidate scores in every sample, and the interval of those under its own risk model.
 void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
                  CandidateResult& result) {
@@ -121,24 +128,34 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
   found.decided = find_hits(scene, candidate.motion, scratch, work);
   double last_s = std::numeric_limits<double>::infinity();
   std::vector<Contact>& contacts = found.result.contacts;
+  std::vector<SimulatedContact> simulated;
   EgoAtContact first;
   EgoAfterContact left;
   for (const Scratch::Hit& hit : scratch.hits) {
     if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
     const EgoAtContact ego = planned(candidate.motion, hit.impact.time_s);
     contacts.push_back(make_contact(scene, ego, hit.actor, hit.impact));
-    add_met(scene, hit.actor, found.met);
+    const std::size_t met_before = found.met.size();
+    const auto place = static_cast<std::size_t>(
+        std::find(found.met.begin(), found.met.end(), hit.actor) - found.met.begin());
+    if (place == met_before) add_met(scene, hit.actor, found.met);
     found.effects.emplace_back();
     const EgoAfterContact after = simulate_variants(scene, ego, contacts.back(), found.met,
                                                     scratch.crash, found.effects.back());
     contacts.back().severity.simulated = scene.pulses;
     if (contacts.size() == 1) {
-      last_s = hit.impact.time_s + window_s(scene, contacts.front().closing_speed_mps);
+      last_s = hit.impact.time_s + same_crash_s;
       first = ego;
       left = after;
     }
-    found.plans.push_back(plan_damage(scene, candidate.motion, contacts.back(),
-                                      hit.impact.triangle_a, hit.impact.triangle_b));
+    simulated.push_back({scratch.crash.motion, found.met.size()});
+    // A body that the ego pressed on in an earlier contact is damaged along that one's motion.
+    const auto pressing =
+        std::find_if(simulated.begin(), simulated.end(),
+                     [place](const SimulatedContact& earlier) { return place < earlier.met_end; });
+    found.plans.push_back(
+        plan_damage(scene, ego.pose, contacts.back(), hit.impact, pressing->motion,
+                    place < met_before ? View<const std::size_t>() : found.met_since(met_before)));
     if (scene.pulses) break;
   }
   found.result.collides = !contacts.empty();
@@ -153,9 +170,8 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
                        FoundDamage found, Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(approach.result);
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
-    read_damage(scene, approach.motion(candidate, i), approach.plans[i], found, result.contacts[i],
-                scratch.damage, work);
-    found.first += approach.plans[i].poses.size();
+    read_damage(scene, approach.plans[i], found, result.contacts[i], scratch.damage, work);
+    found.first += approach.plans[i].queries();
   }
   sum_up_ego(scene, result);
   if (approach.decided) {

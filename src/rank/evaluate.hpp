@@ -37,15 +37,14 @@ struct Scratch {
 struct Approach {
   CandidateResult result;         ///< contacts without damage, grazes
   std::vector<DamagePlan> plans;  ///< by contact
-  /// By contact from the second on, where the ego was followed after the first: how it moved.
-  std::vector<Motion> after;
   /// By contact: in the plain variant, then in those of the samples.
   std::vector<std::vector<ContactEffect>> effects;
   std::vector<std::size_t> met;  ///< actors that were hit or pressed
   bool decided = true;
 
-  const Motion& motion(const Candidate& candidate, std::size_t contact) const {
-    return contact == 0 || after.empty() ? candidate.motion : after[contact - 1];
+  /// Those of `met` from an index on.
+  View<const std::size_t> met_since(std::size_t first) const {
+    return {met.data() + first, met.size() - first};
   }
 };
 

@@ -86,13 +86,16 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
     first_query.clear();
     for (const Approach& found : approaches) {
       first_query.push_back(queries.size());
-      for (std::size_t i = 0; i < found.plans.size(); ++i) {
-        const Body& other = scene.actors[found.result.contacts[i].actor];
-        const Result<const PartIndex*> a = indices_a.of(*scene.ego.model);
-        if (!a) return a.error();
-        const Result<const PartIndex*> b = indices_b.of(*other.model);
-        if (!b) return b.error();
-        for (const Pose& pose : found.plans[i].poses) queries.push_back({*a, *b, pose});
+      for (const DamagePlan& plan : found.plans) {
+        for (const DamagePath& path : plan.paths) {
+          const Result<const PartIndex*> a = indices_a.of(*scene.ego.model);
+          if (!a) return a.error();
+          const Result<const PartIndex*> b = indices_b.of(*scene.actors[path.actor].model);
+          if (!b) return b.error();
+          for (std::size_t i = plan.first_pose; i < path.poses.size(); ++i) {
+            queries.push_back({*a, *b, path.poses[i]});
+          }
+        }
       }
     }
     const Result<DispatchReport> report = dispatcher->run(queries, lists, how);

@@ -154,13 +154,13 @@ void follow(const Scene& scene, const Candidate& candidate, const EgoAtContact& 
     if (!hit) break;
     ego = aftermath.at(hit->impact.time_s);
     Contact contact = make_following_contact(scene, ego, *hit);
+    const std::size_t met_before = met.size();
     add_met(scene, contact.actor, met);
     found.effects.emplace_back();
     after = simulate_variants(scene, ego, contact, met, scratch.crash, found.effects.back());
     contacts.push_back(std::move(contact));
-    found.after.push_back(aftermath.motion());
-    found.plans.push_back(plan_damage(scene, aftermath.motion(), contacts.back(),
-                                      hit->impact.triangle_a, hit->impact.triangle_b));
+    found.plans.push_back(plan_damage(scene, ego.pose, contacts.back(), hit->impact,
+                                      scratch.crash.motion, found.met_since(met_before)));
   }
 }
 

@@ -8,21 +8,6 @@
 namespace crashrank::detail {
 namespace {
 
-// A contact that begins this long after the first one still belongs to the same crash.
-double longest_window_s(const Scene& scene) {
-  return scene.crush.depth_m ? scenario_limits::crush_time_s : scene.crush.time_s;
-}
-
-}  // namespace
-
-double window_s(const Scene& scene, double closing_speed_mps) {
-  if (!scene.crush.depth_m) return scene.crush.time_s;
-  if (!(closing_speed_mps > 0.0)) return 0.0;
-  return std::min(*scene.crush.depth_m / closing_speed_mps, scenario_limits::crush_time_s);
-}
-
-namespace {
-
 bool starts_as_the_ego(const Scene& scene, const Motion& motion) {
   const Pose pose = motion.pose_at(0.0);
   return pose.rotation == scene.ego_start.rotation &&
@@ -44,7 +29,7 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
   for (const Scratch::Near& near : scratch.near) {
     if (near.first_slice != slice) {
       slice = near.first_slice;
-      until_s = first_s + longest_window_s(scene);
+      until_s = first_s + same_crash_s;
     }
     const double from = scene.slice_s[near.first_slice];
     const double until = std::min(scene.slice_s[near.last_slice + 1], until_s);

@@ -84,7 +84,7 @@ void add_planned(const RefineQuery& q, Refined& state, const Scratch& scratch) {
     const EgoAtContact ego = planned(q.candidate.motion, hit.impact.time_s);
     const Contact contact = make_contact(q.scene, ego, hit.actor, hit.impact);
     if (last_s == std::numeric_limits<double>::infinity()) {
-      last_s = hit.impact.time_s + window_s(q.scene, contact.closing_speed_mps);
+      last_s = hit.impact.time_s + same_crash_s;
     }
     energy += contact.closing_energy_j;
     most_triangles += static_cast<double>(q.scene.actors[hit.actor].model->mesh.size());

@@ -235,8 +235,6 @@ Status check_scenario(const Scenario& scenario) {
   check.within("horizon_s", scenario.horizon_s, {0.0, limits::horizon_s, true});
   check_harm(scenario.harm, "harm", check);
   check.within("grip", scenario.grip, {limits::min_grip, limits::max_grip});
-  check.not_negative("crush.time_s", scenario.crush.time_s, limits::crush_time_s);
-  check.not_negative("crush.depth_m", scenario.crush.depth_m.value_or(0.0), limits::crush_depth_m);
   return check.status;
 }
 

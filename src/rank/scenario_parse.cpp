@@ -265,16 +265,6 @@ void read_actors(const JsonObject& root, Scenario& scenario) {
   }
 }
 
-void read_crush(const JsonObject& root, Crush& crush) {
-  if (!root.has("crush")) return;
-  const JsonObject object(root.at("crush"), "crush", root.status(), {"time_s", "depth_m"});
-  if (object.has("time_s") == object.has("depth_m")) {
-    detail::refuse_at(root.status(), "crush", "needs either time_s or depth_m", "give one of them");
-  }
-  crush.time_s = object.number("time_s", {0.0, limits::crush_time_s}, crush.time_s);
-  crush.depth_m = object.optional_number("depth_m", {0.0, limits::crush_depth_m});
-}
-
 void read_models(const JsonObject& root, Scenario& scenario) {
   root.require("models");
   if (!root.has("models")) return;
@@ -294,7 +284,7 @@ void read_models(const JsonObject& root, Scenario& scenario) {
   }
 }
 
-/// Keys of earlier crash models: read and checked, so that files which have them stay valid.
+/// Keys of earlier crash models: accepted, so that files which have them stay valid.
 std::vector<std::string> find_keys_without_effect(const json& document) {
   std::vector<std::string> keys;
   for (const char* const pointer : {"/crush", "/harm/least_struck_share"}) {
@@ -325,7 +315,6 @@ Scenario read_scenario(const json& document, Status& status) {
   read_candidates(root, scenario);
   read_actors(root, scenario);
   scenario.horizon_s = root.number("horizon_s", {0.0, limits::horizon_s, true}, 4.0);
-  read_crush(root, scenario.crush);
   if (root.has("measure")) {
     const Result<Measure> measure =
         measure_from_name(root.text("measure", limits::name_characters));

@@ -103,7 +103,6 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
                       "give one for each, in the same order");
   }
   Scene scene;
-  scene.crush = scenario.crush;
   scene.measure = options.measure.value_or(scenario.measure);
   scene.harm = options.harm.value_or(scenario.harm);
   scene.pulses = needs_crash(scene.measure);

@@ -55,7 +55,6 @@ struct Scene {
   std::vector<Box> boxes;  ///< of the actors, while slices are built
   /// Whether the ego at its start is known to be clear of an actor, by actor.
   std::vector<char> apart_at_start;
-  Crush crush;
   Measure measure = Measure::polygons;
   HarmOptions harm;
   HarmSample plain;                 ///< in which nothing varies

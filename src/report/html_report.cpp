@@ -336,8 +336,9 @@ private:
     }
     out_ +=
         "<footer>Made by crashrank. Plans: the ego blue, what it hits sand, the shaded outline "
-        "its start, the arrow the closing velocity, damage red. Damage is what the rigid "
-        "bodies pass through in the scenario's crush, not a deformation.";
+        "its start, the arrow the closing velocity, damage red. Damage is what the "
+        "bodies pass through of each other, as rigid ones, in the simulated contact, not a "
+        "deformation.";
     if (result_.measure != Measure::harm) {
       out_ += " The measure is one of the crash, not of harm to people.";
     } else {

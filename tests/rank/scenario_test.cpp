@@ -78,8 +78,7 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
   EXPECT_FALSE(s.actors[1].occupants.has_value());
   EXPECT_EQ(s.actors[2].occupants, 4.5);
   EXPECT_EQ(s.horizon_s, 4.0);
-  EXPECT_EQ(s.crush.time_s, 0.05);
-  EXPECT_FALSE(s.crush.depth_m.has_value());
+  EXPECT_EQ(s.keys_without_effect, std::vector<std::string>{"crush"});
   EXPECT_EQ(s.measure, Measure::area);
   EXPECT_EQ(s.harm.model, RiskModel::malliaris_monfort);
   EXPECT_EQ(s.harm.weights.pedestrian, 2.0);
@@ -148,8 +147,6 @@ TEST(Scenario, TheSchemaStatesTheParsersLimits) {
   EXPECT_EQ(at("/$defs/model/properties/scale/maximum"), limits::max_scale);
   EXPECT_EQ(at("/properties/grip/minimum"), limits::min_grip);
   EXPECT_EQ(at("/properties/grip/maximum"), limits::max_grip);
-  EXPECT_EQ(at("/$defs/crush/oneOf/0/properties/time_s/maximum"), limits::crush_time_s);
-  EXPECT_EQ(at("/$defs/crush/oneOf/1/properties/depth_m/maximum"), limits::crush_depth_m);
 }
 
 TEST(Scenario, DefaultsAreThoseOfTheSchema) {
@@ -171,7 +168,6 @@ TEST(Scenario, DefaultsAreThoseOfTheSchema) {
   EXPECT_EQ(s->grid->accelerations, 15U);
   EXPECT_EQ(s->grid->steerings, 15U);
   EXPECT_TRUE(s->add_straight_braking);
-  EXPECT_EQ(s->crush.time_s, 0.05);
   EXPECT_EQ(at("/$defs/model/properties/stiffness/default"), s->models[0].stiffness);
   EXPECT_FALSE(s->models[0].surface || s->ego.occupants);
 }

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -56,6 +57,26 @@ struct BodyContact {
   Box damaged;                  ///< bounds of the pressed outline, body coordinates; may be empty
 };
 
+/// Where both bodies are at a time of a contact.
+struct ContactPoses {
+  double time_s = 0.0;  ///< since first contact, s
+  Pose a;               ///< A's body axes to world
+  Pose b;               ///< B's
+};
+
+/// How both bodies move during a contact, as poses of their origins in the order of time: at first
+/// contact, after the first and the last step of the integration that had a force, and after up to
+/// 13 steps with a force in between, evenly by number. One entry where no force acted. Height,
+/// pitch and roll stay those at first contact.
+struct ContactMotion {
+  static constexpr std::size_t most = 16;  ///< entries
+  std::array<ContactPoses, most> poses;    ///< the first `count` of them hold
+  std::size_t count = 0;                   ///< at least 1 in an outcome
+
+  /// Those that hold.
+  View<const ContactPoses> all() const noexcept { return {poses.data(), count}; }
+};
+
 /// What a contact does to two bodies.
 struct ContactOutcome {
   bool acts = false;  ///< the surfaces pressed against each other
@@ -70,6 +91,7 @@ struct ContactOutcome {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< mean point of the force, world, m
   BodyContact a;                                      ///< what it does to A
   BodyContact b;                                      ///< and to B
+  ContactMotion motion;                               ///< of both while they pressed
   std::uint32_t steps = 0;                            ///< of the integration
   std::uint64_t pieces = 0;  ///< pieces of outlines moved, over all steps: the work done
 };

@@ -40,8 +40,9 @@ struct RankOptions {
 
 /// What a crash does to one body.
 struct BodyDamage {
-  /// Triangles that meet the other body during the crush, in mesh order, rising. A body that lies
-  /// inside the other at the start counts whole.
+  /// Triangles that intersect the other body, or pass through its surface, while the two move as
+  /// the simulated contact moves them, in mesh order, rising: see `rank`. A body that lies inside
+  /// the other at the start counts whole.
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> parts;  ///< indices of the mesh's parts that those belong to, rising
   double area_m2 = 0.0;              ///< of those triangles
@@ -106,10 +107,19 @@ struct Contact {
   /// ½·m₁m₂/(m₁+m₂)·closing_speed²: all that the crash could turn into damage if the bodies stuck
   /// together and their velocities passed through the common centre of mass.
   double closing_energy_j = 0.0;
-  double crush_s = 0.0;  ///< time along the motions for which the damage was read; 0 for a depth
-  double crush_m = 0.0;  ///< way of the contact point relative to the other body in that
-  BodyDamage ego;        ///< what it damages of the ego
-  BodyDamage other;      ///< and of the other
+  /// Duration of the simulated motion along which the damage was read, from first contact to the
+  /// end of the force, s. 0 where the bodies do not press on each other. It is
+  /// `severity.duration_s`, but for a body that nothing moves and that the ego pressed on in an
+  /// earlier contact along its plan already: that contact's motion then holds for both.
+  double crush_s = 0.0;
+  /// Greatest distance in that motion of the ego's point at `point_m` from where it was at first
+  /// contact, in the other body's frame, m. Both bodies' crush together in a square hit; more where
+  /// they slide past each other.
+  double crush_m = 0.0;
+  /// What it damages of the ego, by further bodies that nothing moves and that the ego presses on
+  /// in the same contact included.
+  BodyDamage ego;
+  BodyDamage other;          ///< and of `actor`
   ContactSeverity severity;  ///< the crash that begins with it
   std::size_t event = 0;     ///< number of the ego's event that it belongs to, from 1
 };
@@ -128,7 +138,7 @@ struct CandidateResult {
   bool collides = false;         ///< it touches somebody
   /// In time order (then by actor). Measures that simulate the crash: the first contact, then what
   /// the ego meets as the crash leaves it (AfterImpact). The others: the first contact and all that
-  /// begin within the crush of it along the planned motion.
+  /// begin no later than 0.05 s after it along the planned motion.
   std::vector<Contact> contacts;
   std::vector<Graze> grazes;  ///< before the first contact, in time order
   /// The ego's damage from all contacts together; a triangle hit twice counts once.
@@ -223,11 +233,15 @@ struct RankResult {
 ///
 /// For every candidate the ego and the actors follow their motions until the horizon. First contact
 /// is found without stepping over any (time_of_impact); a body inside another at the start is a
-/// contact at time 0. Then the bodies move on by the scenario's crush, as if nothing held them, and
-/// every triangle that meets the other body on the way is damaged: those that intersect it at one
-/// of the poses looked at, every 0.5 m of the way (at most 8), and those that it passed through,
-/// a corner's way crossing its surface. So a pole leaves a furrow, and a front that is wholly
-/// inside a wall counts.
+/// contact at time 0. From there the contact is simulated (`simulate_contact`, nothing varied), and
+/// every triangle that meets the other body along the simulated motion, on which both bodies
+/// overlap as rigid ones, is damaged: those that intersect it at one of the recorded poses
+/// (ContactMotion), about every 0.1 m of the way, the greatest compression and the end of the force
+/// among them; and those that it passed through between two poses, a corner's straight way crossing
+/// its surface. So a pole leaves a furrow, and a front that is wholly inside a wall counts. Bodies
+/// that do not press on each other damage the first pair of triangles alone. Where both bodies give
+/// way, the overlap is the sum of both crush depths: each body's damage then reaches deeper than
+/// its own crush.
 ///
 /// Scores add up over the contacts: `polygons` counts damaged triangles of the ego and of all hit,
 /// `area` adds their areas, `closing-energy` and `energy` the contacts' energies, `delta-v` the

@@ -79,14 +79,6 @@ struct CandidateGrid {
   std::size_t steerings = 15;      ///< levels between right and left
 };
 
-/// How far bodies move on past first contact before the damage is read: for a time along their
-/// motions, or, when `depth_m` is there, along their relative velocity at contact. The default
-/// 0.05 s is as deep as bodies get that are stopped evenly within a crash pulse of 0.1 s.
-struct Crush {
-  double time_s = 0.05;           ///< s
-  std::optional<double> depth_m;  ///< m; in place of the time
-};
-
 /// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json.
 struct Scenario {
   std::string name;                                     ///< unique
@@ -98,7 +90,6 @@ struct Scenario {
   bool add_straight_braking = true;                     ///< where nobody listed it
   std::vector<ScenarioActor> actors;                    ///< who can be hit
   double horizon_s = 4.0;                               ///< how far motions are followed, s
-  Crush crush;                                          ///< how far past first contact
   Measure measure = Measure::harm;                      ///< what is compared
   HarmOptions harm;   ///< weights and ranges; the defaults where the file is silent
   double grip = 0.8;  ///< friction between tyre and road
@@ -137,8 +128,6 @@ inline constexpr double min_scale = 1e-6;          ///< metres per file unit
 inline constexpr double max_scale = 1e6;           ///< metres per file unit
 inline constexpr double min_grip = 0.01;           ///< least friction
 inline constexpr double max_grip = 3.0;            ///< most friction
-inline constexpr double crush_time_s = 1.0;        ///< most, s
-inline constexpr double crush_depth_m = 5.0;       ///< most, m
 }  // namespace scenario_limits
 
 /// Reads a scenario from its text; `file` only names it in errors and lends it its name when the
