@@ -165,10 +165,14 @@ double Tally::ego_term(const Scene& scene, const HarmSample& sample) const {
   return combined_risk(closed_, risk_of(exposure_of(scene, open_), scene.harm, sample));
 }
 
-double Tally::score(const Scene& scene, const HarmSample& sample) const {
+double Tally::ego_score(const Scene& scene, const HarmSample& sample) const {
   const double ego = ego_term(scene, sample);
-  if (scene.measure != Measure::harm) return sum_ + ego;
-  return sum_ + people_weight(exposure_of(scene, open_), scene.harm.weights) * ego;
+  if (scene.measure != Measure::harm) return ego;
+  return people_weight(exposure_of(scene, open_), scene.harm.weights) * ego;
+}
+
+double Tally::score(const Scene& scene, const HarmSample& sample) const {
+  return sum_ + ego_score(scene, sample);
 }
 
 Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Later& later) const {

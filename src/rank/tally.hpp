@@ -99,6 +99,8 @@ public:
   void add(const Scene& scene, const ContactEffect& effect, const HarmSample& sample);
   /// The score of all added so far.
   double score(const Scene& scene, const HarmSample& sample) const;
+  /// The share of the ego's people in that score; measures but harm: of the ego's delta-v.
+  double ego_score(const Scene& scene, const HarmSample& sample) const;
   /// The event that the last contact belongs to.
   const EgoEvent& event() const noexcept { return open_; }
   /// Score once the pending contact and what may follow have been added.
