@@ -1,6 +1,7 @@
 #include "crash/contact_run.hpp"
 
 #include "crash/pair_order.hpp"
+#include "crash/rebound.hpp"
 #include "crashrank/crash/pdof.hpp"
 
 #include <algorithm>
@@ -229,9 +230,9 @@ ContactRun::AtForce ContactRun::at_force(const Totals& totals) const {
 void ContactRun::rebound(const Totals& totals, double passing_mps) {
   const double sticks =
       std::clamp(1.0 - passing_mps / (slipping_share * most_passing_mps_), 0.0, 1.0);
-  const double e = std::min(0.5, restitution_at(most_closing_mps_) * variant_.restitution) *
-                   (totals.fresh / totals.pressing) *
-                   std::min(1.0, totals.pressing / most_pressing_) * sticks;
+  const double e =
+      std::min(most_restitution, restitution_at(most_closing_mps_) * variant_.restitution) *
+      (totals.fresh / totals.pressing) * std::min(1.0, totals.pressing / most_pressing_) * sticks;
   for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
     const PlanarBody& body = state_.bodies[k].motion;
     PlanarForce& i = state_.impulses[k];

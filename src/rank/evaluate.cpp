@@ -110,7 +110,8 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
     const double score = tally.score(scene, sample);
     result.sample_scores.push_back(score);
     if (scene.measure == Measure::harm && sample.model != scene.harm.model) continue;
-    ScoreInterval& interval = result.score_interval;
+    ScoreInterval& interval =
+        is_numerical(sample) ? result.numerical_interval : result.score_interval;
     interval.lowest = std::min(interval.lowest, score);
     interval.highest = std::max(interval.highest, score);
   }
@@ -165,11 +166,13 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
     const double simulated = tally_up(scene, approach.effects, result);
     result.score = scene.pulses ? simulated : planned_score(result, scene.measure);
     result.score_interval = {*result.score, *result.score};
+    result.numerical_interval = result.score_interval;
     add_samples(scene, approach.effects, result);
   } else {
     ScoreBounds bounds;
     bounds.prepare(scene);
     result.score_interval = {0.0, bounds.most(scene, candidate.motion)};
+    result.numerical_interval = result.score_interval;
   }
   return result;
 }

@@ -55,7 +55,8 @@ void read_ranges(const JsonObject& parent, HarmRanges& r) {
   read_range(object, "friction", friction, r.least_friction, r.most_friction);
   read_range(object, "strength", {limits::min_strength, limits::max_strength}, r.least_strength,
              r.most_strength);
-  read_range(object, "restitution", share, r.least_restitution, r.most_restitution);
+  read_range(object, "restitution", {0.0, limits::restitution}, r.least_restitution,
+             r.most_restitution);
   read_range(object, "risk_speed", {limits::min_risk_speed, limits::max_risk_speed},
              r.least_risk_speed, r.most_risk_speed);
   r.all_models = object.flag("all_models", r.all_models);

@@ -191,7 +191,8 @@ void check_harm(const HarmOptions& harm, const std::string& path, Check& check) 
   check.range(path + ".ranges.friction", r.least_friction, r.most_friction, 0.0, bounds::friction);
   check.range(path + ".ranges.strength", r.least_strength, r.most_strength, bounds::min_strength,
               bounds::max_strength);
-  check.range(path + ".ranges.restitution", r.least_restitution, r.most_restitution, 0.0, 1.0);
+  check.range(path + ".ranges.restitution", r.least_restitution, r.most_restitution, 0.0,
+              bounds::restitution);
   check.range(path + ".ranges.risk_speed", r.least_risk_speed, r.most_risk_speed,
               bounds::min_risk_speed, bounds::max_risk_speed);
   check.not_negative(path + ".after_impact.deceleration_mps2", harm.after.deceleration_mps2,

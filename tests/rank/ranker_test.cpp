@@ -210,6 +210,42 @@ TEST(Ranker, AnyDeadlineGivesASoundAnswer) {
   }
 }
 
+TEST(Ranker, ACompleteAnswerIsExplainedWithTheSamplesAndMarksOfThePlainRanking) {
+  for (const std::uint64_t seed : {310U, 311U}) {
+    const Scene scene = traffic(seed);
+    RankerOptions options;
+    options.rank.measure = Measure::harm;
+    Result<Ranker> ranker = Ranker::prepare(scene.scenario, scene.models, options);
+    ASSERT_TRUE(ranker.ok());
+    const RankResult plain = scene.ranked(Measure::harm);
+    const RankerAnswer answer = ranker->rank(plain.candidates);
+    ASSERT_TRUE(answer.complete);
+    const Result<RankResult> full = ranker->explain(plain.candidates, answer);
+    ASSERT_TRUE(full.ok());
+    EXPECT_EQ(full->samples.size(), plain.samples.size());
+    ASSERT_EQ(full->ranking.size(), plain.ranking.size());
+    for (std::size_t i = 0; i < plain.ranking.size(); ++i) {
+      const CandidateResult& p = plain.ranking[i];
+      const CandidateResult& q = full->ranking[i];
+      EXPECT_EQ(p.candidate, q.candidate);
+      EXPECT_EQ(p.place, q.place);
+      EXPECT_EQ(p.best_place, q.best_place);
+      EXPECT_EQ(p.worst_place, q.worst_place);
+      EXPECT_EQ(p.overtaken, q.overtaken);
+      EXPECT_EQ(p.separable, q.separable);
+      EXPECT_EQ(p.within_numerical_error, q.within_numerical_error);
+      EXPECT_EQ(p.sample_scores, q.sample_scores);
+    }
+    // What is cut is explained without samples.
+    RankBudget none;
+    none.work = 0;
+    const RankerAnswer cut = ranker->rank(plain.candidates, none);
+    const Result<RankResult> partial = ranker->explain(plain.candidates, cut);
+    ASSERT_TRUE(partial.ok());
+    EXPECT_TRUE(partial->complete || partial->samples.empty());
+  }
+}
+
 TEST(Ranker, WorkersThatADeadlineLeavesBehindReadNothingOfTheCallers) {
   const Case c(301, Measure::harm);
   const std::vector<Motion> motions = c.motions();
