@@ -1,5 +1,6 @@
 #include "rank/read_harm.hpp"
 
+#include <optional>
 #include <string>
 
 namespace crashrank::detail {
@@ -48,6 +49,17 @@ void read_weights(const JsonObject& parent, HarmWeights& w) {
   }
 }
 
+/// A number, or null for the mean person.
+void read_mean_or(const JsonObject& object, const char* key, NumberRange range,
+                  std::optional<double>& value) {
+  if (!object.has(key)) return;
+  if (object.at(key).is_null()) {
+    value.reset();
+  } else {
+    value = object.number(key, range, 0.0);
+  }
+}
+
 void read_ranges(const JsonObject& parent, HarmRanges& r) {
   if (!parent.has("ranges")) return;
   const JsonObject object(parent.at("ranges"), parent.path_of("ranges"), parent.status(),
@@ -76,6 +88,12 @@ void read_harm(const JsonObject& object, HarmOptions& harm) {
     }
   }
   read_weights(object, harm.weights);
+  if (object.has("pedestrian")) {
+    const JsonObject person(object.at("pedestrian"), object.path_of("pedestrian"), object.status(),
+                            {"age_years", "male_share"});
+    read_mean_or(person, "age_years", {0.0, limits::age_years}, harm.pedestrian.age_years);
+    read_mean_or(person, "male_share", share, harm.pedestrian.male_share);
+  }
   harm.friction = object.number("friction", friction, harm.friction);
   read_ranges(object, harm.ranges);
   if (object.has("after_impact")) {

@@ -186,6 +186,10 @@ void check_harm(const HarmOptions& harm, const std::string& path, Check& check) 
   check.not_negative(path + ".people.car", w.people_in_car, bounds::people);
   check.not_negative(path + ".people.truck", w.people_in_truck, bounds::people);
   check.not_negative(path + ".people.bus", w.people_in_bus, bounds::people);
+  check.not_negative(path + ".pedestrian.age_years", harm.pedestrian.age_years.value_or(0.0),
+                     bounds::age_years);
+  check.not_negative(path + ".pedestrian.male_share", harm.pedestrian.male_share.value_or(0.0),
+                     1.0);
   check.not_negative(path + ".friction", harm.friction, bounds::friction);
   const HarmRanges& r = harm.ranges;
   check.range(path + ".ranges.friction", r.least_friction, r.most_friction, 0.0, bounds::friction);

@@ -88,6 +88,10 @@ Json severity_json(const ContactSeverity& s) {
   return entry;
 }
 
+Json optional_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json harm_json(const HarmOptions& harm) {
   const HarmWeights& w = harm.weights;
   const HarmRanges& r = harm.ranges;
@@ -105,6 +109,9 @@ Json harm_json(const HarmOptions& harm) {
             {"people_in_car", w.people_in_car},
             {"people_in_truck", w.people_in_truck},
             {"people_in_bus", w.people_in_bus}}},
+          {"pedestrian",
+           {{"age_years", optional_json(harm.pedestrian.age_years)},
+            {"male_share", optional_json(harm.pedestrian.male_share)}}},
           {"ranges",
            {{"friction", Json::array({r.least_friction, r.most_friction})},
             {"strength", Json::array({r.least_strength, r.most_strength})},
