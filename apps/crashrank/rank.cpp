@@ -257,8 +257,9 @@ void add_rank(CLI::App& app, Action& action) {
       ->add_option(
           "--deadline-ms", options->deadline_ms,
           "Answer within this time, in what is known by then; counted from the call, "
-          "meshes and trees being ready; ranges of what is not known are not varied; polygons, "
-          "area and intrusion end the candidate that they have begun")
+          "meshes and trees being ready; ranges of what is not known are varied after it, and of a "
+          "complete answer alone; polygons, area and intrusion end the candidate that they have "
+          "begun")
       ->check(CLI::Range(0.0, 1e9))
       ->check([](const std::string& text) {
         return text.find_first_of("nN") == std::string::npos ? std::string()

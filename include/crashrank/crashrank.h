@@ -313,6 +313,13 @@ CRASHRANK_API crashrank_status crashrank_ranking_get(const crashrank_ranking* ra
 CRASHRANK_API crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking,
                                                        size_t index, size_t* place, size_t* sharing,
                                                        crashrank_error* error);
+/// Whether the candidate under `index` can be told from the next one: 1 or 0, -1 where the scores
+/// read simulated crashes and no samples were taken (or it is the last). 0 where they tie, score
+/// alike, the order turns round in more than 5 % of the samples, or half the steps or 1 mm aside
+/// may turn it. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_ranking_separable(const crashrank_ranking* ranking,
+                                                           size_t index, int32_t* separable,
+                                                           crashrank_error* error);
 /// Unit of the scores: "triangles", "m2", "J", "m/s", "m", "persons". NULL for NULL.
 CRASHRANK_API const char* crashrank_ranking_unit(const crashrank_ranking* ranking);
 /// The whole answer as `crashrank rank --json` prints it (data/schemas/rank.schema.json), ended by

@@ -96,6 +96,18 @@ crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking, size_
   return CRASHRANK_OK;
 }
 
+crashrank_status crashrank_ranking_separable(const crashrank_ranking* ranking, size_t index,
+                                             int32_t* separable, crashrank_error* error) {
+  if (ranking == nullptr || separable == nullptr) return refuse_null(error);
+  const size_t count = crashrank_ranking_size(ranking);
+  if (index >= count) return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
+  const RankResult& result = ranking->result;
+  const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
+  *separable = -1;
+  if (sampled && index + 1 < count) *separable = result.ranking[index].separable ? 1 : 0;
+  return CRASHRANK_OK;
+}
+
 const char* crashrank_ranking_unit(const crashrank_ranking* ranking) {
   return ranking == nullptr ? nullptr : measure_unit(ranking->result.measure);
 }

@@ -1,11 +1,12 @@
 #include "crash/contact_run.hpp"
 
+#include "crash/pair_order.hpp"
+#include "crash/rebound.hpp"
 #include "crashrank/crash/pdof.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 namespace crashrank::detail {
 namespace {
@@ -20,21 +21,6 @@ constexpr double at_rest = 0.03;
 constexpr double slipping_share = 0.25;
 /// Kept at the end of the force, a contact counts as sliding.
 constexpr double slides_share = 0.2;
-
-/// The same two bodies in the same order whoever is called A, so that every sum has the same bits.
-bool goes_second(const ContactBody& p, const ContactBody& q) {
-  const auto key = [](const ContactBody& body) {
-    const Vehicle& v = *body.vehicle;
-    const Pose& pose = body.pose;
-    const Velocity& velocity = body.velocity;
-    return std::make_tuple(v.strength.rigid, !v.movable(), v.mass_kg, v.yaw_inertia_kgm2,
-                           v.profile->pieces.size(), v.center_m.x(), v.center_m.y(),
-                           pose.translation.x(), pose.translation.y(), pose.rotation(0, 0),
-                           pose.rotation(1, 0), velocity.linear_mps.x(), velocity.linear_mps.y(),
-                           velocity.angular_radps.z());
-  };
-  return key(q) < key(p);
-}
 
 /// No point of the outlines is further from the centre of mass.
 double rim_of(const Vehicle& v) {
@@ -246,9 +232,9 @@ ContactRun::AtForce ContactRun::at_force(const Totals& totals) const {
 void ContactRun::rebound(const Totals& totals, double passing_mps) {
   const double sticks =
       std::clamp(1.0 - passing_mps / (slipping_share * most_passing_mps_), 0.0, 1.0);
-  const double e = std::min(0.5, restitution_at(most_closing_mps_) * variant_.restitution) *
-                   (totals.fresh / totals.pressing) *
-                   std::min(1.0, totals.pressing / most_pressing_) * sticks;
+  const double e =
+      std::min(most_restitution, restitution_at(most_closing_mps_) * variant_.restitution) *
+      (totals.fresh / totals.pressing) * std::min(1.0, totals.pressing / most_pressing_) * sticks;
   for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
     const PlanarBody& body = state_.bodies[k].motion;
     PlanarForce& i = state_.impulses[k];

@@ -16,7 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 bool same(const HarmSample& p, const HarmSample& q) {
-  return p.friction == q.friction && p.strength == q.strength;
+  return p.friction == q.friction && p.strength == q.strength && p.step == q.step &&
+         p.shift_m == q.shift_m;
 }
 
 void fill(const ContactBody& body, const Model& model, const BodyContact& from, bool slides,
@@ -72,9 +73,12 @@ EgoAfterContact simulate_variants(const Scene& scene, const EgoAtContact& ego, C
   effects.push_back(effect_of(contact, crash, plain));
   for (std::size_t i = 1; i < scene.samples.size(); ++i) {
     if (i > 1 && same(scene.samples[i], scene.samples[i - 1])) continue;
-    effects.push_back(effect_of(contact, crash,
-                                simulate_contact(crash.a, crash.b, crash.fixed, contact.point_m,
-                                                 variant_of(scene.samples[i]), scratch.workspace)));
+    const HarmSample& sample = scene.samples[i];
+    const CrashSetup varied = shifted(crash, contact, sample);
+    effects.push_back(
+        effect_of(contact, varied,
+                  simulate_contact(varied.a, varied.b, varied.fixed, contact.point_m,
+                                   variant_of(sample), scratch.workspace, options_of(sample))));
   }
   return after_contact(crash, plain);
 }

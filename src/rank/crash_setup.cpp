@@ -113,6 +113,23 @@ ContactVariant variant_of(const HarmSample& sample) {
   return {sample.friction / panels, sample.strength, 1.0};
 }
 
+ContactOptions options_of(const HarmSample& sample) {
+  ContactOptions options;
+  options.travel_m *= sample.step;
+  options.shortest_s *= sample.step;
+  options.longest_s *= sample.step;
+  options.speed_change *= sample.step;
+  return options;
+}
+
+CrashSetup shifted(const CrashSetup& crash, const Contact& contact, const HarmSample& sample) {
+  CrashSetup moved = crash;
+  const Vector3d across(-contact.closing.y(), contact.closing.x(), 0.0);
+  const double speed = across.norm();
+  if (speed > 0.0) moved.a.pose.translation += (sample.shift_m / speed) * across;
+  return moved;
+}
+
 EgoAfterContact after_contact(const CrashSetup& crash, const ContactOutcome& outcome) {
   EgoAfterContact after;
   const RigidState before = rigid_state(crash.a);

@@ -50,6 +50,13 @@ RigidState rigid_state(const ContactBody& body);
 /// The plain variant and those of the samples, as factors on the law's own values.
 ContactVariant variant_of(const HarmSample& sample);
 
+/// The steps of a sample's simulations.
+ContactOptions options_of(const HarmSample& sample);
+
+/// The two bodies as a sample has them: the ego moved across the relative velocity at the point of
+/// contact, not at all where that is 0.
+CrashSetup shifted(const CrashSetup& crash, const Contact& contact, const HarmSample& sample);
+
 /// What a contact's outcome means for the ego afterwards.
 EgoAfterContact after_contact(const CrashSetup& crash, const ContactOutcome& outcome);
 

@@ -71,7 +71,7 @@ double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>
   Tally tally;
   std::size_t begun = 0;  // the first contact of the event
   for (std::size_t k = 0; k < effects.size(); ++k) {
-    const double before = tally.score(scene, scene.plain);
+    const double before = tally.ego_score(scene, scene.plain);
     const ContactEffect& effect = effects[k].front();
     Contact& contact = result.contacts[k];
     tally.add(scene, effect, scene.plain);
@@ -88,8 +88,11 @@ double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>
     HarmExposure other = exposure_of_other(scene, effect);
     other.crush_energy_j = effect.other_crush_j;
     severity.other.harm = harm_of(other, scene.harm);
-    severity.harm = tally.score(scene, scene.plain) - before;
-    severity.ego.harm = severity.harm - severity.other.harm;
+    HarmExposure own;
+    own.crush_energy_j = effect.ego_crush_j;
+    severity.ego.harm =
+        (tally.ego_score(scene, scene.plain) - before) + property_harm(own, scene.harm.weights);
+    severity.harm = severity.ego.harm + severity.other.harm;
   }
   return tally.score(scene, scene.plain);
 }
@@ -114,7 +117,8 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
     const double score = tally.score(scene, sample);
     result.sample_scores.push_back(score);
     if (scene.measure == Measure::harm && sample.model != scene.harm.model) continue;
-    ScoreInterval& interval = result.score_interval;
+    ScoreInterval& interval =
+        is_numerical(sample) ? result.numerical_interval : result.score_interval;
     interval.lowest = std::min(interval.lowest, score);
     interval.highest = std::max(interval.highest, score);
   }
@@ -178,11 +182,13 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
     const double simulated = tally_up(scene, approach.effects, result);
     result.score = scene.pulses ? simulated : planned_score(result, scene.measure);
     result.score_interval = {*result.score, *result.score};
+    result.numerical_interval = result.score_interval;
     add_samples(scene, approach.effects, result);
   } else {
     ScoreBounds bounds;
     bounds.prepare(scene);
     result.score_interval = {0.0, bounds.most(scene, candidate.motion)};
+    result.numerical_interval = result.score_interval;
   }
   return result;
 }

@@ -31,12 +31,11 @@ double weight_of(Person person, bool ego, const HarmWeights& w) {
 /// Inputs of the injury risk of one person in or on a body, as the sample changes them.
 Exposure person_exposure(const HarmExposure& body, Person person, const HarmOptions& options,
                          const HarmSample& sample) {
-  const double delta_v_mps = body.delta_v_mps * (1.0 + sample.restitution);
   const bool rides = person == Person::cyclist || person == Person::motorcyclist;
-  const double fall_mps = rides ? fall_speed_mps(body.road_speed_mps, delta_v_mps) : 0.0;
+  const double fall_mps = rides ? fall_speed_mps(body.road_speed_mps, body.delta_v_mps) : 0.0;
   Exposure e;
   e.person = person;
-  e.delta_v_mps = delta_v_mps * sample.occupant_speed;
+  e.delta_v_mps = body.delta_v_mps * sample.occupant_speed;
   e.pdof_deg = body.pdof_deg;
   e.impact_speed_mps = std::max(body.closing_speed_mps, fall_mps) * sample.outside_speed;
   e.leading_edge_m = body.leading_edge_m;
@@ -144,22 +143,29 @@ std::vector<HarmSample> harm_samples(const HarmOptions& options) {
     if (r.all_models && model != options.model) models.push_back(model);
   }
   const std::vector<double> speeds = ends(r.least_risk_speed, r.most_risk_speed);
-  std::vector<HarmSample> samples(1);
-  samples.front().friction = options.friction;
-  samples.front().model = options.model;
+  HarmSample plain;
+  plain.friction = options.friction;
+  plain.model = options.model;
+  std::vector<HarmSample> samples{plain};
   for (const double friction : ends(r.least_friction, r.most_friction)) {
     for (const double strength : ends(r.least_strength, r.most_strength)) {
       for (const double restitution : ends(r.least_restitution, r.most_restitution)) {
         for (const RiskModel model : models) {
           for (const double occupant : speeds) {
             for (const double outside : speeds) {
-              samples.push_back({friction, strength, restitution, model, occupant, outside});
+              samples.push_back(
+                  {friction, strength, restitution, model, occupant, outside, 1.0, 0.0});
             }
           }
         }
       }
     }
   }
+  constexpr double shift_m = 0.001;
+  samples.resize(samples.size() + numerical_samples, plain);
+  samples[samples.size() - 3].step = 0.5;
+  samples[samples.size() - 2].shift_m = shift_m;
+  samples[samples.size() - 1].shift_m = -shift_m;
   return samples;
 }
 

@@ -1,9 +1,11 @@
 #include "rank/hits.hpp"
 
+#include "crash/pair_order.hpp"
 #include "rank/near.hpp"
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -12,6 +14,28 @@ bool starts_as_the_ego(const Scene& scene, const Motion& motion) {
   const Pose pose = motion.pose_at(0.0);
   return pose.rotation == scene.ego_start.rotation &&
          pose.translation == scene.ego_start.translation;
+}
+
+/// First contact of the ego with an actor. The search runs on the pair in the order of
+/// `goes_second`, so that exchanging their roles changes no bit of time and points.
+Impact find_impact(const Scene& scene, const Motion& ego, const Body& actor, double from_s,
+                   double until_s, ImpactWorkspace& workspace, const ImpactOptions& options) {
+  ContactBody p{&scene.ego.vehicle, {}, {}};
+  ContactBody q{&actor.vehicle, {}, {}};
+  ego.state_at(from_s, p.pose, p.velocity);
+  actor.motion.state_at(from_s, q.pose, q.velocity);
+  const AabbTree& ego_tree = scene.ego.model->tree;
+  const AabbTree& actor_tree = actor.model->tree;
+  if (!goes_second(p, q)) {
+    return time_of_impact(ego_tree, ego, actor_tree, actor.motion, from_s, until_s, workspace,
+                          options);
+  }
+  Impact impact =
+      time_of_impact(actor_tree, actor.motion, ego_tree, ego, from_s, until_s, workspace, options);
+  std::swap(impact.triangle_a, impact.triangle_b);
+  std::swap(impact.point_a_m, impact.point_b_m);
+  impact.normal = Eigen::Vector3d::Zero() - impact.normal;
+  return impact;
 }
 
 }  // namespace
@@ -40,8 +64,7 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
     options.stop_context = scratch.stop_context;
     options.start_is_apart =
         near.first_slice > 0 || (same_start && scene.apart_at_start[near.actor] != 0);
-    const Impact impact = time_of_impact(scene.ego.model->tree, ego, actor.model->tree,
-                                         actor.motion, from, until, scratch.impact, options);
+    const Impact impact = find_impact(scene, ego, actor, from, until, scratch.impact, options);
     ++work.body_pairs;
     work.impact += impact.work;
     if (impact.state == ImpactState::undecided) {

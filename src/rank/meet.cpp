@@ -25,11 +25,13 @@ Contact make_contact(const Scene& scene, const EgoAtContact& ego, std::size_t ac
   if (impact.triangle_a >= 0 && impact.triangle_b >= 0) {
     contact.point_m = 0.5 * (impact.point_a_m + impact.point_b_m);
   } else {
-    // One lies inside the other: the middle of the smaller one stands for the place.
-    const bool ego_is_inside = scene.ego.radius_m < other.radius_m;
-    const Body& inner = ego_is_inside ? scene.ego : other;
-    const Pose& pose = ego_is_inside ? ego.pose : other_pose;
-    contact.point_m = pose.rotation * inner.center_m + pose.translation;
+    // One lies inside the other: the middle of the smaller one stands for the place, of equal ones
+    // the middle between theirs.
+    const Eigen::Vector3d own = ego.pose.rotation * scene.ego.center_m + ego.pose.translation;
+    const Eigen::Vector3d theirs = other_pose.rotation * other.center_m + other_pose.translation;
+    contact.point_m = scene.ego.radius_m < other.radius_m   ? own
+                      : other.radius_m < scene.ego.radius_m ? theirs
+                                                            : Eigen::Vector3d(0.5 * (own + theirs));
   }
   const Eigen::Vector3d closing =
       velocity_of_point(ego.met, ego.pose.translation, contact.point_m) -

@@ -31,6 +31,12 @@ int compare(const CandidateResult& a, const CandidateResult& b) {
 
 }  // namespace
 
+std::size_t range_sample_count(const RankResult& result) noexcept {
+  return static_cast<std::size_t>(
+      std::count_if(result.samples.begin(), result.samples.end(),
+                    [](const HarmSample& sample) { return !is_numerical(sample); }));
+}
+
 std::vector<std::size_t> tied_with(const RankResult& result, std::size_t index) {
   std::vector<std::size_t> tied;
   const std::size_t first = result.ranking[index].place - 1;

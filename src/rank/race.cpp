@@ -8,6 +8,10 @@ bool Race::sooner(const std::vector<Refined>& states, std::uint32_t a, std::uint
   const ScoreInterval& p = states[a].told.interval;
   const ScoreInterval& q = states[b].told.interval;
   if (p.lowest != q.lowest) return p.lowest < q.lowest;
+  // Candidates whose contact was not searched for can be first until they are searched, and a
+  // search that finds none settles the score: it comes before all simulations.
+  const bool unsearched = states[a].told.stage < RankStage::searched;
+  if (unsearched != (states[b].told.stage < RankStage::searched)) return unsearched;
   if (p.highest != q.highest) return p.highest < q.highest;
   return a < b;
 }
@@ -37,10 +41,13 @@ bool Race::can_win(const RankedCandidate& candidate, const std::vector<Refined>&
   if (candidate.interval.lowest != limit_ || best_known_ == nobody) {
     return candidate.interval.lowest <= limit_;
   }
-  // At the same score a candidate that touches nothing is only followed by those after it.
+  // At the same score a candidate that touches nothing stands before all that touch or graze, and
+  // before those after it.
   const RankedCandidate& best = states[best_known_].told;
   const bool clean = !best.collides && !best.grazes;
-  return !(clean && best.score == limit_ && best.candidate < candidate.candidate);
+  const bool behind =
+      candidate.collides || candidate.grazes || best.candidate < candidate.candidate;
+  return !(clean && best.score == limit_ && behind);
 }
 
 std::size_t Race::choose(const std::vector<Refined>& states, std::size_t most,

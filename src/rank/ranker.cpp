@@ -65,6 +65,8 @@ struct CRASHRANK_HIDDEN Ranker::State {
   StepRounds rounds;
   RankerLimits limits;
   RankResult bodies;  ///< what `explain` begins with
+  /// Those of a complete answer; the scene has none, since no step evaluates them.
+  std::vector<HarmSample> samples;
   double prepare_s = 0.0;
   std::vector<Refined> states;
   std::vector<RankedCandidate> ranking;
@@ -231,13 +233,11 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     const Status fits = within(options.limits, scenario, models);
     if (!fits) return fits.error();
     RankResult bodies;
-    RankOptions how = options.rank;
+    const RankOptions& how = options.rank;
     if (how.harm) {
       const Status weighed = detail::check_harm(*how.harm, "harm");
       if (!weighed) return weighed.error();
     }
-    how.harm = how.harm.value_or(scenario.harm);
-    how.harm->intervals = false;
     Result<detail::Scene> scene = detail::make_scene(scenario, models, how, bodies);
     if (!scene) return scene.error();
     bodies.measure = scene->measure;
@@ -248,7 +248,10 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     threads.spin_us = options.spin_us;
     Result<WorkerPool> pool = WorkerPool::start(threads);
     if (!pool) return pool.error();
+    std::vector<HarmSample> samples;
+    samples.swap(scene->samples);
     auto state = std::make_unique<State>(std::move(*scene), std::move(*pool));
+    state->samples = std::move(samples);
     state->limits = options.limits;
     state->bodies = std::move(bodies);
     state->bounds.prepare(state->scene);
@@ -323,6 +326,17 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     State& s = *state_;
     if (!answer.status) return answer.status.error();
     RankResult result = s.bodies;
+    /// The scene has samples while a complete answer is evaluated.
+    struct WithSamples {
+      detail::Scene& scene;
+      ~WithSamples() { scene.samples.clear(); }
+    };
+    const WithSamples guard{s.scene};
+    if (answer.complete) {
+      s.rounds.await();
+      s.scene.samples = s.samples;
+      result.samples = s.samples;
+    }
     result.candidates.assign(candidates.begin(), candidates.end());
     result.ranking.resize(answer.ranking.size());
     detail::Scratch scratch;

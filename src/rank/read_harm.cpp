@@ -1,5 +1,6 @@
 #include "rank/read_harm.hpp"
 
+#include <optional>
 #include <string>
 
 namespace crashrank::detail {
@@ -48,6 +49,17 @@ void read_weights(const JsonObject& parent, HarmWeights& w) {
   }
 }
 
+/// A number, or null for the mean person.
+void read_mean_or(const JsonObject& object, const char* key, NumberRange range,
+                  std::optional<double>& value) {
+  if (!object.has(key)) return;
+  if (object.at(key).is_null()) {
+    value.reset();
+  } else {
+    value = object.number(key, range, 0.0);
+  }
+}
+
 void read_ranges(const JsonObject& parent, HarmRanges& r) {
   if (!parent.has("ranges")) return;
   const JsonObject object(parent.at("ranges"), parent.path_of("ranges"), parent.status(),
@@ -55,7 +67,8 @@ void read_ranges(const JsonObject& parent, HarmRanges& r) {
   read_range(object, "friction", friction, r.least_friction, r.most_friction);
   read_range(object, "strength", {limits::min_strength, limits::max_strength}, r.least_strength,
              r.most_strength);
-  read_range(object, "restitution", share, r.least_restitution, r.most_restitution);
+  read_range(object, "restitution", {0.0, limits::restitution}, r.least_restitution,
+             r.most_restitution);
   read_range(object, "risk_speed", {limits::min_risk_speed, limits::max_risk_speed},
              r.least_risk_speed, r.most_risk_speed);
   r.all_models = object.flag("all_models", r.all_models);
@@ -75,6 +88,12 @@ void read_harm(const JsonObject& object, HarmOptions& harm) {
     }
   }
   read_weights(object, harm.weights);
+  if (object.has("pedestrian")) {
+    const JsonObject person(object.at("pedestrian"), object.path_of("pedestrian"), object.status(),
+                            {"age_years", "male_share"});
+    read_mean_or(person, "age_years", {0.0, limits::age_years}, harm.pedestrian.age_years);
+    read_mean_or(person, "male_share", share, harm.pedestrian.male_share);
+  }
   harm.friction = object.number("friction", friction, harm.friction);
   read_ranges(object, harm.ranges);
   if (object.has("after_impact")) {

@@ -186,12 +186,17 @@ void check_harm(const HarmOptions& harm, const std::string& path, Check& check) 
   check.not_negative(path + ".people.car", w.people_in_car, bounds::people);
   check.not_negative(path + ".people.truck", w.people_in_truck, bounds::people);
   check.not_negative(path + ".people.bus", w.people_in_bus, bounds::people);
+  check.not_negative(path + ".pedestrian.age_years", harm.pedestrian.age_years.value_or(0.0),
+                     bounds::age_years);
+  check.not_negative(path + ".pedestrian.male_share", harm.pedestrian.male_share.value_or(0.0),
+                     1.0);
   check.not_negative(path + ".friction", harm.friction, bounds::friction);
   const HarmRanges& r = harm.ranges;
   check.range(path + ".ranges.friction", r.least_friction, r.most_friction, 0.0, bounds::friction);
   check.range(path + ".ranges.strength", r.least_strength, r.most_strength, bounds::min_strength,
               bounds::max_strength);
-  check.range(path + ".ranges.restitution", r.least_restitution, r.most_restitution, 0.0, 1.0);
+  check.range(path + ".ranges.restitution", r.least_restitution, r.most_restitution, 0.0,
+              bounds::restitution);
   check.range(path + ".ranges.risk_speed", r.least_risk_speed, r.most_risk_speed,
               bounds::min_risk_speed, bounds::max_risk_speed);
   check.not_negative(path + ".after_impact.deceleration_mps2", harm.after.deceleration_mps2,

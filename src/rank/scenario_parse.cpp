@@ -326,8 +326,8 @@ Scenario read_scenario(const json& document, Status& status) {
   }
   if (root.has("harm")) {
     const JsonObject harm(root.at("harm"), "harm", status,
-                          {"risk_model", "weights", "people", "friction", "ranges", "after_impact",
-                           "least_struck_share"});
+                          {"risk_model", "weights", "people", "pedestrian", "friction", "ranges",
+                           "after_impact", "least_struck_share"});
     detail::read_harm(harm, scenario.harm);
   }
   scenario.grip = root.number("grip", {limits::min_grip, limits::max_grip}, 0.8);

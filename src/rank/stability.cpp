@@ -66,6 +66,7 @@ void tell_stability(RankResult& result) {
   if (samples == 0 || known != ranking.size()) return;
   std::vector<std::size_t> order(known);
   for (std::size_t sample = 0; sample < samples; ++sample) {
+    if (is_numerical(result.samples[sample])) continue;
     std::iota(order.begin(), order.end(), std::size_t{0});
     // Where a sample tells no difference, the ranking's own order stands.
     std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
@@ -82,16 +83,21 @@ void tell_stability(RankResult& result) {
       c.worst_place = std::max(c.worst_place, place);
     }
   }
+  const std::size_t counted = range_sample_count(result);
   for (std::size_t place = 0; place + 1 < known; ++place) {
     std::size_t turned = 0;
     for (std::size_t sample = 0; sample < samples; ++sample) {
+      if (is_numerical(result.samples[sample])) continue;
       if (ranking[place + 1].sample_scores[sample] < ranking[place].sample_scores[sample]) {
         ++turned;
       }
     }
-    ranking[place].overtaken = static_cast<double>(turned) / static_cast<double>(samples);
-    ranking[place].separable =
-        ranking[place].separable && ranking[place].overtaken <= separable_share;
+    CandidateResult& c = ranking[place];
+    const CandidateResult& next = ranking[place + 1];
+    c.overtaken = static_cast<double>(turned) / static_cast<double>(counted);
+    c.within_numerical_error = counted < samples && c.place != next.place &&
+                               c.numerical_interval.highest >= next.numerical_interval.lowest;
+    c.separable = c.separable && !c.within_numerical_error && c.overtaken <= separable_share;
   }
 }
 

@@ -1,5 +1,6 @@
 #include "rank/tally.hpp"
 
+#include "crash/rebound.hpp"
 #include "crashrank/crash/pdof.hpp"
 
 #include <algorithm>
@@ -71,6 +72,7 @@ ContactEffect effect_of(const Contact& contact, const CrashSetup& crash,
   e.ego_road_mps = crash.a.velocity.linear_mps.norm();
   e.other_road_mps = crash.b.velocity.linear_mps.norm();
   if (!outcome.acts) return e;
+  e.restitution = outcome.restitution;
   e.dissipated_j = outcome.dissipated_j;
   e.ego_delta_v_mps = outcome.a.delta_v_mps;
   e.ego_impulse_ns = outcome.a.impulse_ns;
@@ -81,6 +83,21 @@ ContactEffect effect_of(const Contact& contact, const CrashSetup& crash,
   e.other_intrusion_m = outcome.b.intrusion_m;
   e.ego_crush_j = outcome.a.crush_energy_j;
   e.other_crush_j = outcome.b.crush_energy_j;
+  return e;
+}
+
+ContactEffect with_rebound(const ContactEffect& effect, double factor) {
+  ContactEffect e = effect;
+  if (factor == 1.0) return e;
+  const double gain = rebound_gain(effect.restitution, factor);
+  e.ego_delta_v_mps *= gain;
+  e.ego_impulse_ns *= gain;
+  e.ego_yaw_radps *= gain;
+  e.other_delta_v_mps *= gain;
+  const double loss = rebound_loss(effect.restitution, factor);
+  e.dissipated_j *= loss;
+  e.ego_crush_j *= loss;
+  e.other_crush_j *= loss;
   return e;
 }
 
@@ -113,7 +130,8 @@ HarmExposure exposure_of_other(const Scene& scene, const ContactEffect& effect) 
   return e;
 }
 
-void Tally::add(const Scene& scene, const ContactEffect& effect, const HarmSample& sample) {
+void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSample& sample) {
+  const ContactEffect effect = with_rebound(simulated, sample.restitution);
   const Body& other = scene.actors[effect.actor];
   if (!continues(open_, effect.begin_s)) {
     const double before = ego_term(scene, sample);
@@ -137,7 +155,7 @@ void Tally::add(const Scene& scene, const ContactEffect& effect, const HarmSampl
   }
   switch (scene.measure) {
     case Measure::energy:
-      sum_ += (1.0 - sample.restitution * sample.restitution) * effect.dissipated_j;
+      sum_ += effect.dissipated_j;
       break;
     case Measure::intrusion:
       sum_ += effect.ego_intrusion_m + effect.other_intrusion_m;
@@ -159,16 +177,20 @@ void Tally::add(const Scene& scene, const ContactEffect& effect, const HarmSampl
 double Tally::ego_term(const Scene& scene, const HarmSample& sample) const {
   if (open_.number == 0) return closed_;
   if (scene.measure == Measure::delta_v) {
-    return closed_ + (1.0 + sample.restitution) * open_.delta_v_mps.norm();
+    return closed_ + open_.delta_v_mps.norm();
   }
   if (scene.measure != Measure::harm) return 0.0;
   return combined_risk(closed_, risk_of(exposure_of(scene, open_), scene.harm, sample));
 }
 
-double Tally::score(const Scene& scene, const HarmSample& sample) const {
+double Tally::ego_score(const Scene& scene, const HarmSample& sample) const {
   const double ego = ego_term(scene, sample);
-  if (scene.measure != Measure::harm) return sum_ + ego;
-  return sum_ + people_weight(exposure_of(scene, open_), scene.harm.weights) * ego;
+  if (scene.measure != Measure::harm) return ego;
+  return people_weight(exposure_of(scene, open_), scene.harm.weights) * ego;
+}
+
+double Tally::score(const Scene& scene, const HarmSample& sample) const {
+  return sum_ + ego_score(scene, sample);
 }
 
 Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Later& later) const {

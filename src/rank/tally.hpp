@@ -21,6 +21,7 @@ struct ContactEffect {
   double begin_s = 0.0;
   double end_s = 0.0;
   double closing_mps = 0.0;  ///< at first contact
+  double restitution = 0.0;  ///< of the simulation
   double dissipated_j = 0.0;
   Eigen::Vector3d ego_delta_v_mps = Eigen::Vector3d::Zero();  ///< world axes
   Eigen::Vector3d ego_impulse_ns = Eigen::Vector3d::Zero();   ///< world axes
@@ -38,6 +39,10 @@ struct ContactEffect {
 
 ContactEffect effect_of(const Contact& contact, const CrashSetup& crash,
                         const ContactOutcome& outcome);
+
+/// The effect with the restitution multiplied by `factor`, without another simulation: exact as far
+/// as one rebound gives back part of the impulse.
+ContactEffect with_rebound(const ContactEffect& effect, double factor);
 
 /// Depth of the middle of the passenger compartment: no intrusion is greater, m.
 double most_intrusion_m(const Vehicle& v);
@@ -96,9 +101,11 @@ struct Later {
 class Tally {
 public:
   /// Adds a contact that was simulated.
-  void add(const Scene& scene, const ContactEffect& effect, const HarmSample& sample);
+  void add(const Scene& scene, const ContactEffect& simulated, const HarmSample& sample);
   /// The score of all added so far.
   double score(const Scene& scene, const HarmSample& sample) const;
+  /// The share of the ego's people in that score; measures but harm: of the ego's delta-v.
+  double ego_score(const Scene& scene, const HarmSample& sample) const;
   /// The event that the last contact belongs to.
   const EgoEvent& event() const noexcept { return open_; }
   /// Score once the pending contact and what may follow have been added.

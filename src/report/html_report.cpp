@@ -185,8 +185,9 @@ private:
     } else if (!result_.samples.empty() && result_.ranking.size() > 1) {
       out_ += fmt::format(
           "<p class='note' id='separability'>Every place can be told from the next: no order turns "
-          "round in more than {:.0f} % of {} samples of what is not known.</p>\n",
-          100.0 * separable_share, result_.samples.size());
+          "round in more than {:.0f} % of {} samples of what is not known, nor with half the steps "
+          "or 1 mm aside.</p>\n",
+          100.0 * separable_share, range_sample_count(result_));
     }
     out_ += "</section>\n";
   }

@@ -88,6 +88,10 @@ Json severity_json(const ContactSeverity& s) {
   return entry;
 }
 
+Json optional_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json harm_json(const HarmOptions& harm) {
   const HarmWeights& w = harm.weights;
   const HarmRanges& r = harm.ranges;
@@ -105,6 +109,9 @@ Json harm_json(const HarmOptions& harm) {
             {"people_in_car", w.people_in_car},
             {"people_in_truck", w.people_in_truck},
             {"people_in_bus", w.people_in_bus}}},
+          {"pedestrian",
+           {{"age_years", optional_json(harm.pedestrian.age_years)},
+            {"male_share", optional_json(harm.pedestrian.male_share)}}},
           {"ranges",
            {{"friction", Json::array({r.least_friction, r.most_friction})},
             {"strength", Json::array({r.least_strength, r.most_strength})},
@@ -188,6 +195,10 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
              {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
              {"score_interval",
               Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},
+             {"numerical_interval", result.samples.empty()
+                                        ? Json(nullptr)
+                                        : Json::array({ranked.numerical_interval.lowest,
+                                                       ranked.numerical_interval.highest})},
              {"places", Json::array({ranked.best_place + 1, ranked.worst_place + 1})},
              {"separable_from_next", sampled ? Json(ranked.separable) : Json(nullptr)},
              {"overtaken_share", sampled ? Json(ranked.overtaken) : Json(nullptr)},
@@ -264,7 +275,8 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
     const CandidateResult& next = result.ranking[i + 1];
     if (ranked.separable || ranked.place == next.place) continue;
     not_separable.push_back({{"ranks", Json::array({ranked.place, next.place})},
-                             {"overtaken_share", ranked.overtaken}});
+                             {"overtaken_share", ranked.overtaken},
+                             {"within_numerical_error", ranked.within_numerical_error}});
   }
   const RankWork& work = result.work;
   Json document{{"scenario", scenario.name},
@@ -272,7 +284,8 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
                 {"measure_unit", measure_unit(result.measure)},
                 {"harm", needs_crash(result.measure) ? harm_json(result.harm) : nullptr},
                 {"stability",
-                 {{"samples", result.samples.size()},
+                 {{"samples", range_sample_count(result)},
+                  {"numerical_samples", result.samples.size() - range_sample_count(result)},
                   {"not_separable_above_share", separable_share},
                   {"not_separable", std::move(not_separable)}}},
                 {"complete", result.complete},

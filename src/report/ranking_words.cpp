@@ -125,11 +125,15 @@ std::string reason_words(const Scenario& scenario, const RankResult& result,
   if (*first.score > 0.0 && first.separable) {
     text += ", " + fixed_text(100.0 * (*second.score / *first.score - 1.0), 0) + " % more";
   }
-  if (!first.separable) {
+  if (!first.separable && first.overtaken > separable_share) {
     text += fmt::format(
         ". The two are not separable: in {:.0f} % of {} samples of what is not known their order "
         "turns round",
-        100.0 * first.overtaken, result.samples.size());
+        100.0 * first.overtaken, range_sample_count(result));
+  } else if (!first.separable) {
+    text +=
+        ". The two are not separable: simulated with half the steps or 1 mm aside, their order may "
+        "turn round";
   }
   return text + "." + other_view(result, first, second);
 }

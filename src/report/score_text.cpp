@@ -189,10 +189,11 @@ std::vector<std::string> not_separable_words(const RankResult& result, std::size
     if (i + 1 == end || ranked.separable) continue;
     const CandidateResult& next = result.ranking[i + 1];
     if (next.place == ranked.place || !ranked.score || !next.score) continue;
-    const std::string why = *ranked.score == *next.score
-                                ? std::string("equal scores")
-                                : fmt::format("their order turns round in {:.0f} % of {} samples",
-                                              100.0 * ranked.overtaken, result.samples.size());
+    const std::string why = *ranked.score == *next.score ? std::string("equal scores")
+                            : ranked.overtaken > separable_share
+                                ? fmt::format("their order turns round in {:.0f} % of {} samples",
+                                              100.0 * ranked.overtaken, range_sample_count(result))
+                                : std::string("half the steps or 1 mm aside may turn their order");
     words.push_back(
         fmt::format("rank {} and {} not separable ({})", ranked.place, next.place, why));
   }
@@ -213,7 +214,7 @@ std::vector<std::string> harm_words(const HarmOptions& harm) {
       fmt::format("People: {:g} in the ego, {:g} in a car, {:g} in a truck, {:g} in a bus.",
                   w.people_in_ego, w.people_in_car, w.people_in_truck, w.people_in_bus));
   lines.push_back(fmt::format(
-      "Friction {:g} ({:g} to {:g}); ranges: stiffness x {:g} to {:g}, restitution {:g} to {:g}, "
+      "Friction {:g} ({:g} to {:g}); ranges: stiffness x {:g} to {:g}, restitution x {:g} to {:g}, "
       "speed of the risk curves x {:g} to {:g}, {}. After a contact: {:g} m/s2 for {:g} s at most, "
       "{} contacts at most.",
       harm.friction, r.least_friction, r.most_friction, r.least_strength, r.most_strength,

@@ -99,6 +99,10 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
               CRASHRANK_OK);
     EXPECT_EQ(shared, wanted.place);
     EXPECT_EQ(sharing, wanted.sharing);
+    int32_t separable = 7;
+    ASSERT_EQ(crashrank_ranking_separable(ranking.get(), place, &separable, &error), CRASHRANK_OK);
+    const bool last = place + 1 == expected->ranking.size();
+    EXPECT_EQ(separable, last ? -1 : wanted.separable ? 1 : 0);
     if (wanted.contacts.empty()) {
       EXPECT_EQ(choice.other, nullptr);
       EXPECT_TRUE(std::isnan(choice.time_of_impact_s));
@@ -114,6 +118,10 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
   EXPECT_EQ(crashrank_ranking_place(ranking.get(), 0, &shared, nullptr, nullptr), CRASHRANK_OK);
   EXPECT_EQ(
       crashrank_ranking_place(ranking.get(), expected->ranking.size(), &shared, nullptr, nullptr),
+      CRASHRANK_USAGE);
+  int32_t separable = 0;
+  EXPECT_EQ(
+      crashrank_ranking_separable(ranking.get(), expected->ranking.size(), &separable, nullptr),
       CRASHRANK_USAGE);
   // Character for character but for the time taken.
   const auto without_time = [](std::string json) {

@@ -179,6 +179,25 @@ TEST(Harm, ThePedestriansAgeIsAnOption) {
   EXPECT_GE(most_harm(person, options), harm_of(person, options));
 }
 
+TEST(Harm, APedestrianOutOfRangeIsRefused) {
+  scenes::Scene scene;
+  scene.scenario.ego.model =
+      scene.add_model("car", scenes::box_mesh({2.0F, 0.9F, 0.7F}, 1), BodyKind::car, 1400.0);
+  scene.add_candidate("go on", 0.0);
+  const auto fault = [&](std::optional<double> age_years, std::optional<double> male_share) {
+    scene.scenario.harm.pedestrian = {age_years, male_share};
+    const Result<RankResult> result = rank(scene.scenario, scene.models, {});
+    return result ? std::string() : result.error().place;
+  };
+  EXPECT_EQ(fault(121.0, std::nullopt), "harm.pedestrian.age_years");
+  EXPECT_EQ(fault(-1.0, std::nullopt), "harm.pedestrian.age_years");
+  EXPECT_EQ(fault(std::nan(""), std::nullopt), "harm.pedestrian.age_years");
+  EXPECT_EQ(fault(std::nullopt, 1.1), "harm.pedestrian.male_share");
+  EXPECT_EQ(fault(std::nullopt, std::nan("")), "harm.pedestrian.male_share");
+  EXPECT_EQ(fault(120.0, 1.0), "");
+  EXPECT_EQ(fault(std::nullopt, std::nullopt), "");
+}
+
 TEST(Harm, IsMonotoneAndBoundedByItsMost) {
   constexpr std::uint64_t seed = 33;
   test::Random random(seed);

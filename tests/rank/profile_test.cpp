@@ -53,6 +53,8 @@ std::vector<double> numbers_of(const HarmOptions& h) {
           w.people_in_car,
           w.people_in_truck,
           w.people_in_bus,
+          h.pedestrian.age_years.value_or(-1.0),
+          h.pedestrian.male_share.value_or(-1.0),
           h.friction,
           r.least_friction,
           r.most_friction,
@@ -74,6 +76,7 @@ TEST(Profile, TheShippedOneWritesOutTheDefaults) {
   HarmOptions other;
   other.model = RiskModel::joksch_monfort;
   other.weights = {7, 7, 7, 7, 7, 7, 7, 7, 7, 7};
+  other.pedestrian = {7, 0.7};
   other.friction = 7;
   other.ranges = {0.7, 0.7, 7, 7, 0.7, 0.7, 7, 7, false};
   other.after = {7, 7, 7};
@@ -108,6 +111,10 @@ TEST(Profile, ErrorsNameTheirPlace) {
   expect_refused(with("/description", std::string(5000, 'x')), "description");
   expect_refused(with("/weights/ego_occupant", -0.1), "weights.ego_occupant");
   expect_refused(with("/weights/ego_occupant", "all"), "weights.ego_occupant");
+  expect_refused(with("/pedestrian/age_years", 121), "pedestrian.age_years");
+  expect_refused(with("/pedestrian/male_share", -0.1), "pedestrian.male_share");
+  expect_refused(with("/pedestrian/height_m", 1.7), "pedestrian.height_m");
+  expect_refused(with("/ranges/restitution", json::array({0.5, 11})), "ranges.restitution[1]");
   expect_refused(with("/weights/ego_occupant", nullptr), "weights.ego_occupant");
   expect_refused(with("/people/bus", 1e300), "people.bus");
   expect_refused(with("/ranges/strength", json::array({1.4, 0.7})), "ranges.strength");
@@ -164,6 +171,8 @@ TEST(Profile, TheSchemaStatesLimitsAndDefaults) {
             limits::deceleration_mps2);
   EXPECT_EQ(at((std::string(after) + "longest_s/maximum").c_str()), limits::after_s);
   EXPECT_EQ(at((std::string(after) + "most_contacts/maximum").c_str()), limits::contacts);
+  EXPECT_EQ(at("/properties/ranges/properties/restitution/items/maximum"), limits::restitution);
+  EXPECT_EQ(at("/properties/pedestrian/properties/age_years/maximum"), limits::age_years);
   // A profile made of the schema's defaults is the default.
   json profile{{"profile_version", 1}};
   for (const auto& [name, member] : schema.at("properties").items()) {
@@ -176,7 +185,7 @@ TEST(Profile, TheSchemaStatesLimitsAndDefaults) {
   const Result<HarmOptions> read_back = parse_profile(profile.dump(), "p.json");
   ASSERT_TRUE(read_back.ok()) << read_back.error().message();
   EXPECT_EQ(numbers_of(*read_back), numbers_of(HarmOptions{}));
-  EXPECT_EQ(profile.size(), 8U);
+  EXPECT_EQ(profile.size(), 9U);
 }
 
 TEST(Profile, RankTakesTheScenariosAndTheCallersOverIt) {

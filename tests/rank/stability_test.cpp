@@ -36,7 +36,8 @@ Scene square() {
 
 TEST(Stability, SamplesTellPlacesAndSeparation) {
   const RankResult result = square().ranked();
-  ASSERT_EQ(result.samples.size(), 129U);
+  ASSERT_EQ(result.samples.size(), 132U);
+  ASSERT_EQ(range_sample_count(result), 129U);
   for (const CandidateResult& c : result.ranking) {
     ASSERT_EQ(c.sample_scores.size(), result.samples.size());
     EXPECT_NEAR(c.sample_scores.front(), *c.score, 1e-12);
@@ -50,7 +51,7 @@ TEST(Stability, SamplesTellPlacesAndSeparation) {
     std::size_t best = count;
     std::size_t worst = 0;
     std::size_t turned = 0;
-    for (std::size_t s = 0; s < result.samples.size(); ++s) {
+    for (std::size_t s = 0; s < 129; ++s) {
       std::size_t before = 0;
       for (std::size_t other = 0; other < count; ++other) {
         const double theirs = result.ranking[other].sample_scores[s];
@@ -68,7 +69,23 @@ TEST(Stability, SamplesTellPlacesAndSeparation) {
     EXPECT_EQ(c.worst_place, worst);
     EXPECT_DOUBLE_EQ(c.overtaken, static_cast<double>(turned) / 129.0);
     EXPECT_EQ(c.place, place + 1);
-    EXPECT_EQ(c.separable, c.overtaken <= separable_share);
+    double highest = *c.score;
+    double lowest = *c.score;
+    for (std::size_t s = 129; s < 132; ++s) {
+      highest = std::max(highest, c.sample_scores[s]);
+      lowest = std::min(lowest, c.sample_scores[s]);
+    }
+    EXPECT_EQ(c.numerical_interval.lowest, lowest);
+    EXPECT_EQ(c.numerical_interval.highest, highest);
+    if (place + 1 < count) {
+      const CandidateResult& next = result.ranking[place + 1];
+      double next_lowest = *next.score;
+      for (std::size_t s = 129; s < 132; ++s) {
+        next_lowest = std::min(next_lowest, next.sample_scores[s]);
+      }
+      EXPECT_EQ(c.within_numerical_error, highest >= next_lowest);
+    }
+    EXPECT_EQ(c.separable, c.overtaken <= separable_share && !c.within_numerical_error);
   }
 }
 
@@ -127,6 +144,50 @@ TEST(Stability, EqualScoresThatATieBreakOrdersAreNotSeparable) {
   EXPECT_FALSE(result.ranking[0].separable);
 }
 
+TEST(Stability, WhatAMillimetreDecidesIsNotSeparable) {
+  // The ego meets the wall's end with an overlap of 5 cm, once 1 cm/s slower.
+  Scene scene = square();
+  scene.scenario.listed.clear();
+  scene.scenario.actors.clear();
+  scene.add_actor("wall", 1, 20.0, 2.0 + 0.9 - 0.05);
+  scene.add_candidate("touches", 0.0);
+  scene.add_candidate("touches, a little slower", -0.01);
+  const RankResult result = scene.ranked();
+  const CandidateResult& first = result.ranking[0];
+  ASSERT_NE(*first.score, *result.ranking[1].score);
+  ASSERT_EQ(first.sharing, 1U);
+  EXPECT_TRUE(first.within_numerical_error)
+      << first.numerical_interval.lowest << " to " << first.numerical_interval.highest << ", "
+      << result.ranking[1].numerical_interval.lowest << " to "
+      << result.ranking[1].numerical_interval.highest;
+  EXPECT_FALSE(first.separable);
+  // Square hits do not depend on it: with half the steps and 1 mm aside the slower one is better.
+  const RankResult square_hits = square().ranked();
+  const CandidateResult& fast = of(square_hits, "wall");
+  const CandidateResult& slow = of(square_hits, "wall, a little slower");
+  EXPECT_LT(slow.numerical_interval.highest, fast.numerical_interval.lowest);
+  EXPECT_LT(fast.numerical_interval.highest - fast.numerical_interval.lowest, 0.02 * *fast.score);
+}
+
+TEST(Stability, NumericalSamplesAreLastAndPlainInAllElse) {
+  const std::vector<HarmSample> samples = harm_samples(HarmOptions{});
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(is_numerical(samples[i]), i + numerical_samples >= samples.size());
+  }
+  const HarmSample& plain = samples.front();
+  for (std::size_t i = samples.size() - numerical_samples; i < samples.size(); ++i) {
+    EXPECT_EQ(samples[i].friction, plain.friction);
+    EXPECT_EQ(samples[i].strength, plain.strength);
+    EXPECT_EQ(samples[i].restitution, plain.restitution);
+    EXPECT_EQ(samples[i].model, plain.model);
+    EXPECT_EQ(samples[i].occupant_speed, plain.occupant_speed);
+    EXPECT_EQ(samples[i].outside_speed, plain.outside_speed);
+  }
+  EXPECT_EQ(samples[129].step, 0.5);
+  EXPECT_EQ(samples[130].shift_m, 0.001);
+  EXPECT_EQ(samples[131].shift_m, -0.001);
+}
+
 TEST(Stability, WhatIsWrongForBothAlikeDoesNotCount) {
   const RankResult result = square().ranked();
   const CandidateResult& fast = of(result, "wall");
@@ -144,11 +205,11 @@ TEST(Stability, WithoutRangesThereIsOneAnswer) {
   HarmRanges& r = scene.scenario.harm.ranges;
   r.least_friction = r.most_friction = scene.scenario.harm.friction;
   r.least_strength = r.most_strength = 1.0;
-  r.least_restitution = r.most_restitution = 0.0;
+  r.least_restitution = r.most_restitution = 1.0;
   r.least_risk_speed = r.most_risk_speed = 1.0;
   r.all_models = false;
   const RankResult result = scene.ranked();
-  EXPECT_EQ(result.samples.size(), 2U);
+  EXPECT_EQ(result.samples.size(), 2U + numerical_samples);
   for (std::size_t place = 0; place < result.ranking.size(); ++place) {
     const CandidateResult& c = result.ranking[place];
     EXPECT_NEAR(c.score_interval.lowest, *c.score, 1e-9);
@@ -168,12 +229,12 @@ TEST(Stability, WithoutRangesThereIsOneAnswer) {
 TEST(Stability, TheModelsCornersAreThere) {
   HarmOptions options;
   const std::vector<HarmSample> samples = harm_samples(options);
-  ASSERT_EQ(samples.size(), 129U);
+  ASSERT_EQ(samples.size(), 129U + numerical_samples);
   for (const RiskModel model : {RiskModel::tum, RiskModel::malliaris_monfort,
                                 RiskModel::malliaris_rosen, RiskModel::joksch_monfort}) {
     EXPECT_EQ(std::count_if(samples.begin() + 1, samples.end(),
                             [model](const HarmSample& s) { return s.model == model; }),
-              32);
+              model == options.model ? 35 : 32);
   }
   HarmExposure e;
   e.delta_v_mps = 12.0;

@@ -169,11 +169,31 @@ TEST(Tally, OtherMeasuresSumOverContacts) {
   EXPECT_DOUBLE_EQ(joules.score(energy, energy.plain), 15e4);
   EXPECT_DOUBLE_EQ(metres.score(intrusion, intrusion.plain), 3 * 0.35);
   // A rebound keeps its share of the energy.
+  e.restitution = 0.2;
   HarmSample bouncing = energy.plain;
-  bouncing.restitution = 0.5;
+  bouncing.restitution = 2.0;
   Tally kept;
   kept.add(energy, e, bouncing);
-  EXPECT_DOUBLE_EQ(kept.score(energy, bouncing), 0.75 * 5e4);
+  EXPECT_DOUBLE_EQ(kept.score(energy, bouncing), (1.0 - 0.16) / (1.0 - 0.04) * 5e4);
+}
+
+TEST(Tally, ASampleScalesTheReboundOfEachContactByItself) {
+  const Scene scene = scene_of(Measure::delta_v);
+  HarmSample bouncing = scene.plain;
+  bouncing.restitution = 1.5;
+  ContactEffect soft = effect(0, 1.0, 1.1, {-6.0, 0, 0});
+  ContactEffect hard = effect(1, 2.0, 2.1, {-6.0, 0, 0});
+  hard.restitution = 0.2;
+  Tally tally;
+  tally.add(scene, soft, bouncing);
+  EXPECT_DOUBLE_EQ(tally.score(scene, bouncing), 6.0);
+  tally.add(scene, hard, bouncing);
+  EXPECT_DOUBLE_EQ(tally.score(scene, bouncing), 6.0 + 6.0 * 1.3 / 1.2);
+  // No contact gives back more than half of its impulse.
+  bouncing.restitution = 10.0;
+  Tally most;
+  most.add(scene, hard, bouncing);
+  EXPECT_DOUBLE_EQ(most.score(scene, bouncing), 6.0 * 1.5 / 1.2);
 }
 
 double log_uniform(Random& random, double low, double high) {

@@ -65,7 +65,8 @@ Told by_harm() {
   RankResult& result = told.result;
   result.measure = Measure::harm;
   result.complete = true;
-  result.samples.resize(129);
+  result.samples.resize(129 + numerical_samples);
+  for (std::size_t i = 129; i < result.samples.size(); ++i) result.samples[i].step = 0.5;
   result.harm.weights.cyclist = 0.75;
   result.harm.weights.people_in_bus = 31.0;
   CandidateResult& hit = result.ranking[1];
@@ -75,6 +76,7 @@ Told by_harm() {
   hit.worst_place = 2;
   hit.overtaken = 0.38;
   hit.separable = false;
+  hit.numerical_interval = {0.2, 0.22};
   CandidateResult& last = result.ranking[2];
   last.score = 4321.987;
   last.score_interval = {4000.0, 4999.0};
@@ -90,6 +92,13 @@ TEST(RankingText, TellsNoDigitThatTheIntervalLeavesOpen) {
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
   }
   EXPECT_NE(text.find("rank 2 and 3 not separable"), std::string::npos) << text;
+  Told close = by_harm();
+  close.result.ranking[1].overtaken = 0.0;
+  close.result.ranking[1].within_numerical_error = true;
+  const std::string aside = ranking_text(close.scenario, close.models, close.result);
+  EXPECT_NE(aside.find("not separable (half the steps or 1 mm aside may turn their order)"),
+            std::string::npos)
+      << aside;
   EXPECT_EQ(text.find("0.21"), std::string::npos) << text;
   EXPECT_EQ(text.find("4321"), std::string::npos) << text;
   // Without ranges everything is told, and nothing about stability.
@@ -141,6 +150,9 @@ TEST(RankingJson, TellsStabilityAndEveryWeight) {
   const Told told = by_harm();
   const auto answer = nlohmann::json::parse(ranking_json(told.scenario, told.models, told.result));
   EXPECT_EQ(answer["stability"]["samples"], 129);
+  EXPECT_EQ(answer["stability"]["numerical_samples"], 3);
+  EXPECT_EQ(answer["stability"]["not_separable"][0]["within_numerical_error"], false);
+  EXPECT_EQ(answer["ranking"][1]["numerical_interval"], nlohmann::json::array({0.2, 0.22}));
   ASSERT_EQ(answer["stability"]["not_separable"].size(), 1U);
   EXPECT_EQ(answer["stability"]["not_separable"][0]["ranks"], nlohmann::json::array({2, 3}));
   EXPECT_EQ(answer["ranking"][1]["places"], nlohmann::json::array({2, 3}));

@@ -34,7 +34,7 @@ namespace crashrank {
 // and never gains energy, with M = m1·m2/(m1 + m2), or the movable body's mass:
 //   delta_v of body i  <=  M/m_i · (|v| + sqrt(v² + (I1·w1² + I2·w2²)/M))
 //   both crush energies together  <=  (M·v² + I1·w1² + I2·w2²)/2
-// The sample's restitution multiplies delta-v by 1 + e.
+// A sample's factor f on the restitution e multiplies delta-v by (1 + f·e)/(1 + e).
 
 /// What a person's risk counts for, and how many people are where. Every default is a choice that
 /// somebody has to answer for, not a finding: everybody counts alike, one person in each vehicle,
@@ -60,9 +60,11 @@ struct HarmRanges {
   double most_friction = 0.6;   ///< between the bodies
   double least_strength = 0.7;  ///< stiffness, times the default strength of all bodies
   double most_strength = 1.4;   ///< times the default
-  /// Rebound beyond the simulated one: delta-v times 1 + this.
-  double least_restitution = 0.0;
-  double most_restitution = 0.15;  ///< share of delta-v
+  /// Times the restitution of the contact law, which is never more than 0.5. The law has 0.2 to
+  /// 0.32 in fresh structure; measured are 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s, about 0.1 at
+  /// medium and high speed (SAE 931842): factors of 0.5 to 1.3.
+  double least_restitution = 0.5;
+  double most_restitution = 1.5;  ///< times the law's
   /// Times the speed at which the risk curves are read, for the width of the curves themselves; of
   /// occupants and of people outside cars each by itself, since their curves come from different
   /// data.
@@ -91,7 +93,7 @@ struct HarmOptions {
   /// Without effect: a contact that transfers no velocity injures nobody, and the fall of a brushed
   /// rider comes from `HarmExposure::road_speed_mps`. Profiles and scenarios may still contain it.
   double least_struck_share = 0.3;
-  bool intervals = true;  ///< evaluate the samples: five simulations a contact in place of one
+  bool intervals = true;  ///< evaluate the samples: eight simulations a contact in place of one
   /// Age and sex of all pedestrians, for the curves that have coefficients of them; empty: the mean
   /// person of the curve's sample.
   PedestrianDescription pedestrian;
@@ -105,6 +107,7 @@ inline constexpr double people = 1000.0;                         ///< most in a 
 inline constexpr double friction = 10.0;                         ///< most
 inline constexpr double min_strength = 0.01;                     ///< least factor
 inline constexpr double max_strength = 100.0;                    ///< most
+inline constexpr double restitution = 10.0;                      ///< most factor
 inline constexpr double min_risk_speed = 0.1;                    ///< least factor
 inline constexpr double max_risk_speed = 10.0;                   ///< most
 inline constexpr double deceleration_mps2 = 50.0;                ///< most, m/s²
@@ -158,19 +161,32 @@ CRASHRANK_API double most_harm(const HarmExposure& exposure, const HarmOptions& 
 struct HarmSample {
   double friction = 0.3;             ///< between the bodies
   double strength = 1.0;             ///< times the default
-  double restitution = 0.0;          ///< share of delta-v
+  double restitution = 1.0;          ///< times the contact law's
   RiskModel model = RiskModel::tum;  ///< whose curves
   double occupant_speed = 1.0;       ///< times the speed at which an occupant's curve is read
   double outside_speed = 1.0;        ///< and that of people outside cars
+  double step = 1.0;                 ///< times the steps of the simulation
+  /// The ego at each contact is moved this far to the left of its velocity relative to the other,
+  /// m.
+  double shift_m = 0.0;
 };
+
+/// Whether the sample varies how contacts are computed, not what is unknown about them.
+constexpr bool is_numerical(const HarmSample& sample) noexcept {
+  return sample.step != 1.0 || sample.shift_m != 0.0;
+}
+
+/// Samples that vary how contacts are computed.
+inline constexpr std::size_t numerical_samples = 3;
 
 /// The samples of a set of options: first what is taken when nothing varies, then every corner of
 /// the ranges (2 frictions, 2 strengths, 2 restitutions, 4 models, 2 × 2 speeds: 128; ends that
-/// coincide count once). Always the same order.
+/// coincide count once), then three `is_numerical` ones in which nothing else varies: half the
+/// steps, and the ego 1 mm to the left and to the right. Always the same order.
 CRASHRANK_API std::vector<HarmSample> harm_samples(const HarmOptions& options);
 
-/// `harm_of` in one of the samples; `exposure` is that of the sample's friction and strength,
-/// without rebound. With the first sample it is `harm_of`.
+/// `harm_of` in one of the samples; `exposure` is that of the contact simulated in the sample. With
+/// the first sample it is `harm_of`.
 CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& options,
                              const HarmSample& sample);
 

@@ -132,10 +132,14 @@ struct Graze {
 
 /// What choosing a candidate leads to.
 struct CandidateResult {
-  std::size_t candidate = 0;     ///< index into RankResult::candidates
-  std::optional<double> score;   ///< in the measure's unit; absent where only the interval is known
-  ScoreInterval score_interval;  ///< what the score is within
-  bool collides = false;         ///< it touches somebody
+  std::size_t candidate = 0;    ///< index into RankResult::candidates
+  std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
+  ScoreInterval
+      score_interval;  ///< what the score is within; of the samples without numerical ones
+  /// Least and greatest of the score and its numerical samples (`is_numerical`); the score alone
+  /// where there are none, the score's interval where the score is not known.
+  ScoreInterval numerical_interval;
+  bool collides = false;  ///< it touches somebody
   /// In time order (then by actor). Measures that simulate the crash: the first contact, then what
   /// the ego meets as the crash leaves it (AfterImpact). The others: the first contact and all that
   /// begin no later than 0.05 s after it along the planned motion.
@@ -149,15 +153,20 @@ struct CandidateResult {
   /// Number of candidates in that place, this one included; 1: not tied. They are neighbours in
   /// RankResult::ranking; `tied_with` lists them.
   std::size_t sharing = 1;
-  /// Best and worst place over the samples, from 0; `place` - 1 where there are none. Candidates
-  /// that are tied and score alike in a sample share their place in it.
+  /// Best and worst place over the samples but the numerical ones, from 0; `place` - 1 where there
+  /// are none. Candidates that are tied and score alike in a sample share their place in it.
   std::size_t best_place = 0;
   std::size_t worst_place = 0;  ///< and the worst
-  /// Share of the samples in which the next in the ranking scores lower than this one.
+  /// Share of the samples, numerical ones left out, in which the next in the ranking scores lower
+  /// than this one.
   double overtaken = 0.0;
+  /// Numerical error may turn the order of this candidate and the next: their numerical intervals
+  /// meet. The errors of two candidates are independent, so they are not compared sample by sample.
+  /// False without numerical samples, and between candidates that are tied.
+  bool within_numerical_error = false;
   /// The scores of this candidate and the next in the ranking differ (where one is not known: their
-  /// intervals are disjoint), and `overtaken` is at most `separable_share`. Never between
-  /// candidates that are tied.
+  /// intervals are disjoint), not `within_numerical_error`, and `overtaken` is at most
+  /// `separable_share`. Never between candidates that are tied.
   bool separable = true;
 };
 
@@ -212,7 +221,7 @@ struct RankResult {
   Measure measure = Measure::polygons;  ///< what was compared
   HarmOptions harm;                     ///< as it was counted with
   /// In which harm, delta-v and energy were evaluated, the first where nothing varies; empty for
-  /// other measures and without HarmOptions::intervals.
+  /// other measures and without HarmOptions::intervals. Numerical ones come last.
   std::vector<HarmSample> samples;
   std::vector<Candidate> candidates;     ///< in the order of `make_candidates`
   std::vector<CandidateResult> ranking;  ///< every candidate once, best first
@@ -262,6 +271,9 @@ struct RankResult {
 /// Safe from any thread; allocates.
 CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
                                       const RankOptions& options = {});
+
+/// Number of an answer's samples of what is not known: without the numerical ones.
+CRASHRANK_API std::size_t range_sample_count(const RankResult& result) noexcept;
 
 /// Indices into RankResult::candidates of those that share the place of `ranking[index]`, in their
 /// order, itself left out; empty where it is not tied. `index` is one of the ranking's. Linear in

@@ -133,10 +133,10 @@ public:
   /// is no room for the words of an error.
   RankerAnswer rank(View<const Candidate> candidates, const RankBudget& budget = {}) noexcept;
 
-  /// What `crashrank::rank` would have told of an answer, but for the samples of what is not known
-  /// well, which are left out: the known candidates in full, with contacts and damage, the others
-  /// with their intervals, and places as far as these leave them open. Evaluates and allocates; not
-  /// for use on time.
+  /// What `crashrank::rank` returns, of an answer. Complete: the same, samples, intervals and marks
+  /// included (HarmOptions::intervals). Otherwise without samples: the known candidates in full,
+  /// with contacts and damage, the others with their intervals, and places as far as these leave
+  /// them open. Evaluates and allocates; not for use on time.
   Result<RankResult> explain(View<const Candidate> candidates, const RankerAnswer& answer);
 
 private:
