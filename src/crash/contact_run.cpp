@@ -129,6 +129,7 @@ ContactRun::Totals ContactRun::feel() {
   };
   PassSettings settings;
   settings.step_s = step_s_;
+  settings.since_s = since_s_;
   for (std::size_t k = 1; k <= others; ++k) {
     PressedBody& other = state_.bodies[k];
     const double base = friction_between(first.vehicle->surface, other.vehicle->surface);
@@ -290,12 +291,14 @@ void ContactRun::step() {
   constexpr double faded_share = 0.02;
   constexpr double missed_m = 0.5;
   constexpr double least_speed_mps = 0.5;
+  const double last_s = step_s_;
   step_s_ = std::clamp(options_.travel_m / std::max(speed_mps_, 1e-3), options_.shortest_s,
                        options_.longest_s);
   if (acceleration_mps2_ > 0.0) {
     step_s_ = std::max(0.25 * options_.shortest_s,
                        std::min(step_s_, options_.speed_change * speed_mps_ / acceleration_mps2_));
   }
+  since_s_ = 0.5 * (last_s + step_s_);
   move(0.5 * step_s_);
   const Totals totals = feel();
   // Material of the two near each other, which may lie as far from one centre of mass as from the

@@ -327,7 +327,7 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
     const float speed = std::sqrt(vx * vx + vy * vy);
     // No depth counts that the piece has not travelled: what enters through a flank is not deep
     // below the front. The first step of a piece inside begins at the surface.
-    const float travel = speed * static_cast<float>(settings.step_s);
+    const float travel = speed * static_cast<float>(settings.since_s);
     float& way = near.way[near.piece[i]];
     way = way > 0.0F ? way + travel
                      : std::min(travel, least * std::min(most_slanted, speed / advance));
@@ -359,7 +359,7 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
       fresh = std::max(0.0F, 1.0F - depth / own.length);
     }
     const float other_depth = depth - own_depth;
-    const float own_share = depth > 1e-6F ? own_depth / depth : 0.5F;
+    const float own_share = !both_yield ? 1.0F : depth > 1e-6F ? own_depth / depth : 0.5F;
     force *= 1.0F + std::min(2.0F * spread * depth, wider) / narrow;
     const auto height = static_cast<float>(profile_edges_m[band + 1] - profile_edges_m[band]);
     const float whole = (force + dragged * density * advance * advance * height) *

@@ -85,6 +85,7 @@ struct PassSettings {
   float friction = 0.3F;
   float interlocked = 1.0F;  ///< friction where both bodies are crushed
   double step_s = 0.001;
+  double since_s = 0.001;  ///< from the last pass until this one
   /// Other bodies that nothing moves: pieces inside one of them do not press.
   View<const PressedBody> neighbours;
   std::size_t self = 0;  ///< the pressing body's place among them

@@ -153,6 +153,9 @@ void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSa
     open_.reduced_kg = reduced_kg(scene.ego.mass_kg, other.mass_kg);
     open_.leading_edge_m = other.vehicle.leading_edge_m;
   }
+  if (scene.measure == Measure::harm) {
+    open_.risk = std::max(open_.risk, risk_of(exposure_of(scene, open_), scene.harm, sample));
+  }
   switch (scene.measure) {
     case Measure::energy:
       sum_ += effect.dissipated_j;
@@ -180,7 +183,7 @@ double Tally::ego_term(const Scene& scene, const HarmSample& sample) const {
     return closed_ + open_.delta_v_mps.norm();
   }
   if (scene.measure != Measure::harm) return 0.0;
-  return combined_risk(closed_, risk_of(exposure_of(scene, open_), scene.harm, sample));
+  return combined_risk(closed_, open_.risk);
 }
 
 double Tally::ego_score(const Scene& scene, const HarmSample& sample) const {
@@ -222,8 +225,11 @@ Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Lat
       const double closing = std::max(begun.closing_mps, pending.closing_mps);
       const Range of_event{same ? std::min(begun.reduced_kg, reduced) : reduced,
                            std::max(begun.reduced_kg, reduced)};
-      const Range ego_risk =
+      Range ego_risk =
           risk_over(scene, ego, scene.ego, event, closing, of_event, other.vehicle.leading_edge_m);
+      // What has happened in the event stays.
+      ego_risk.least = std::max(ego_risk.least, begun.risk);
+      ego_risk.most = std::max(ego_risk.most, begun.risk);
       ContactEffect struck;
       struck.actor = pending.actor;
       struck.closing_mps = pending.closing_mps;
@@ -234,16 +240,18 @@ Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Lat
                     {reduced, reduced}, theirs.leading_edge_m);
       const double ego_people = people_weight(ego, scene.harm.weights);
       const double other_people = people_weight(theirs, scene.harm.weights);
-      const double least_ego = later.any ? before : combined_risk(before, ego_risk.least);
+      const double least_ego = combined_risk(before, ego_risk.least);
       // An occupant's -ln(1 - risk) is convex in delta-v and 0 at 0, so that no way in which later
       // contacts share their delta-v among events is worse than all of it in this one.
       double most_ego = combined_risk(before, ego_risk.most);
       if (later.any) {
         const Range all{0.0, event.most + later.ego_delta_v_mps};
         most_ego = has_cage(ego.kind) && std::isfinite(all.most)
-                       ? combined_risk(before, risk_over(scene, ego, scene.ego, all, closing,
-                                                         of_event, other.vehicle.leading_edge_m)
-                                                   .most)
+                       ? combined_risk(
+                             before, std::max(begun.risk,
+                                              risk_over(scene, ego, scene.ego, all, closing,
+                                                        of_event, other.vehicle.leading_edge_m)
+                                                  .most))
                        : 1.0;
       }
       score.least = sum_ + ego_people * least_ego + other_people * other_risk.least;

@@ -61,6 +61,8 @@ struct EgoEvent {
   double reduced_kg = 0.0;   ///< of the contact with that
   double leading_edge_m = 0.0;
   double intrusion_m = 0.0;  ///< greatest
+  /// Greatest after each of its contacts: a further contact that takes delta-v back heals nobody.
+  double risk = 0.0;
 };
 
 /// Exposure of the people in the ego to an event.

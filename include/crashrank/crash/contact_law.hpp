@@ -123,7 +123,7 @@ private:
 /// steel at high pressure and speed, 0.1 to 0.2); else 0.3 (what openPASS uses between cars).
 CRASHRANK_API double friction_between(Surface a, Surface b) noexcept;
 
-/// Restitution of fresh structure at a closing speed, m/s: 0.2 + 0.15/(1 + v/4). A contact takes
+/// Restitution of fresh structure at a closing speed, m/s: 0.26 + 0.15/(1 + v/4). A contact takes
 /// the share of it that its free crush length has left, so that it ends within what SAE 931842
 /// states: 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s, about 0.1 at medium and high speed.
 CRASHRANK_API double restitution_at(double closing_mps) noexcept;
@@ -139,7 +139,7 @@ CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 /// each in the share in which the other body is the one crushed, so that exchanging the bodies
 /// changes no bit. A piece presses while it advances along its normal further than it has been:
 /// what is crushed stays crushed. Structure of the core hardens and is never used up; the mass of
-/// what is pushed aside adds density·speed². At greatest compression the bodies rebound once, by
+/// what is pushed aside adds 4·density·speed². At greatest compression the bodies rebound once, by
 /// `restitution_at` times the impulse until then. docs/guide/crash-model.md has the formulas, the
 /// parameters with their reasons, and what the model leaves out.
 ///
@@ -149,7 +149,7 @@ CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 /// whole. Ends when the bodies part or rest. Two bodies that nothing moves, or that do not give
 /// way, do not act. Deep overlap at the start presses nowhere.
 ///
-/// Cost: 0.2 to 1 milliseconds; docs/guide/crash-model.md has measured figures. Safe from any
+/// Cost: half a millisecond in the median, several in long slides; docs/guide/crash-model.md has measured figures. Safe from any
 /// thread with its own workspace.
 CRASHRANK_API ContactOutcome simulate_contact(const ContactBody& a, const ContactBody& b,
                                               View<const ContactBody> fixed,
