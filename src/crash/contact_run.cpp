@@ -234,8 +234,9 @@ void ContactRun::rebound(const Totals& totals, double passing_mps) {
   const double sticks =
       std::clamp(1.0 - passing_mps / (slipping_share * most_passing_mps_), 0.0, 1.0);
   const double e =
-      std::min(most_restitution, restitution_at(most_closing_mps_) * variant_.restitution) *
-      (totals.fresh / totals.pressing) * std::min(1.0, totals.pressing / most_pressing_) * sticks;
+      std::min(most_restitution, restitution_at(most_closing_mps_) * variant_.restitution *
+                                     (totals.fresh / totals.pressing) *
+                                     std::min(1.0, totals.pressing / most_pressing_) * sticks);
   for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
     const PlanarBody& body = state_.bodies[k].motion;
     PlanarForce& i = state_.impulses[k];

@@ -9,9 +9,7 @@ inline constexpr double most_restitution = 0.5;
 
 /// Factor on the impulses and delta-v of a simulated contact of that restitution in [0, 0.5] when
 /// the restitution is multiplied by `factor` >= 0. The rebound repeats the share e of the impulse
-/// until then, so the whole is 1 + e times the compression's. Exactly 1 for a factor of 1. The law
-/// clamps before it takes the share of fresh structure, this after it: they differ above a factor
-/// of 1.4 and below 0.5 m/s alone.
+/// until then, so the whole is 1 + e times the compression's. Exactly 1 for a factor of 1.
 inline double rebound_gain(double restitution, double factor) {
   return (1.0 + std::min(most_restitution, factor * restitution)) / (1.0 + restitution);
 }
