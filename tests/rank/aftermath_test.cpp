@@ -205,7 +205,7 @@ TEST(Aftermath, PeopleOutsideCarsHaveNoCage) {
     EXPECT_EQ(hit.other.intrusion_m, 0.0);
   }
   Scene scene = road();
-  scene.scenario.ego.speed_mps = 69.0;
+  scene.scenario.ego.speed_mps = 45.0;
   const std::size_t wall =
       scene.add_model("wall", box_mesh({0.5F, 3.0F, 1.0F}, 2, {0, 0, 1}), BodyKind::building);
   scene.add_actor("wall", wall, 10.0, 0.0);
