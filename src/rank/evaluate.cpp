@@ -71,7 +71,7 @@ double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>
   Tally tally;
   std::size_t begun = 0;  // the first contact of the event
   for (std::size_t k = 0; k < effects.size(); ++k) {
-    const double before = tally.ego_score(scene, scene.plain);
+    const double before = tally.ego_score(scene);
     const ContactEffect& effect = effects[k].front();
     Contact& contact = result.contacts[k];
     tally.add(scene, effect, scene.plain);
@@ -91,10 +91,10 @@ double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>
     HarmExposure own;
     own.crush_energy_j = effect.ego_crush_j;
     severity.ego.harm =
-        (tally.ego_score(scene, scene.plain) - before) + property_harm(own, scene.harm.weights);
+        (tally.ego_score(scene) - before) + property_harm(own, scene.harm.weights);
     severity.harm = severity.ego.harm + severity.other.harm;
   }
-  return tally.score(scene, scene.plain);
+  return tally.score(scene);
 }
 
 /// How the bodies of a contact along the plan moved, and where the actors that the ego has met
@@ -114,7 +114,7 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
     for (const std::vector<ContactEffect>& variants : effects) {
       tally.add(scene, variants[place[i]], sample);
     }
-    const double score = tally.score(scene, sample);
+    const double score = tally.score(scene);
     result.sample_scores.push_back(score);
     if (scene.measure == Measure::harm && sample.model != scene.harm.model) continue;
     ScoreInterval& interval =

@@ -169,7 +169,7 @@ bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWor
   state.met.assign(scratch.met.begin(), scratch.met.end());
   state.told.stage = RankStage::followed;
   if (!hit) {
-    settle(state, tally.score(q.scene, q.scene.plain));
+    settle(state, tally.score(q.scene));
     return true;
   }
   const EgoAtContact ego = scratch.aftermath.at(hit->impact.time_s);

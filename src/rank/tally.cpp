@@ -134,7 +134,7 @@ void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSa
   const ContactEffect effect = with_rebound(simulated, sample.restitution);
   const Body& other = scene.actors[effect.actor];
   if (!continues(open_, effect.begin_s)) {
-    const double before = ego_term(scene, sample);
+    const double before = ego_term(scene);
     closed_ = before;
     const std::size_t number = open_.number + 1;
     open_ = {};
@@ -177,7 +177,7 @@ void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSa
 }
 
 /// Risk of the ego's people, or its summed delta-v, over all events.
-double Tally::ego_term(const Scene& scene, const HarmSample& sample) const {
+double Tally::ego_term(const Scene& scene) const {
   if (open_.number == 0) return closed_;
   if (scene.measure == Measure::delta_v) {
     return closed_ + open_.delta_v_mps.norm();
@@ -186,14 +186,14 @@ double Tally::ego_term(const Scene& scene, const HarmSample& sample) const {
   return combined_risk(closed_, open_.risk);
 }
 
-double Tally::ego_score(const Scene& scene, const HarmSample& sample) const {
-  const double ego = ego_term(scene, sample);
+double Tally::ego_score(const Scene& scene) const {
+  const double ego = ego_term(scene);
   if (scene.measure != Measure::harm) return ego;
   return people_weight(exposure_of(scene, open_), scene.harm.weights) * ego;
 }
 
-double Tally::score(const Scene& scene, const HarmSample& sample) const {
-  return sum_ + ego_score(scene, sample);
+double Tally::score(const Scene& scene) const {
+  return sum_ + ego_score(scene);
 }
 
 Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Later& later) const {
@@ -203,7 +203,7 @@ Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Lat
   // The event's delta-v: by the triangle inequality where the contact continues it.
   Range event{same ? std::max({0.0, known - own.most, own.least - known}) : own.least,
               known + own.most};
-  const double before = same ? closed_ : ego_term(scene, scene.plain);
+  const double before = same ? closed_ : ego_term(scene);
   Range score;
   switch (scene.measure) {
     case Measure::delta_v:

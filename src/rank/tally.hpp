@@ -105,16 +105,16 @@ public:
   /// Adds a contact that was simulated.
   void add(const Scene& scene, const ContactEffect& simulated, const HarmSample& sample);
   /// The score of all added so far.
-  double score(const Scene& scene, const HarmSample& sample) const;
+  double score(const Scene& scene) const;
   /// The share of the ego's people in that score; measures but harm: of the ego's delta-v.
-  double ego_score(const Scene& scene, const HarmSample& sample) const;
+  double ego_score(const Scene& scene) const;
   /// The event that the last contact belongs to.
   const EgoEvent& event() const noexcept { return open_; }
   /// Score once the pending contact and what may follow have been added.
   Range bounds(const Scene& scene, const PendingContact& pending, const Later& later) const;
 
 private:
-  double ego_term(const Scene& scene, const HarmSample& sample) const;
+  double ego_term(const Scene& scene) const;
 
   double sum_ = 0.0;     ///< all but the ego's events
   double closed_ = 0.0;  ///< the ego's events before the open one: risk, or m/s

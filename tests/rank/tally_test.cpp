@@ -57,7 +57,7 @@ ContactEffect effect(std::size_t actor, double begin_s, double end_s, const Vect
 TEST(Tally, NothingScoresNothing) {
   for (const Measure measure : {Measure::delta_v, Measure::energy, Measure::harm}) {
     const Scene scene = scene_of(measure);
-    EXPECT_EQ(Tally().score(scene, scene.plain), 0.0);
+    EXPECT_EQ(Tally().score(scene), 0.0);
   }
 }
 
@@ -69,7 +69,7 @@ TEST(Tally, ContactsWithinATenthOfASecondAreOneEvent) {
     Tally tally;
     tally.add(scene, effect(0, 1.0, 1.2, first), scene.plain);
     tally.add(scene, effect(1, begin_s, begin_s + 0.1, second), scene.plain);
-    return tally.score(scene, scene.plain);
+    return tally.score(scene);
   };
   // Within one event delta-v adds as a vector, counted from the end of what came before.
   EXPECT_DOUBLE_EQ(score(1.1), 10.0);
@@ -91,7 +91,7 @@ TEST(Tally, AnEventGoesOnFromTheLatestEnd) {
   tally.add(scene, effect(3, 1.9, 2.0, {-3, 0, 0}), scene.plain);
   EXPECT_EQ(tally.event().number, 2U);
   EXPECT_EQ(tally.event().begin_s, 1.9);
-  EXPECT_DOUBLE_EQ(tally.score(scene, scene.plain), 12.0);
+  EXPECT_DOUBLE_EQ(tally.score(scene), 12.0);
 }
 
 TEST(Tally, SeparateEventsAreIndependentRisks) {
@@ -100,7 +100,7 @@ TEST(Tally, SeparateEventsAreIndependentRisks) {
   const auto risk = [&](const std::vector<ContactEffect>& effects) {
     Tally tally;
     for (const ContactEffect& e : effects) tally.add(scene, e, scene.plain);
-    return tally.score(scene, scene.plain);
+    return tally.score(scene);
   };
   const ContactEffect first = effect(wall, 1.0, 1.1, {-15, 0, 0});
   const ContactEffect second = effect(wall, 2.0, 2.1, {0, 12, 0});
@@ -126,16 +126,16 @@ TEST(Tally, PeopleInOtherBodiesAddUp) {
   e.closing_mps = 20.0;
   Tally one;
   one.add(scene, e, scene.plain);
-  const double single = one.score(scene, scene.plain);
+  const double single = one.score(scene);
   EXPECT_GT(single, 0.0);
   e.begin_s = 3.0;
   e.end_s = 3.1;
   one.add(scene, e, scene.plain);
-  EXPECT_NEAR(one.score(scene, scene.plain), 2.0 * single, 1e-12);
+  EXPECT_NEAR(one.score(scene), 2.0 * single, 1e-12);
   scene.actors[0].occupants = 3.0;
   Tally full;
   full.add(scene, e, scene.plain);
-  EXPECT_NEAR(full.score(scene, scene.plain), 3.0 * single, 1e-12);
+  EXPECT_NEAR(full.score(scene), 3.0 * single, 1e-12);
 }
 
 TEST(Tally, WithoutOccupantsNobodyIsHarmed) {
@@ -148,9 +148,9 @@ TEST(Tally, WithoutOccupantsNobodyIsHarmed) {
   e.other_intrusion_m = 0.3;
   Tally tally;
   tally.add(scene, e, scene.plain);
-  EXPECT_EQ(tally.score(scene, scene.plain), 0.0);
+  EXPECT_EQ(tally.score(scene), 0.0);
   scene.ego.occupants = 1.0;
-  EXPECT_GT(tally.score(scene, scene.plain), 0.0);
+  EXPECT_GT(tally.score(scene), 0.0);
 }
 
 TEST(Tally, OtherMeasuresSumOverContacts) {
@@ -166,15 +166,15 @@ TEST(Tally, OtherMeasuresSumOverContacts) {
     joules.add(energy, e, energy.plain);
     metres.add(intrusion, e, intrusion.plain);
   }
-  EXPECT_DOUBLE_EQ(joules.score(energy, energy.plain), 15e4);
-  EXPECT_DOUBLE_EQ(metres.score(intrusion, intrusion.plain), 3 * 0.35);
+  EXPECT_DOUBLE_EQ(joules.score(energy), 15e4);
+  EXPECT_DOUBLE_EQ(metres.score(intrusion), 3 * 0.35);
   // A rebound keeps its share of the energy.
   e.restitution = 0.2;
   HarmSample bouncing = energy.plain;
   bouncing.restitution = 2.0;
   Tally kept;
   kept.add(energy, e, bouncing);
-  EXPECT_DOUBLE_EQ(kept.score(energy, bouncing), (1.0 - 0.16) / (1.0 - 0.04) * 5e4);
+  EXPECT_DOUBLE_EQ(kept.score(energy), (1.0 - 0.16) / (1.0 - 0.04) * 5e4);
 }
 
 TEST(Tally, ASampleScalesTheReboundOfEachContactByItself) {
@@ -186,14 +186,14 @@ TEST(Tally, ASampleScalesTheReboundOfEachContactByItself) {
   hard.restitution = 0.2;
   Tally tally;
   tally.add(scene, soft, bouncing);
-  EXPECT_DOUBLE_EQ(tally.score(scene, bouncing), 6.0);
+  EXPECT_DOUBLE_EQ(tally.score(scene), 6.0);
   tally.add(scene, hard, bouncing);
-  EXPECT_DOUBLE_EQ(tally.score(scene, bouncing), 6.0 + 6.0 * 1.3 / 1.2);
+  EXPECT_DOUBLE_EQ(tally.score(scene), 6.0 + 6.0 * 1.3 / 1.2);
   // No contact gives back more than half of its impulse.
   bouncing.restitution = 10.0;
   Tally most;
   most.add(scene, hard, bouncing);
-  EXPECT_DOUBLE_EQ(most.score(scene, bouncing), 6.0 * 1.5 / 1.2);
+  EXPECT_DOUBLE_EQ(most.score(scene), 6.0 * 1.5 / 1.2);
 }
 
 double log_uniform(Random& random, double low, double high) {
@@ -241,7 +241,7 @@ double without_ego(Scene scene, const ContactEffect& e) {
   scene.ego.occupants = 0.0;
   Tally tally;
   tally.add(scene, e, scene.plain);
-  return tally.score(scene, scene.plain);
+  return tally.score(scene);
 }
 
 TEST(Tally, BoundsContainEveryScoreThatMayFollow) {
@@ -306,7 +306,7 @@ TEST(Tally, BoundsContainEveryScoreThatMayFollow) {
     const Range bounds = tally.bounds(scene, pending, after);
     tally.add(scene, actual, scene.plain);
     for (const ContactEffect& e : later) tally.add(scene, e, scene.plain);
-    const double score = tally.score(scene, scene.plain);
+    const double score = tally.score(scene);
     ASSERT_LE(bounds.least, score) << "case " << i;
     ASSERT_GE(bounds.most, score) << "case " << i;
     followed += later.empty() ? 0 : 1;
@@ -337,7 +337,7 @@ TEST(Tally, BoundsOfAKnownContactAreItsScore) {
       Tally tally;
       const Range bounds = tally.bounds(scene, pending, {});
       tally.add(scene, e, scene.plain);
-      const double score = tally.score(scene, scene.plain);
+      const double score = tally.score(scene);
       ASSERT_NEAR(bounds.least, score, 1e-8 * score);
       ASSERT_NEAR(bounds.most, score, 1e-8 * score);
     }
