@@ -265,7 +265,8 @@ TEST(Validate, LimitsAreSane) {
   EXPECT_NEAR(rows[0].at("delta_v_mps").get<double>(), 16.0, 1.5);
   EXPECT_LT(std::abs(rows[0].at("yaw_rate_dps").get<double>()), 20.0);
   EXPECT_LT(rows[1].at("delta_v_mps").get<double>(), 1.0);
-  EXPECT_NEAR(rows[2].at("delta_v_mps").get<double>(), 16.0, 1.5);
+  // The Camry of the full-width table was measured with a rebound of 0.13 to 0.16.
+  EXPECT_NEAR(rows[2].at("delta_v_mps").get<double>(), 16.5, 1.5);
   // Radius and overlap of a full-width wall have no effect.
   EXPECT_EQ(rows[4].at("delta_v_mps"), rows[5].at("delta_v_mps"));
   EXPECT_GT(rows[4].at("delta_v_mps").get<double>(), 15.0);
