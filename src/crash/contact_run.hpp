@@ -113,7 +113,7 @@ private:
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;
-  double since_s_ = 0.0;  ///< from the last pass until this one
+  double since_s_ = 0.0;            ///< from the last pass until this one
   double speed_mps_ = 0.0;          ///< of points against each other, at most
   double acceleration_mps2_ = 0.0;  ///< that the force of the last step caused
   double moved_m_ = 0.0;            ///< in the last step

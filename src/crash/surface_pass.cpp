@@ -401,7 +401,8 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
       record.other.grow(Eigen::Vector3f(near.x[i], near.y[i], low));
       record.other.grow(Eigen::Vector3f(near.x[i], near.y[i], low + height));
       record.intrusion_other =
-          std::max(record.intrusion_other, pusher.response.inside_compartment(back_x, back_y, -near.normal_x[i]));
+          std::max(record.intrusion_other,
+                   pusher.response.inside_compartment(back_x, back_y, -near.normal_x[i]));
     }
   }
 

@@ -42,9 +42,9 @@ struct NearPieces {
   std::vector<std::uint32_t> pressing;  ///< places of those that may press
   std::size_t count = 0;
   // By piece of the profile.
-  std::vector<float> s;         ///< of pieces that are not listed
-  std::vector<float> furthest;  ///< of pieces that are not listed
-  std::vector<float> way;       ///< how far it has travelled inside the other body, m
+  std::vector<float> s;               ///< of pieces that are not listed
+  std::vector<float> furthest;        ///< of pieces that are not listed
+  std::vector<float> way;             ///< how far it has travelled inside the other body, m
   std::vector<std::uint32_t> listed;  ///< number of the last list that the piece was in
   std::uint32_t list = 0;             ///< number of the present list
   double valid_for_m = -1e9;          ///< relative travel until the list has to be made anew

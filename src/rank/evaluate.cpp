@@ -90,8 +90,7 @@ double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>
     severity.other.harm = harm_of(other, scene.harm);
     HarmExposure own;
     own.crush_energy_j = effect.ego_crush_j;
-    severity.ego.harm =
-        (tally.ego_score(scene) - before) + property_harm(own, scene.harm.weights);
+    severity.ego.harm = (tally.ego_score(scene) - before) + property_harm(own, scene.harm.weights);
     severity.harm = severity.ego.harm + severity.other.harm;
   }
   return tally.score(scene);

@@ -192,9 +192,7 @@ double Tally::ego_score(const Scene& scene) const {
   return people_weight(exposure_of(scene, open_), scene.harm.weights) * ego;
 }
 
-double Tally::score(const Scene& scene) const {
-  return sum_ + ego_score(scene);
-}
+double Tally::score(const Scene& scene) const { return sum_ + ego_score(scene); }
 
 Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Later& later) const {
   const bool same = continues(open_, pending.begin_s);
@@ -246,13 +244,13 @@ Range Tally::bounds(const Scene& scene, const PendingContact& pending, const Lat
       double most_ego = combined_risk(before, ego_risk.most);
       if (later.any) {
         const Range all{0.0, event.most + later.ego_delta_v_mps};
-        most_ego = has_cage(ego.kind) && std::isfinite(all.most)
-                       ? combined_risk(
-                             before, std::max(begun.risk,
-                                              risk_over(scene, ego, scene.ego, all, closing,
-                                                        of_event, other.vehicle.leading_edge_m)
-                                                  .most))
-                       : 1.0;
+        most_ego =
+            has_cage(ego.kind) && std::isfinite(all.most)
+                ? combined_risk(
+                      before, std::max(begun.risk, risk_over(scene, ego, scene.ego, all, closing,
+                                                             of_event, other.vehicle.leading_edge_m)
+                                                       .most))
+                : 1.0;
       }
       score.least = sum_ + ego_people * least_ego + other_people * other_risk.least;
       score.most = sum_ + ego_people * most_ego + other_people * other_risk.most + later.most +

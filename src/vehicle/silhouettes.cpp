@@ -145,9 +145,9 @@ Silhouettes make_silhouettes(const Profile& profile) {
     for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
       constexpr float least_m = 0.02F;
       const OutlinePiece& p = profile.pieces[i];
-      s.thickness_m.push_back(
-          std::max(least_m, p.normal_x * p.normal_x * chord(s, s.along_x[band], p.y) +
-                                flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x)));
+      s.thickness_m.push_back(std::max(
+          least_m, p.normal_x * p.normal_x * chord(s, s.along_x[band], p.y) +
+                       flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x)));
     }
     for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += block_pieces) {
       s.blocks.push_back(

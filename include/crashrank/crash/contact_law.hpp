@@ -149,8 +149,8 @@ CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 /// whole. Ends when the bodies part or rest. Two bodies that nothing moves, or that do not give
 /// way, do not act. Deep overlap at the start presses nowhere.
 ///
-/// Cost: half a millisecond in the median, several in long slides; docs/guide/crash-model.md has measured figures. Safe from any
-/// thread with its own workspace.
+/// Cost: half a millisecond in the median, several in long slides; docs/guide/crash-model.md has
+/// measured figures. Safe from any thread with its own workspace.
 CRASHRANK_API ContactOutcome simulate_contact(const ContactBody& a, const ContactBody& b,
                                               View<const ContactBody> fixed,
                                               const Eigen::Vector3d& point_m,

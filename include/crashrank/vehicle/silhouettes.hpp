@@ -56,10 +56,10 @@ struct Silhouettes {
   /// By piece: the body's chords through it along x and across, blended as depths are by the
   /// squares of its normal, those across times `flank_share`, m.
   std::vector<float> thickness_m;
-  float min_x = 0.0F;                               ///< bounds of all outlines, m
-  float max_x = 0.0F;                               ///< m
-  float min_y = 0.0F;                               ///< m
-  float max_y = 0.0F;                               ///< m
+  float min_x = 0.0F;  ///< bounds of all outlines, m
+  float max_x = 0.0F;  ///< m
+  float min_y = 0.0F;  ///< m
+  float max_y = 0.0F;  ///< m
 
   /// Smaller side of the bounds, m.
   double width_m() const { return static_cast<double>(std::min(max_x - min_x, max_y - min_y)); }

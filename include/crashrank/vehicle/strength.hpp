@@ -27,8 +27,8 @@ struct CrushCore {
   /// Rigid parts between the rails before the compartment, along x, m: what they are pushed by
   /// comes off the free crush length of the front and reaches the compartment.
   double engine_m = 0.0;
-  double inside = 1.0;        ///< share of the mean law in the core
-  double outside = 1.0;       ///< and beside it
+  double inside = 1.0;   ///< share of the mean law in the core
+  double outside = 1.0;  ///< and beside it
 };
 
 /// Resistance of a body from all sides and at all heights.
