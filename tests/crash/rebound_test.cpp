@@ -67,12 +67,12 @@ TEST(Rebound, SquareHitsAreScaledAsSimulated) {
 
 TEST(Rebound, ObliqueHitsAreScaledAsSimulatedButForFewPercent) {
   constexpr std::uint64_t seed = 701;
-  constexpr int cases = 400;
+  constexpr int draws = 400;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   std::vector<double> errors;
   std::vector<double> spreads;
-  for (int i = 0; i < cases; ++i) {
+  for (int i = 0; i < draws; ++i) {
     const std::size_t a = random.below(3);
     const std::size_t b = random.below(static_cast<std::uint32_t>(company().size()));
     const double closing = std::exp(random.uniform(std::log(2.0), std::log(40.0)));
