@@ -2,10 +2,8 @@
 
 #include "crash/pair_order.hpp"
 #include "crash/rebound.hpp"
-#include "crashrank/crash/pdof.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace crashrank::detail {
@@ -19,8 +17,6 @@ constexpr float interlocked_friction = 1.0F;
 constexpr double at_rest = 0.03;
 /// A contact that still moves past at a quarter of its speed or more does not rebound.
 constexpr double slipping_share = 0.25;
-/// Kept at the end of the force, a contact counts as sliding.
-constexpr double slides_share = 0.2;
 
 /// No point of the outlines is further from the centre of mass.
 double rim_of(const Vehicle& v) {
@@ -174,18 +170,23 @@ ContactRun::Totals ContactRun::feel() {
   return totals;
 }
 
+/// How the energy changes along a share k of forces or impulses: slope·k + bend·k²/2.
+ContactRun::EnergyChange ContactRun::energy_along(const std::vector<PlanarForce>& on) const {
+  EnergyChange change;
+  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
+    const PlanarBody& body = state_.bodies[k].motion;
+    const PlanarForce& f = on[k];
+    change.slope += f.x * body.vx + f.y * body.vy + f.moment * body.spin;
+    change.bend +=
+        (f.x * f.x + f.y * f.y) * body.inverse_mass + f.moment * f.moment * body.inverse_inertia;
+  }
+  return change;
+}
+
 /// Applies the forces for the step, but no longer than until the energy is least: so none is ever
 /// gained, however stiff what was met is.
 void ContactRun::push() {
-  double slope = 0.0;
-  double bend = 0.0;
-  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
-    const PlanarBody& body = state_.bodies[k].motion;
-    const PlanarForce& f = state_.forces[k];
-    slope += f.x * body.vx + f.y * body.vy + f.moment * body.spin;
-    bend +=
-        (f.x * f.x + f.y * f.y) * body.inverse_mass + f.moment * f.moment * body.inverse_inertia;
-  }
+  const auto [slope, bend] = energy_along(state_.forces);
   const PlanarBody& p = state_.bodies[0].motion;
   const PlanarBody& q = state_.bodies[1].motion;
   const PlanarForce& on = state_.forces[0];
@@ -242,15 +243,7 @@ void ContactRun::rebound(const Totals& totals, double passing_mps) {
     PlanarForce& i = state_.impulses[k];
     i.moment -= body.x * i.y - body.y * i.x;
   }
-  double slope = 0.0;
-  double bend = 0.0;
-  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
-    const PlanarBody& body = state_.bodies[k].motion;
-    const PlanarForce& i = state_.impulses[k];
-    slope += i.x * body.vx + i.y * body.vy + i.moment * body.spin;
-    bend +=
-        (i.x * i.x + i.y * i.y) * body.inverse_mass + i.moment * i.moment * body.inverse_inertia;
-  }
+  auto [slope, bend] = energy_along(state_.impulses);
   if (!(bend > 0.0)) return;
   constexpr double most_left = 0.3;
   const double rest = sticks * std::clamp(-slope / bend, 0.0, most_left);
@@ -352,149 +345,6 @@ void ContactRun::step() {
 bool ContactRun::advance(int steps) {
   for (int i = 0; i < steps && !over_; ++i) step();
   return !over_;
-}
-
-BodyContact ContactRun::describe(std::size_t body, const ContactBody& given, bool is_first) const {
-  BodyContact result;
-  const Vehicle& v = *given.vehicle;
-  const PlanarBody& start = is_first ? start_first_ : start_second_;
-  const PlanarBody& end = is_first ? end_first_ : end_second_;
-  const PlanarBody& now = state_.bodies[body].motion;
-  const PlanarBody& mover = is_first || !v.movable() ? state_.bodies[0].motion : now;
-  const PlanarBody& mover_start = is_first || !v.movable() ? start_first_ : start_second_;
-  const double sign = is_first || v.movable() ? 1.0 : -1.0;
-  const Vehicle& moved = is_first || !v.movable() ? *given_first_.vehicle : *given_second_.vehicle;
-  const double mass = moved.movable() ? moved.mass_kg : 0.0;
-  result.impulse_ns =
-      sign * mass * Vector3d(mover.vx - mover_start.vx, mover.vy - mover_start.vy, 0.0);
-  if (is_first && !v.movable()) {
-    const PlanarBody& q = state_.bodies[1].motion;
-    result.impulse_ns = -given_second_.vehicle->mass_kg *
-                        Vector3d(q.vx - start_second_.vx, q.vy - start_second_.vy, 0.0);
-  }
-  if (v.movable()) {
-    result.delta_v_mps = Vector3d(now.vx - start.vx, now.vy - start.vy, 0.0);
-    result.delta_yaw_rate_radps = now.spin - start.spin;
-    result.after.linear_mps = Vector3d(now.vx, now.vy, given.velocity.linear_mps.z());
-    result.after.angular_radps = given.velocity.angular_radps;
-    result.after.angular_radps.z() = now.spin;
-    result.moved_m = Vector3d(end.x - start.x, end.y - start.y, 0.0);
-    result.turned_rad = end.turned;
-  }
-  result.pdof_deg = pdof_deg(result.impulse_ns, given.pose.rotation.col(0));
-  if (v.strength.rigid) return result;
-  result.crush_depth_m = static_cast<double>(is_first ? depth_first_m_ : depth_second_m_);
-  for (std::size_t k = 0; k < state_.records.size(); ++k) {
-    const PassRecord& record = state_.records[k];
-    // Record 0 is of the first body's pieces in the second, the others of theirs in the first.
-    const bool own = is_first ? k != 0 : k == 0;
-    result.damaged.grow(own ? record.own : record.other);
-    result.intrusion_m =
-        std::max(result.intrusion_m,
-                 static_cast<double>(own ? record.intrusion_own : record.intrusion_other));
-  }
-  return result;
-}
-
-ContactOutcome ContactRun::outcome() const {
-  ContactOutcome result;
-  result.steps = steps_;
-  result.pieces = pieces_;
-  if (!acts_) {
-    result.a.after = swapped_ ? given_second_.velocity : given_first_.velocity;
-    result.b.after = swapped_ ? given_first_.velocity : given_second_.velocity;
-  }
-  BodyContact first = describe(0, given_first_, true);
-  BodyContact second = describe(1, given_second_, false);
-  result.acts = acts_;
-  result.slides = acts_ && last_passing_mps_ > slides_share * fastest_passing_mps_;
-  result.duration_s = duration_s_;
-  result.closing_mps = closing_mps_;
-  result.restitution = restitution_;
-  result.dissipated_j = dissipated_j();
-  // Powers at the middles of steps add up to what was lost but for the steps' error: shares of it.
-  const double sum = crush_first_j_ + crush_second_j_ + friction_j_;
-  const double scale = sum > 0.0 ? result.dissipated_j / sum : 0.0;
-  result.friction_j = scale * friction_j_;
-  first.crush_energy_j = scale * crush_first_j_;
-  second.crush_energy_j = scale * crush_second_j_;
-  result.point_m = origin_m_;
-  if (point_weight_ > 0.0) {
-    result.point_m += Vector3d(point_x_ / point_weight_, point_y_ / point_weight_, 0.0);
-  }
-  result.a = swapped_ ? second : first;
-  result.b = swapped_ ? first : second;
-  result.motion = record_.motion(given_first_, given_second_, swapped_);
-  return result;
-}
-
-Vector3d ContactRun::impulse_ns() const {
-  const BodyContact a =
-      swapped_ ? describe(1, given_second_, false) : describe(0, given_first_, true);
-  return a.impulse_ns;
-}
-
-// Bounds. With E the energy of both about their common centre of mass, the speed v of the centres
-// of mass against each other obeys M·v²/2 <= E, M the reduced mass. E falls but for rebounds, each
-// of which restores at most e² <= 1/4 of what was lost since the one before.
-
-double ContactRun::most_speed_mps() const {
-  constexpr double most_restored = 0.25;
-  const PlanarBody& p = state_.bodies[0].motion;
-  const PlanarBody& q = state_.bodies[1].motion;
-  const double inverse = p.inverse_mass + q.inverse_mass;
-  const auto turning = [](const PlanarBody& body) {
-    return body.inverse_inertia > 0.0 ? body.spin * body.spin / body.inverse_inertia : 0.0;
-  };
-  const double speed = relative_speed();
-  const double lost = over_ ? 0.0 : std::max(0.0, dissipated_j());
-  const double twice =
-      speed * speed / inverse + turning(p) + turning(q) + 2.0 * most_restored * lost;
-  return (1.0 + 1e-9) * std::sqrt(twice * inverse);
-}
-
-double ContactRun::most_left_ns() const {
-  const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
-  if (over_ || !(inverse > 0.0)) return 0.0;
-  return ((1.0 + 1e-9) * relative_speed() + most_speed_mps()) / inverse;
-}
-
-double ContactRun::rounding_ns() const {
-  const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
-  return inverse > 0.0 ? 1e-12 * speeds_before_mps_ / inverse : 0.0;
-}
-
-double ContactRun::least_whole_ns() const {
-  const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
-  if (!(inverse > 0.0)) return 0.0;
-  return std::max(0.0, (1.0 - 1e-9) * speed_before_mps_ - most_speed_mps()) / inverse;
-}
-
-double ContactRun::most_whole_ns() const {
-  const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
-  if (!(inverse > 0.0)) return 0.0;
-  return ((1.0 + 1e-9) * speed_before_mps_ + most_speed_mps()) / inverse;
-}
-
-double ContactRun::dissipated_j() const { return std::max(0.0, energy_before_j_ - moving_j()); }
-
-double ContactRun::least_whole_j() const {
-  constexpr double most_restored = 0.25;
-  const double lost = dissipated_j();
-  return std::max(0.0, (over_ ? lost : (1.0 - most_restored) * lost) - rounding_j());
-}
-
-double ContactRun::most_whole_j() const {
-  const double lost = dissipated_j();
-  if (over_) return lost;
-  const double most = most_speed_mps();
-  const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
-  return lost + 0.5 * most * most / inverse + rounding_j();
 }
 
 }  // namespace crashrank::detail

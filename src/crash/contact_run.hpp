@@ -76,6 +76,11 @@ private:
     double point_x = 0.0;
     double point_y = 0.0;
   };
+  /// Change of kinetic energy along a set of forces or impulses.
+  struct EnergyChange {
+    double slope = 0.0;
+    double bend = 0.0;
+  };
   /// Relative velocity where the force of a step acts.
   struct AtForce {
     double closing_mps = 0.0;  ///< against the force, positive while the bodies approach
@@ -83,6 +88,7 @@ private:
   };
   void step();
   Totals feel();
+  EnergyChange energy_along(const std::vector<PlanarForce>& on) const;
   void push();
   AtForce at_force(const Totals& totals) const;
   void rebound(const Totals& totals, double passing_mps);
