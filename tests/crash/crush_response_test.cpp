@@ -160,11 +160,11 @@ TEST(CrushResponse, TheCompartmentIsMeasuredFromItsNearestSide) {
   strength.core.cage_front_m = 2.0;
   strength.core.cage_rear_m = 0.5;
   const CrushResponse response(strength, 1.0);
-  EXPECT_FLOAT_EQ(response.inside_compartment(1.75F, 0.0F), 0.25F);
-  EXPECT_FLOAT_EQ(response.inside_compartment(0.6F, 0.0F), 0.1F);
-  EXPECT_FLOAT_EQ(response.inside_compartment(1.2F, -0.5F), 0.2F);
-  EXPECT_LE(response.inside_compartment(2.5F, 0.0F), 0.0F);
-  EXPECT_LE(response.inside_compartment(1.2F, 0.8F), 0.0F);
+  EXPECT_FLOAT_EQ(response.inside_compartment(1.75F, 0.0F, -1.0F), 0.25F);
+  EXPECT_FLOAT_EQ(response.inside_compartment(0.6F, 0.0F, -1.0F), 0.1F);
+  EXPECT_FLOAT_EQ(response.inside_compartment(1.2F, -0.5F, -1.0F), 0.2F);
+  EXPECT_LE(response.inside_compartment(2.5F, 0.0F, -1.0F), 0.0F);
+  EXPECT_LE(response.inside_compartment(1.2F, 0.8F, -1.0F), 0.0F);
 }
 
 }  // namespace
