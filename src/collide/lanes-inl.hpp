@@ -28,6 +28,10 @@ struct M8 {
 struct F8 {
   hn::Vec<FloatTag> v[vectors];
 };
+/// Whole numbers.
+struct I8 {
+  hn::Vec<IntTag> v[vectors];
+};
 
 #define CRASHRANK_EACH for (std::size_t k = 0; k < vectors; ++k)
 
@@ -56,7 +60,41 @@ HWY_INLINE F8 operator*(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Mul(a.v[k], b.v[k]);
   return a;
 }
-/// a·b + c, fused where the target can: every bound in this folder holds either way.
+HWY_INLINE F8 operator/(F8 a, F8 b) {
+  CRASHRANK_EACH a.v[k] = hn::Div(a.v[k], b.v[k]);
+  return a;
+}
+HWY_INLINE F8 operator-(F8 a) {
+  CRASHRANK_EACH a.v[k] = hn::Neg(a.v[k]);
+  return a;
+}
+HWY_INLINE F8 square_root(F8 a) {
+  CRASHRANK_EACH a.v[k] = hn::Sqrt(a.v[k]);
+  return a;
+}
+/// Towards zero, of numbers that an int holds.
+HWY_INLINE I8 truncate(F8 a) {
+  I8 r;
+  CRASHRANK_EACH r.v[k] = hn::ConvertTo(IntTag(), a.v[k]);
+  return r;
+}
+HWY_INLINE F8 to_floats(I8 a) {
+  F8 r;
+  CRASHRANK_EACH r.v[k] = hn::ConvertTo(FloatTag(), a.v[k]);
+  return r;
+}
+HWY_INLINE I8 twice(I8 a) {
+  CRASHRANK_EACH a.v[k] = hn::Add(a.v[k], a.v[k]);
+  return a;
+}
+/// table[index[i]] for eight numbers i.
+HWY_INLINE F8 gather(const float* table, I8 index) {
+  F8 r;
+  CRASHRANK_EACH r.v[k] = hn::GatherIndex(FloatTag(), table, index.v[k]);
+  return r;
+}
+/// a·b + c, fused where the target can: every bound in this folder
+/// holds either way.
 HWY_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
   CRASHRANK_EACH a.v[k] = hn::MulAdd(a.v[k], b.v[k], c.v[k]);
   return a;

@@ -135,21 +135,21 @@ ContactRun::Totals ContactRun::feel() {
     settings.interlocked = metals ? interlocked_friction : 0.0F;
     PlanarForce on_first;
     double pressing = 0.0;
-    if (!first.response.rigid()) {
+    if (!first.response.rigid) {
       settings.neighbours = {state_.bodies.data() + 1, others > 1 ? others : 0};
       settings.self = k - 1;
       PassSums sums;
       press_pieces(other, first, settings, moved_m_, state_.near[k], sums, state_.records[k]);
-      pieces_ += state_.near[k].count;
+      pieces_ += state_.near[k].pieces;
       add(sums, true);
       on_first = sums.on_pressed;
       pressing += sums.pressing;
     }
-    if (!other.response.rigid()) {
+    if (!other.response.rigid) {
       settings.neighbours = {};
       PassSums sums;
       press_pieces(first, other, settings, moved_m_, state_.near[0], sums, state_.records[0]);
-      pieces_ += state_.near[0].count;
+      pieces_ += state_.near[0].pieces;
       add(sums, false);
       on_first.x -= sums.on_pressed.x;
       on_first.y -= sums.on_pressed.y;

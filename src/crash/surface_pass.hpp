@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crash/crush_response.hpp"
+#include "crash/near_pieces.hpp"
 #include "crash/planar_body.hpp"
 
 #include "crashrank/base/box.hpp"
@@ -8,8 +9,6 @@
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include <cstddef>
-#include <cstdint>
-#include <vector>
 
 namespace crashrank::detail {
 
@@ -18,40 +17,6 @@ struct PressedBody {
   const Vehicle* vehicle = nullptr;
   CrushResponse response;
   PlanarBody motion;
-};
-
-/// Pieces of one body's outline that may press into another, by field. `s` is how far a piece has
-/// advanced along its normal through the other body, `furthest` the greatest of that.
-struct NearPieces {
-  std::vector<float> x;
-  std::vector<float> y;
-  std::vector<float> normal_x;
-  std::vector<float> normal_y;
-  std::vector<float> length;
-  std::vector<std::uint32_t> piece;
-  std::vector<std::uint8_t> band;
-  // In the axes of the other body, at the instant looked at.
-  std::vector<float> at_x;
-  std::vector<float> at_y;
-  std::vector<float> at_normal_x;
-  std::vector<float> at_normal_y;
-  std::vector<float> advance;       ///< velocity against the other body's material along the normal
-  std::vector<float> s_now;         ///< s of the piece
-  std::vector<float> furthest_now;  ///< furthest of the piece
-  std::vector<float> fresh;         ///< > 0: it advances into what it has not been in
-  std::vector<std::uint32_t> pressing;  ///< places of those that may press
-  std::size_t count = 0;
-  // By piece of the profile.
-  std::vector<float> s;               ///< of pieces that are not listed
-  std::vector<float> furthest;        ///< of pieces that are not listed
-  std::vector<float> way;             ///< how far it has travelled inside the other body, m
-  std::vector<std::uint32_t> listed;  ///< number of the last list that the piece was in
-  std::uint32_t list = 0;             ///< number of the present list
-  double valid_for_m = -1e9;          ///< relative travel until the list has to be made anew
-
-  void resize(std::size_t pieces);
-  /// Forgets everything. O(1).
-  void begin();
 };
 
 /// Sums of one pass.

@@ -117,6 +117,29 @@ float chord(const Silhouettes& s, const Silhouette& of, float at) {
   return std::max(0.0F, first + share * (node[1].greatest_m - node[1].least_m - first));
 }
 
+/// See `PieceRows::thickness_m`.
+float thickness(const Silhouettes& s, std::size_t band, const OutlinePiece& p) {
+  constexpr float least_m = 0.02F;
+  return std::max(least_m,
+                  p.normal_x * p.normal_x * chord(s, s.along_x[band], p.y) +
+                      flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x));
+}
+
+PieceRows make_rows(const Profile& profile, const Silhouettes& s, const PieceBlock& block) {
+  PieceRows rows;
+  for (std::size_t k = 0; k < block_pieces; ++k) {
+    const std::size_t in_block = std::min<std::size_t>(k, block.count - 1U);
+    const OutlinePiece& piece = profile.pieces[block.first + in_block];
+    rows.x[k] = piece.x;
+    rows.y[k] = piece.y;
+    rows.normal_x[k] = piece.normal_x;
+    rows.normal_y[k] = piece.normal_y;
+    rows.length_m[k] = piece.length_m;
+    rows.thickness_m[k] = thickness(s, block.band, piece);
+  }
+  return rows;
+}
+
 }  // namespace
 
 Silhouettes make_silhouettes(const Profile& profile) {
@@ -124,7 +147,6 @@ Silhouettes make_silhouettes(const Profile& profile) {
   constexpr float finest_m = 0.005F;
   constexpr float nodes_across = 20.0F;
   constexpr float most_nodes = 4096.0F;
-  constexpr std::uint32_t block_pieces = 16;
   Silhouettes s;
   if (profile.pieces.empty()) return s;
   s.min_x = s.min_y = std::numeric_limits<float>::max();
@@ -142,16 +164,10 @@ Silhouettes make_silhouettes(const Profile& profile) {
   for (std::size_t band = 0; band < profile_bands; ++band) {
     s.along_x[band] = sample(profile, band, false, s.min_y, s.max_y, step, s.nodes);
     s.along_y[band] = sample(profile, band, true, s.min_x, s.max_x, step, s.nodes);
-    for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
-      constexpr float least_m = 0.02F;
-      const OutlinePiece& p = profile.pieces[i];
-      s.thickness_m.push_back(std::max(
-          least_m, p.normal_x * p.normal_x * chord(s, s.along_x[band], p.y) +
-                       flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x)));
-    }
-    for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += block_pieces) {
-      s.blocks.push_back(
-          make_block(profile, band, i, std::min(block_pieces, profile.first[band + 1] - i)));
+    constexpr auto most = static_cast<std::uint32_t>(block_pieces);
+    for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += most) {
+      s.blocks.push_back(make_block(profile, band, i, std::min(most, profile.first[band + 1] - i)));
+      s.rows.push_back(make_rows(profile, s, s.blocks.back()));
     }
   }
   return s;

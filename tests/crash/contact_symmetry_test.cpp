@@ -1,9 +1,12 @@
 #include "crash/contact_checks.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -61,6 +64,39 @@ TEST(ContactLaw, AWorkspaceKeepsNothingBetweenContacts) {
         expect_same_bits(first.b, again.b);
         ASSERT_FALSE(testing::Test::HasFailure());
       });
+}
+
+TEST(ContactLaw, EveryVectorUnitHasTheSameBits) {
+  std::vector<ContactOutcome> expected;
+  int units = 0;
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+    hwy::SetSupportedTargetsForTest(left & (~left + 1));
+    hwy::GetChosenTarget().DeInit();
+    SCOPED_TRACE(hwy::TargetName(left & (~left + 1)));
+    std::size_t next = 0;
+    for_random_contacts(
+        105, 200,
+        [&](int i, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
+          ContactScene scene;
+          if (!make_scene(draw, a, b, closing, scene)) return;
+          const ContactOutcome outcome = simulate(scene, any_variant(i));
+          if (units == 0) {
+            expected.push_back(outcome);
+            return;
+          }
+          ASSERT_LT(next, expected.size());
+          expect_same_bits(expected[next], outcome);
+          expect_same_bits(expected[next].a, outcome.a);
+          expect_same_bits(expected[next].b, outcome.b);
+          ++next;
+        });
+    ++units;
+    if (testing::Test::HasFailure()) break;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  std::printf("%d units, %zu contacts\n", units, expected.size());
+  EXPECT_GT(expected.size(), 100U);
 }
 
 TEST(ContactLaw, TurningTheWorldTurnsTheOutcome) {

@@ -26,8 +26,11 @@ struct SilhouetteNode {
   float least_m = 1e9F;      ///< m
 };
 
-/// Up to 16 consecutive pieces of an outline, with a circle around them and a cone around their
-/// normals.
+/// Most pieces of a block.
+inline constexpr std::size_t block_pieces = 16;
+
+/// Up to `block_pieces` consecutive pieces of an outline, with a circle around them and a cone
+/// around their normals.
 struct PieceBlock {
   float x = 0.0F;           ///< centre of the circle, m
   float y = 0.0F;           ///< m
@@ -38,6 +41,19 @@ struct PieceBlock {
   std::uint32_t first = 0;  ///< piece
   std::uint16_t count = 0;  ///< pieces
   std::uint16_t band = 0;   ///< height band
+};
+
+/// The pieces of a block by field, for vector units: rows of `OutlinePiece`s. Places beyond the
+/// block's count repeat its last piece.
+struct alignas(64) PieceRows {
+  std::array<float, block_pieces> x{};         ///< m
+  std::array<float, block_pieces> y{};         ///< m
+  std::array<float, block_pieces> normal_x{};  ///< unit, outward
+  std::array<float, block_pieces> normal_y{};  ///< unit, outward
+  std::array<float, block_pieces> length_m{};
+  /// The body's chords through the piece along x and across, blended as depths are by the squares
+  /// of its normal, those across times `flank_share`, m.
+  std::array<float, block_pieces> thickness_m{};
 };
 
 /// Share in which flanks count their depth below the body's side: what is swept aside has less
@@ -53,13 +69,11 @@ struct Silhouettes {
   std::array<Silhouette, profile_bands> along_y{};  ///< y of left and right over x
   std::vector<SilhouetteNode> nodes;                ///< of all
   std::vector<PieceBlock> blocks;                   ///< by rising band
-  /// By piece: the body's chords through it along x and across, blended as depths are by the
-  /// squares of its normal, those across times `flank_share`, m.
-  std::vector<float> thickness_m;
-  float min_x = 0.0F;  ///< bounds of all outlines, m
-  float max_x = 0.0F;  ///< m
-  float min_y = 0.0F;  ///< m
-  float max_y = 0.0F;  ///< m
+  std::vector<PieceRows> rows;                      ///< of the blocks
+  float min_x = 0.0F;                               ///< bounds of all outlines, m
+  float max_x = 0.0F;                               ///< m
+  float min_y = 0.0F;                               ///< m
+  float max_y = 0.0F;                               ///< m
 
   /// Smaller side of the bounds, m.
   double width_m() const { return static_cast<double>(std::min(max_x - min_x, max_y - min_y)); }

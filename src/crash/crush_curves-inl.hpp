@@ -1,0 +1,159 @@
+// Resistance over crush depth at eight places of a body. Included once per target. Products and
+// sums are rounded one by one, so that every vector unit has the same bits.
+#if defined(CRASHRANK_CRUSH_CURVES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CRASHRANK_CRUSH_CURVES_INL
+#undef CRASHRANK_CRUSH_CURVES_INL
+#else
+#define CRASHRANK_CRUSH_CURVES_INL
+#endif
+
+#include "collide/lanes-inl.hpp"
+#include "crash/crush_response.hpp"
+
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace crashrank::detail::HWY_NAMESPACE {
+
+HWY_INLINE F8 positive(F8 a) { return maximum(a, all(0.0F)); }
+
+/// Resistance at one place of a body, per metre of outline of one height band, over crush depth:
+/// yield + slope·c, steeper by `hardening` from `length` on and by `rigid` after `hardening_length`
+/// more. Strictly rising.
+struct CrushCurves {
+  F8 yield;             ///< N/m
+  F8 slope;             ///< N/m², > 0
+  F8 length;            ///< m
+  F8 hardening;         ///< N/m²
+  F8 hardening_length;  ///< m
+  F8 rigid;             ///< N/m²
+
+  /// No curve is longer than the material there is: what the crush of a thin place has used up is
+  /// rigid, so that nothing leaves a body through its back. `thickness` in the measure of depths.
+  HWY_INLINE void shorten(F8 thickness) {
+    constexpr float folds = 0.35F;
+    constexpr float hardens = 0.2F;
+    length = minimum(length, all(folds) * thickness);
+    hardening_length = minimum(hardening_length, all(hardens) * thickness);
+  }
+  HWY_INLINE F8 force_at(F8 depth) const {
+    return yield + slope * depth + hardening * positive(depth - length) +
+           rigid * positive(depth - length - hardening_length);
+  }
+};
+
+/// The inverse of curves: corners, and compliance from each corner to the next.
+struct CrushCorners {
+  F8 force[3];       ///< N/m
+  F8 depth[3];       ///< m
+  F8 compliance[3];  ///< m²/N
+
+  HWY_INLINE explicit CrushCorners(const CrushCurves& c) {
+    const F8 one = all(1.0F);
+    const F8 hardened = c.slope + c.hardening;
+    compliance[0] = one / c.slope;
+    compliance[1] = one / hardened;
+    compliance[2] = one / (hardened + c.rigid);
+    depth[0] = all(0.0F);
+    depth[1] = c.length;
+    depth[2] = c.length + c.hardening_length;
+    force[0] = c.yield;
+    force[1] = c.yield + c.slope * c.length;
+    force[2] = force[1] + hardened * c.hardening_length;
+  }
+  HWY_INLINE F8 depth_at(F8 at) const {
+    return minimum(positive(at - force[0]), force[1] - force[0]) * compliance[0] +
+           minimum(positive(at - force[1]), force[2] - force[1]) * compliance[1] +
+           positive(at - force[2]) * compliance[2];
+  }
+};
+
+/// What two bodies bear that are pressed together by a total depth.
+struct SharedCrush {
+  F8 force;    ///< N/m, the same on both
+  F8 depth_a;  ///< A's part of the depth, m
+};
+
+/// Splits a depth so that both curves bear the same force. The sum of both depths is piecewise
+/// linear in the force and never falls: the last of its six corners below the depth is the one at
+/// the greatest force, and the rest of the way is straight.
+HWY_INLINE SharedCrush share_crush(const CrushCurves& curve_a, const CrushCurves& curve_b,
+                                   F8 depth) {
+  const CrushCorners a(curve_a);
+  const CrushCorners b(curve_b);
+  const F8 zero = all(0.0F);
+  F8 force = zero;
+  F8 depth_a = zero;
+  F8 sum = zero;
+  F8 compliance_a = zero;
+  F8 compliance_b = zero;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const F8 in_b = b.depth_at(a.force[k]);
+    const F8 both_at_a = a.depth[k] + in_b;
+    const M8 below_a = less(both_at_a, depth);
+    const F8 in_a = a.depth_at(b.force[k]);
+    const F8 both_at_b = in_a + b.depth[k];
+    const M8 below_b = less(both_at_b, depth);
+    force = maximum(force,
+                    maximum(select(below_a, a.force[k], zero), select(below_b, b.force[k], zero)));
+    sum = maximum(sum, maximum(select(below_a, both_at_a, zero), select(below_b, both_at_b, zero)));
+    depth_a =
+        maximum(depth_a, maximum(select(below_a, a.depth[k], zero), select(below_b, in_a, zero)));
+    compliance_a = select(below_a, a.compliance[k], compliance_a);
+    compliance_b = select(below_b, b.compliance[k], compliance_b);
+  }
+  const F8 compliance = compliance_a + compliance_b;
+  const F8 rise = select(less(zero, compliance), (depth - sum) / compliance, zero);
+  return {force + rise, minimum(depth_a + rise * compliance_a, depth)};
+}
+
+/// 0 to 1 over the width of a rail, 1/2 at 0, so that nothing jumps where a body slides along.
+HWY_INLINE F8 core_ramp(F8 inward_m) {
+  constexpr float per_ramp = 1.0F / 0.1F;
+  return minimum(positive(inward_m * all(per_ramp) + all(0.5F)), all(1.0F));
+}
+
+/// The curves where a force along (nx, ny), unit, body axes, enters at (x, y): front or rear and
+/// flank blend with the squares of the direction's parts.
+HWY_INLINE CrushCurves crush_curves(const CrushResponse& body, std::size_t band, F8 x, F8 y, F8 nx,
+                                    F8 ny) {
+  // How far a place is in the core: 1 inside, 0 beside it.
+  const F8 aside = absolute(y);
+  const F8 in_rails = core_ramp(all(body.rails) - aside);
+  const F8 in_cage = maximum(core_ramp(all(body.cage) - aside), in_rails);
+  const F8 caged = minimum(core_ramp(all(body.cage_front) - x), core_ramp(x - all(body.cage_rear)));
+  const F8 in_core = in_rails + (in_cage - in_rails) * caged;
+  const F8 band_share = all(body.share[band]);
+  const F8 share = band_share * (all(body.outside) + all(body.inside - body.outside) * in_core);
+  const F8 ahead = nx * nx;
+  const F8 across = ny * ny;
+  const M8 from_ahead = less(nx, all(0.0F));
+  const auto end = [&](float front, float rear) {
+    return ahead * select(from_ahead, all(front), all(rear));
+  };
+  CrushCurves curve;
+  curve.yield = share * (end(body.front.yield, body.rear.yield) + across * all(body.flank.yield));
+  curve.slope = share * (end(body.front.slope, body.rear.slope) + across * all(body.flank.slope));
+  const F8 engine = select(from_ahead, all(body.engine) * in_rails, all(0.0F));
+  curve.length =
+      ahead * (select(from_ahead, all(body.front.length), all(body.rear.length)) - engine) +
+      across * all(body.flank.length);
+  curve.hardening = band_share * in_core * all(body.hardening);
+  curve.hardening_length = all(body.hardening_length);
+  curve.rigid = band_share * in_core * all(body.rigid_slope);
+  return curve;
+}
+
+/// How far places pressed along nx (body axes) lie inside the passenger compartment, m; at most 0
+/// outside and for bodies without one. From the front the engine arrives before the surface.
+HWY_INLINE F8 inside_compartment(const CrushResponse& body, F8 x, F8 y, F8 nx) {
+  const F8 aside = absolute(y);
+  const M8 by_engine = both(less(nx, all(0.0F)), less(aside, all(body.rails)));
+  const F8 engine = select(by_engine, nx * nx * all(body.engine), all(0.0F));
+  return minimum(minimum(all(body.cage_front) + engine - x, x - all(body.cage_rear)),
+                 all(body.cage) - aside);
+}
+
+}  // namespace crashrank::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

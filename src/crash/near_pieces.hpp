@@ -1,0 +1,37 @@
+#pragma once
+
+#include "crashrank/vehicle/silhouettes.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// What is kept of a block's pieces while they are near the other body, m.
+struct alignas(64) PieceStates {
+  std::array<float, block_pieces> s{};         ///< advance along the normal through the other body
+  std::array<float, block_pieces> furthest{};  ///< the greatest s so far
+  std::array<float, block_pieces> way{};       ///< distance travelled inside the other body
+};
+
+/// Blocks of one body's outline whose pieces may press into another body.
+struct NearPieces {
+  std::vector<std::uint32_t> blocks;  ///< of the present list: the first `count`
+  std::vector<PieceStates> states;    ///< by block; of those that are listed
+  std::vector<std::uint32_t> listed;  ///< by block: number of the last list that it was in
+  std::size_t count = 0;              ///< blocks in the present list
+  std::size_t pieces = 0;             ///< in them
+  std::uint32_t list = 0;             ///< number of the present list
+  double valid_for_m = -1e9;          ///< relative travel until the list has to be made anew
+
+  /// Room for the blocks of so many pieces.
+  void resize(std::size_t most_pieces);
+  /// Forgets everything. O(1).
+  void begin();
+  /// No list has been made since `begin`.
+  bool begins() const noexcept { return valid_for_m < -1e6; }
+};
+
+}  // namespace crashrank::detail

@@ -1,0 +1,60 @@
+// Depths of eight places below the sides of an outline. Included once per target.
+#if defined(CRASHRANK_SILHOUETTE_DEPTHS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CRASHRANK_SILHOUETTE_DEPTHS_INL
+#undef CRASHRANK_SILHOUETTE_DEPTHS_INL
+#else
+#define CRASHRANK_SILHOUETTE_DEPTHS_INL
+#endif
+
+#include "collide/lanes-inl.hpp"
+#include "crashrank/vehicle/silhouettes.hpp"
+
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace crashrank::detail::HWY_NAMESPACE {
+
+/// How deep places lie below the four sides of a band's silhouettes.
+struct Depths {
+  F8 front, rear, left, right;
+  M8 known;  ///< the place lies beside all of them
+
+  HWY_INLINE F8 least() const {
+    return select(known, minimum(minimum(front, rear), minimum(left, right)), all(-1.0F));
+  }
+};
+
+/// Number of the node before a place and the share of the way to the next; any valid number beside
+/// the nodes.
+struct NodePlace {
+  I8 node;
+  F8 share;
+  M8 known;
+};
+
+HWY_INLINE NodePlace node_place(const Silhouette& s, F8 at) {
+  const F8 row = (at - all(s.low_m)) * all(s.nodes_per_m);
+  const auto last = static_cast<float>(s.count - 1);
+  // Bounds in this order also bound what is not a number.
+  const I8 node = truncate(maximum(minimum(row, all(last - 1.0F)), all(0.0F)));
+  return {node, row - to_floats(node), both(at_most(all(0.0F), row), less(row, all(last)))};
+}
+
+HWY_INLINE Depths depths_at(const Silhouettes& s, std::size_t band, F8 x, F8 y) {
+  static_assert(sizeof(SilhouetteNode) == 2 * sizeof(float));
+  const NodePlace row = node_place(s.along_x[band], y);
+  const NodePlace column = node_place(s.along_y[band], x);
+  const auto* const a = &s.nodes[s.along_x[band].first].greatest_m;
+  const auto* const b = &s.nodes[s.along_y[band].first].greatest_m;
+  const auto between = [](const float* table, const NodePlace& place) {
+    const I8 index = twice(place.node);
+    const F8 first = gather(table, index);
+    return first + place.share * (gather(table + 2, index) - first);
+  };
+  return {between(a, row) - x, x - between(a + 1, row), between(b, column) - y,
+          y - between(b + 1, column), both(row.known, column.known)};
+}
+
+}  // namespace crashrank::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
