@@ -282,7 +282,7 @@ void ContactRun::step() {
   constexpr double parted_m = 0.15;
   constexpr double faded_s = 0.03;
   constexpr double faded_m = 0.1;
-  constexpr double faded_share = 0.02;
+  constexpr double faded_share = 0.03;
   constexpr double missed_m = 0.5;
   constexpr double least_speed_mps = 0.5;
   const double last_s = step_s_;

@@ -31,8 +31,11 @@ double weight_of(Person person, bool ego, const HarmWeights& w) {
 /// Inputs of the injury risk of one person in or on a body, as the sample changes them.
 Exposure person_exposure(const HarmExposure& body, Person person, const HarmOptions& options,
                          const HarmSample& sample) {
-  const bool rides = person == Person::cyclist || person == Person::motorcyclist;
-  const double fall_mps = rides ? fall_speed_mps(body.road_speed_mps, body.delta_v_mps) : 0.0;
+  double fall_mps = 0.0;
+  if (person == Person::pedestrian) fall_mps = standing_fall_mps(body.delta_v_mps);
+  if (person == Person::cyclist || person == Person::motorcyclist) {
+    fall_mps = fall_speed_mps(body.road_speed_mps, body.delta_v_mps);
+  }
   Exposure e;
   e.person = person;
   e.delta_v_mps = body.delta_v_mps * sample.occupant_speed;
@@ -98,6 +101,12 @@ double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mas
 double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept {
   const double ramp = std::clamp(delta_v_mps / fall_delta_v_mps, 0.0, 1.0);
   return fall_share * std::max(road_speed_mps, 0.0) * ramp;
+}
+
+double standing_fall_mps(double delta_v_mps) noexcept {
+  // From a centre of mass 0.9 m over the ground: sqrt(2·9.81·0.9).
+  constexpr double ground_mps = 4.2;
+  return ground_mps * std::clamp(delta_v_mps / topple_delta_v_mps, 0.0, 1.0);
 }
 
 double risk_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {

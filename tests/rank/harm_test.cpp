@@ -137,11 +137,23 @@ TEST(Harm, ATouchedRiderFallsAtRoadSpeed) {
     e.closing_speed_mps = 9.0;
     EXPECT_GT(risk_of(e, options, {}), falls);
   }
+}
+
+TEST(Harm, AToppledPedestrianFallsFromHisHeight) {
+  // A centre of mass 0.9 m high reaches the ground with sqrt(2·g·h).
+  EXPECT_NEAR(standing_fall_mps(100.0), std::sqrt(2.0 * 9.81 * 0.9), 0.01);
+  EXPECT_EQ(standing_fall_mps(-1.0), 0.0);
+  EXPECT_DOUBLE_EQ(standing_fall_mps(1.0), 0.5 * standing_fall_mps(2.0));
+  const HarmOptions options;
   HarmExposure walking;
   walking.kind = BodyKind::pedestrian;
   walking.road_speed_mps = 20.0;
-  walking.delta_v_mps = 2.0;
   EXPECT_EQ(risk_of(walking, options, {}), 0.0);
+  walking.delta_v_mps = 1.0;
+  HarmExposure struck = walking;
+  struck.delta_v_mps = 0.0;
+  struck.closing_speed_mps = standing_fall_mps(1.0);
+  EXPECT_EQ(risk_of(walking, options, {}), risk_of(struck, options, {}));
 }
 
 TEST(Harm, AContactThatTransfersNothingStrikesNobody) {

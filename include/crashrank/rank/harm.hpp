@@ -147,6 +147,16 @@ inline constexpr double fall_delta_v_mps = 1.0;
 /// as 0.
 CRASHRANK_API double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept;
 
+/// Delta-v of a person on foot from which he is certain to fall, m/s. A choice: the half of it
+/// already moves the centre of mass 0.3 m beyond the feet before it turns back (an inverted
+/// pendulum of 0.9 m), more than a stance is wide.
+inline constexpr double topple_delta_v_mps = 2.0;
+
+/// Impact speed that stands for the fall of a person on foot, m/s: 4.2, the speed at which a centre
+/// of mass 0.9 m high reaches the ground, times a ramp in his delta-v from 0 at 0 to 1 at
+/// `topple_delta_v_mps`. Negative values count as 0.
+CRASHRANK_API double standing_fall_mps(double delta_v_mps) noexcept;
+
 /// Harm to the people in or on one body in one contact: their number times the risk times their
 /// weight, and the property's share. Unit: persons with the model's outcome, as weighted.
 CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& options);
