@@ -64,6 +64,10 @@ HWY_INLINE F8 operator/(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Div(a.v[k], b.v[k]);
   return a;
 }
+HWY_INLINE I8 operator+(I8 a, I8 b) {
+  CRASHRANK_EACH a.v[k] = hn::Add(a.v[k], b.v[k]);
+  return a;
+}
 HWY_INLINE F8 operator-(F8 a) {
   CRASHRANK_EACH a.v[k] = hn::Neg(a.v[k]);
   return a;
@@ -83,15 +87,44 @@ HWY_INLINE F8 to_floats(I8 a) {
   CRASHRANK_EACH r.v[k] = hn::ConvertTo(FloatTag(), a.v[k]);
   return r;
 }
-HWY_INLINE I8 twice(I8 a) {
-  CRASHRANK_EACH a.v[k] = hn::Add(a.v[k], a.v[k]);
-  return a;
+HWY_INLINE void store(I8 x, std::int32_t* p) {
+  CRASHRANK_EACH hn::Store(x.v[k], IntTag(), p + k * tag_lanes);
 }
-/// table[index[i]] for eight numbers i.
-HWY_INLINE F8 gather(const float* table, I8 index) {
-  F8 r;
-  CRASHRANK_EACH r.v[k] = hn::GatherIndex(FloatTag(), table, index.v[k]);
-  return r;
+/// Four floats at each of eight places of a table, as four columns: four rows that lie together are
+/// read at once, which takes a quarter of the loads of single floats. `at`: aligned to 32 bytes.
+HWY_INLINE void gather_rows(const float* table, const std::int32_t* at, F8 (&column)[4]) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t c = 0; c < 4; ++c) {
+    CRASHRANK_EACH column[c].v[k] = hn::Set(FloatTag(), table[at[k] + static_cast<int>(c)]);
+  }
+#else
+  const FloatTag tag;
+  const hn::CappedTag<float, 4> four;
+  const hn::Repartition<std::uint64_t, FloatTag> two;
+  CRASHRANK_EACH {
+    // Rows r and, in wide vectors, r + 4, then transposed within each half.
+    const auto row = [&](std::size_t r) {
+      const std::int32_t* place = at + k * tag_lanes + r;
+      const auto low = hn::LoadU(four, table + place[0]);
+#if HWY_TARGET <= HWY_AVX2
+      return hn::Combine(tag, hn::LoadU(four, table + place[4]), low);
+#else
+      return low;
+#endif
+    };
+    const auto pairs = [&](auto a, auto b) { return hn::BitCast(two, a(tag, row(b), row(b + 1))); };
+    const auto lower = [](auto d, auto x, auto y) { return hn::InterleaveLower(d, x, y); };
+    const auto upper = [](auto d, auto x, auto y) { return hn::InterleaveUpper(d, x, y); };
+    const auto a = pairs(lower, std::size_t{0});
+    const auto b = pairs(lower, std::size_t{2});
+    const auto c = pairs(upper, std::size_t{0});
+    const auto d = pairs(upper, std::size_t{2});
+    column[0].v[k] = hn::BitCast(tag, hn::InterleaveLower(two, a, b));
+    column[1].v[k] = hn::BitCast(tag, hn::InterleaveUpper(two, a, b));
+    column[2].v[k] = hn::BitCast(tag, hn::InterleaveLower(two, c, d));
+    column[3].v[k] = hn::BitCast(tag, hn::InterleaveUpper(two, c, d));
+  }
+#endif
 }
 /// a·b + c, fused where the target can: every bound in this folder
 /// holds either way.

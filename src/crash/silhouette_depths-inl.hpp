@@ -10,6 +10,7 @@
 #include "crashrank/vehicle/silhouettes.hpp"
 
 #include <cstddef>
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace crashrank::detail::HWY_NAMESPACE {
@@ -40,19 +41,28 @@ HWY_INLINE NodePlace node_place(const Silhouette& s, F8 at) {
   return {node, row - to_floats(node), both(at_most(all(0.0F), row), less(row, all(last)))};
 }
 
-HWY_INLINE Depths depths_at(const Silhouettes& s, std::size_t band, F8 x, F8 y) {
+/// Between the nodes around places: greatest and least of the silhouettes.
+struct Edges {
+  F8 greatest, least;
+};
+
+HWY_INLINE Edges edges_at(const Silhouettes& s, const Silhouette& of, const NodePlace& place) {
   static_assert(sizeof(SilhouetteNode) == 2 * sizeof(float));
+  alignas(32) std::int32_t at[8];
+  store(place.node + place.node, at);
+  // A node and the next one: greatest, least, greatest, least.
+  F8 node[4];
+  gather_rows(&s.nodes[of.first].greatest_m, at, node);
+  return {node[0] + place.share * (node[2] - node[0]), node[1] + place.share * (node[3] - node[1])};
+}
+
+HWY_INLINE Depths depths_at(const Silhouettes& s, std::size_t band, F8 x, F8 y) {
   const NodePlace row = node_place(s.along_x[band], y);
   const NodePlace column = node_place(s.along_y[band], x);
-  const auto* const a = &s.nodes[s.along_x[band].first].greatest_m;
-  const auto* const b = &s.nodes[s.along_y[band].first].greatest_m;
-  const auto between = [](const float* table, const NodePlace& place) {
-    const I8 index = twice(place.node);
-    const F8 first = gather(table, index);
-    return first + place.share * (gather(table + 2, index) - first);
-  };
-  return {between(a, row) - x, x - between(a + 1, row), between(b, column) - y,
-          y - between(b + 1, column), both(row.known, column.known)};
+  const Edges ends = edges_at(s, s.along_x[band], row);
+  const Edges flanks = edges_at(s, s.along_y[band], column);
+  return {ends.greatest - x, x - ends.least, flanks.greatest - y, y - flanks.least,
+          both(row.known, column.known)};
 }
 
 }  // namespace crashrank::detail::HWY_NAMESPACE
