@@ -14,6 +14,7 @@ struct alignas(64) PieceStates {
   std::array<float, block_pieces> s{};         ///< advance along the normal through the other body
   std::array<float, block_pieces> furthest{};  ///< the greatest s so far
   std::array<float, block_pieces> way{};       ///< distance travelled inside the other body
+  std::array<float, block_pieces> ahead{};     ///< of it, along the other body's x
 };
 
 /// Blocks of one body's outline whose pieces may press into another body.

@@ -164,7 +164,8 @@ struct PressingPieces {
   CarriedPieces at;  ///< in the pressed body's axes
   M8 where;          ///< lanes that count
   const PieceRows* rows = nullptr;
-  float* way = nullptr;
+  float* way = nullptr;    ///< see PieceStates
+  float* ahead = nullptr;  ///< see PieceStates
   std::size_t band = 0;
   std::size_t first = 0;  ///< lane of the block, 0 or 8
 };
@@ -238,11 +239,20 @@ template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& 
   const F8 way = select(less(zero, way_before), way_before + travel,
                         minimum(travel, least * minimum(all(most_slanted), speed / advance)));
   store(select(where, way, way_before), p.way);
-  const F8 end = minimum(select(less(nx, zero), d.front, d.rear), way);
+  // What was travelled sideways does not count below front or rear.
+  const F8 ahead_before = load(p.ahead);
+  const F8 along =
+      select(less(zero, way_before),
+             ahead_before + vx * all(static_cast<float>(q_.settings->since_s)), way * vx / speed);
+  store(select(where, along, ahead_before), p.ahead);
+  const M8 rearwards = less(nx, zero);
+  const F8 below = positive(select(rearwards, -along, along));
+  const F8 whole_end = minimum(select(rearwards, d.front, d.rear), way);
+  const F8 end = minimum(whole_end, below);
   const F8 side = select(less(ny, zero), d.left, d.right);
   const F8 ahead = nx * nx;
   const F8 across = flank * ny * ny;
-  const F8 depth = ahead * end + across * minimum(side, end);
+  const F8 depth = ahead * end + across * minimum(side, whole_end);
   CrushCurves own = crush_curves(own_, p.band, x, y, nx, ny);
   own.shorten(ahead * (d.front + d.rear) + across * (d.left + d.right));
   F8 force;
@@ -393,6 +403,7 @@ inline void press_all(const PressQuery& q, NearPieces& near, PressTotals& totals
       totals.approaching = true;
       p.rows = &rows;
       p.way = states.way.data() + h;
+      p.ahead = states.ahead.data() + h;
       p.band = own.blocks[block].band;
       p.first = h;
       presser.press<both_yield>(p);
