@@ -70,6 +70,7 @@ double gyration2(BodyKind kind, const Vector3d& size) {
   constexpr double car = 0.29;
   constexpr double motorcycle = 0.215;
   constexpr double bicycle = 0.15;
+  constexpr double pedestrian = 0.077;
   const auto square = [](double x) { return x * x; };
   switch (kind) {
     case BodyKind::car:
@@ -78,6 +79,8 @@ double gyration2(BodyKind kind, const Vector3d& size) {
       return square(motorcycle * size.x());
     case BodyKind::bicycle:
       return square(bicycle * size.x());
+    case BodyKind::pedestrian:
+      return square(pedestrian * size.z());
     case BodyKind::pole:
       return (square(size.x()) + square(size.y())) / 16.0;
     default:

@@ -71,7 +71,7 @@ TEST(Vehicle, AxlesOfShippedCarsAndLorriesAreFound) {
 
 TEST(Vehicle, DerivedCentreAndInertiaAreThoseOfShippedModels) {
   for (const char* name :
-       {"sedan", "hatch", "truck", "motorcycle", "jersey_barrier", "pole", "wall"}) {
+       {"sedan", "hatch", "truck", "motorcycle", "pedestrian", "jersey_barrier", "pole", "wall"}) {
     const nlohmann::json model = stated(name);
     VehicleFacts facts;
     facts.kind = kind_of(model);

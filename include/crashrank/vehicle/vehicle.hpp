@@ -62,6 +62,8 @@ struct Vehicle {
 /// - cars, 0.29 of the length, as published for a saloon of 4.84 m, 1,621 kg and 3,167 kg·m²;
 /// - motorcycles with rider, 0.215 of the length: 0.45 m of a roadster of 2.1 m, 285 kg in all;
 /// - bicycles with rider, 0.15 of the length (the benchmark bicycle: 0.25 m of 1.67 m);
+/// - pedestrians, 0.077 of the height: standing adults measured 0.071 to 0.077 (Santschi, DuBois
+///   and Omoto, AMRL-TDR-63-36, 1963), the upper end since legs and arms are apart in walking;
 /// - poles, of an even cylinder; all others, of an even block over the box without mirrors, which a
 ///   laden lorry is about.
 ///
