@@ -2,15 +2,19 @@
 #include "console.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
+#include "numbers.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
+#include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
 #include "crashrank/tree/model_file.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,6 +36,8 @@ struct Options {
   std::string mesh_file;
   std::string output;
   std::optional<double> mass_kg;
+  std::string center_of_mass_m;  ///< "x,y" or "x,y,z"; empty: not stated
+  std::optional<double> yaw_inertia_kgm2;
   bool force = false;
   bool json = false;
   MeshArguments mesh;
@@ -50,6 +56,14 @@ Status check_options(const Options& options) {
                                   scenario_limits::min_mass_kg, scenario_limits::max_mass_kg),
                       "leave it out where the mass is not known");
   }
+  if (options.yaw_inertia_kgm2 &&
+      !(*options.yaw_inertia_kgm2 > 0.0 &&
+        *options.yaw_inertia_kgm2 <= scenario_limits::yaw_inertia_kgm2)) {
+    return make_error(ErrorCode::usage,
+                      fmt::format("--yaw-inertia-kgm2 has to be a number above 0, at most {}",
+                                  scenario_limits::yaw_inertia_kgm2),
+                      "leave it out where the inertia is not known");
+  }
   std::error_code ignored;
   if (std::filesystem::exists(options.output, ignored) &&
       !std::filesystem::is_regular_file(options.output, ignored)) {
@@ -63,15 +77,45 @@ Status check_options(const Options& options) {
   return can_be_written(options.output, model_file, inputs);
 }
 
+/// A height that is not given is the middle of the body's.
+Result<Eigen::Vector3d> parse_center(const std::string& text, const Box& bounds) {
+  const std::optional<std::vector<double>> numbers = parse_numbers(text);
+  const auto finite = [](double x) { return std::isfinite(x); };
+  if (!numbers || numbers->size() < 2 || numbers->size() > 3 ||
+      !std::all_of(numbers->begin(), numbers->end(), finite)) {
+    return make_error(ErrorCode::usage,
+                      "--center-of-mass-m " + text + ": needs two or three finite numbers",
+                      "write x,y or x,y,z in metres");
+  }
+  const double height =
+      numbers->size() == 3 ? numbers->back() : static_cast<double>(bounds.center().z());
+  return Eigen::Vector3d((*numbers)[0], (*numbers)[1], height);
+}
+
+/// What the options state over what a model file that is compiled again does. Errors: usage;
+/// bad_input where the body cannot have it.
+Status state_mass(const Options& options, const Box& bounds, StatedMass& stated) {
+  if (options.mass_kg) stated.mass_kg = options.mass_kg;
+  if (options.yaw_inertia_kgm2) stated.yaw_inertia_kgm2 = options.yaw_inertia_kgm2;
+  if (!options.center_of_mass_m.empty()) {
+    const Result<Eigen::Vector3d> center = parse_center(options.center_of_mass_m, bounds);
+    if (!center) return center.error();
+    stated.center_of_mass_m = *center;
+  }
+  Status status = check_stated_mass(stated, bounds);
+  if (!status) status.error().file = options.mesh_file;
+  return status;
+}
+
 int run(const Options& options) {
   if (const Status sound = check_options(options); !sound) return fail(sound.error());
   Result<LoadedBody> body = load_body(options.mesh_file, options.mesh, options.tree, true);
   if (!body) return fail(body.error());
   StoredModel& stored = body->stored;
-  // Compiling a model file writes it again, perhaps with another mass.
-  const double known_mass = stored.mass.mass_kg;
   stored.mass = shell_properties(stored.model.mesh);
-  stored.mass.mass_kg = options.mass_kg.value_or(known_mass);
+  if (const Status sound = state_mass(options, stored.model.mesh.bounds(), stored.stated); !sound) {
+    return fail(sound.error());
+  }
   if (Status saved = save_model(stored, options.output, options.force); !saved) {
     Error error = saved.error();
     if (error.code == ErrorCode::usage && !options.force) {
@@ -110,6 +154,10 @@ void add_compile(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output, "The model file to write")->required();
   command->add_option("--mass-kg", options->mass_kg,
                       "Mass of the body; scenarios that give none then use it");
+  command->add_option("--center-of-mass-m", options->center_of_mass_m,
+                      "Its centre of mass, x,y or x,y,z in body coordinates; likewise");
+  command->add_option("--yaw-inertia-kgm2", options->yaw_inertia_kgm2,
+                      "Its yaw inertia about the centre of mass; likewise");
   command->add_flag("--force", options->force, "Replace a file of that name");
   command->add_flag("--json", options->json, "Answer in JSON");
   options->mesh.add_to(*command);

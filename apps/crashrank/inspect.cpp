@@ -31,9 +31,16 @@ struct Compiled {
   StoredModel stored;
 };
 
+Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
+Json or_null(const std::optional<Eigen::Vector3d>& point) {
+  return point ? Json{point->x(), point->y(), point->z()} : Json(nullptr);
+}
+
 Json to_json(const Compiled& compiled) {
   const Model& model = compiled.stored.model;
   const ShellProperties& mass = compiled.stored.mass;
+  const StatedMass& stated = compiled.stored.stated;
   const ImportTransform& transform = compiled.stored.transform;
   return {{"version", compiled.facts.version},
           {"bytes", compiled.facts.bytes},
@@ -43,7 +50,9 @@ Json to_json(const Compiled& compiled) {
           {"tree_frame", model.tree.axes_are_world ? "world" : "gaussian"},
           {"wide_nodes", model.wide.nodes.size()},
           {"clusters", model.wide.clusters.size()},
-          {"mass_kg", mass.mass_kg > 0.0 ? Json(mass.mass_kg) : Json(nullptr)},
+          {"mass_kg", or_null(stated.mass_kg)},
+          {"center_of_mass_m", or_null(stated.center_of_mass_m)},
+          {"yaw_inertia_kgm2", or_null(stated.yaw_inertia_kgm2)},
           {"volume_m3", mass.volume_m3},
           {"center_m", {mass.center_m.x(), mass.center_m.y(), mass.center_m.z()}},
           {"inertia_per_kg_m2", mass.inertia_per_kg_m2},
@@ -61,8 +70,15 @@ std::string to_text(const Compiled& compiled) {
       compiled.facts.version, compiled.facts.bytes, compiled.facts.checksum,
       model.tree.nodes.size(), model.tree.depth, model.tree.axes_are_world ? "body's" : "Gaussian",
       model.wide.nodes.size(), model.wide.clusters.size());
-  if (compiled.stored.mass.mass_kg > 0.0) {
-    text += fmt::format("  {:.6g} kg\n", compiled.stored.mass.mass_kg);
+  const StatedMass& stated = compiled.stored.stated;
+  if (stated.mass_kg) text += fmt::format("  {:.6g} kg\n", *stated.mass_kg);
+  if (stated.center_of_mass_m) {
+    const Eigen::Vector3d& center = *stated.center_of_mass_m;
+    text += fmt::format("  centre of mass at ({:.6g}, {:.6g}, {:.6g}) m\n", center.x(), center.y(),
+                        center.z());
+  }
+  if (stated.yaw_inertia_kgm2) {
+    text += fmt::format("  yaw inertia {:.6g} kg m2\n", *stated.yaw_inertia_kgm2);
   }
   return text;
 }

@@ -96,7 +96,7 @@ Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& 
     Result<LoadedScenarioModel> read = load_scenario_model(wanted, how);
     if (!read) return read.error();
     for (const std::string& warning : read->warnings) warn(wanted.path, warning);
-    if (!wanted.mass_kg && read->mass_kg > 0.0) wanted.mass_kg = read->mass_kg;
+    add_stated_mass(read->stated, wanted);
     models.push_back(std::move(read->model));
     progress.update(models.size());
   }

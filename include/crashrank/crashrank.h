@@ -94,8 +94,9 @@ CRASHRANK_API crashrank_status crashrank_models_add(crashrank_models* models,
                                                     const crashrank_part* parts, size_t part_count,
                                                     crashrank_error* error);
 /// Adds a model file, as `crashrank compile` writes it: checked whole, and ready in less than ten
-/// milliseconds for 100,000 triangles. The mass that it tells counts for the shape of this index
-/// where the scenario gives none. Errors: not_found, bad_input, limit_exceeded.
+/// milliseconds for 100,000 triangles. The mass, centre of mass and yaw inertia that it states
+/// count for the shape of this index, each where the scenario gives none. Errors: not_found,
+/// bad_input, limit_exceeded.
 CRASHRANK_API crashrank_status crashrank_models_load(crashrank_models* models, const char* file,
                                                      crashrank_error* error);
 /// Number of models, 0 for NULL.
@@ -163,7 +164,8 @@ CRASHRANK_API crashrank_status crashrank_scenario_create(const char* name,
 CRASHRANK_API void crashrank_scenario_free(crashrank_scenario* scenario);
 
 /// Adds a shape; its index is the number added before. `kind`: car, truck, bus, motorcycle,
-/// bicycle, pedestrian, barrier, pole or building; `mass_kg` 0: guessed from kind and size.
+/// bicycle, pedestrian, barrier, pole or building; `mass_kg` 0: as its model file states,
+/// else guessed from kind and size.
 CRASHRANK_API crashrank_status crashrank_scenario_add_model(crashrank_scenario* scenario,
                                                             const char* name, const char* kind,
                                                             double mass_kg, crashrank_error* error);
@@ -171,11 +173,12 @@ CRASHRANK_API crashrank_status crashrank_scenario_add_model(crashrank_scenario* 
 /// What is known of a body besides its shape, kind and mass. Begin with all zero: that is the
 /// default of everything.
 typedef struct crashrank_body {
-  const double* center_of_mass_m;  ///< x, y, z in body coordinates, m; NULL: estimated
-  double
-      yaw_inertia_kgm2;  ///< about the vertical axis through it, kg m2, at most 1e9; 0: estimated
-  double stiffness;      ///< crush strength, times the default, 0.01 to 100; 0: 1
-  const char* surface;   ///< sheet-metal, steel, concrete, wood, rubber or person; NULL: by kind
+  /// x, y, z in body coordinates, m; NULL: as its model file states, else estimated.
+  const double* center_of_mass_m;
+  /// About the vertical axis through it, kg m2, at most 1e9; 0: likewise.
+  double yaw_inertia_kgm2;
+  double stiffness;     ///< crush strength, times the default, 0.01 to 100; 0: 1
+  const char* surface;  ///< sheet-metal, steel, concrete, wood, rubber or person; NULL: by kind
 } crashrank_body;
 /// Sets what is known of the shape with that index. Errors: usage. Numbers out of range are found
 /// by crashrank_rank.
@@ -408,8 +411,8 @@ CRASHRANK_API const char* crashrank_ranker_candidate_name(const crashrank_ranker
 CRASHRANK_API crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
                                                        crashrank_error* error);
 /// Adds the models of all shapes of a loaded scenario, in their order, read as the scenario says;
-/// none where one fails; model files tell masses as crashrank_models_load says. Errors as above;
-/// usage for a shape without a path.
+/// none where one fails; what model files state counts as crashrank_models_load says. Errors as
+/// above; usage for a shape without a path.
 CRASHRANK_API crashrank_status crashrank_models_import_scenario(crashrank_models* models,
                                                                 const crashrank_scenario* scenario,
                                                                 crashrank_error* error);

@@ -13,6 +13,7 @@
 
 #include "crashrank/mesh/quality.hpp"
 #include "crashrank/mesh/shell_properties.hpp"
+#include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/mesh/transform.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 

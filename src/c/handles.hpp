@@ -6,6 +6,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
@@ -16,7 +17,6 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,12 +25,12 @@
 
 struct crashrank_models {
   std::vector<crashrank::Model> list;
-  std::vector<double> mass_kg;  ///< by model, as its file tells; 0: it does not
+  std::vector<crashrank::StatedMass> stated;  ///< by model, in its file
 
-  void add(crashrank::Model model, double told_kg = 0.0) {
-    mass_kg.reserve(list.size() + 1);
+  void add(crashrank::Model model, const crashrank::StatedMass& of_file = {}) {
+    stated.reserve(list.size() + 1);
     list.push_back(std::move(model));
-    mass_kg.push_back(told_kg);
+    stated.push_back(of_file);
   }
 };
 
@@ -110,14 +110,14 @@ crashrank_status guarded(crashrank_error* error, const Function& function) noexc
   }
 }
 
-/// The scenario, with the masses that model files tell for shapes to which it gives none.
-inline Scenario with_masses(const crashrank_scenario& scenario, const crashrank_models& models) {
-  Scenario told = scenario.scenario;
-  for (std::size_t i = 0; i < std::min(told.models.size(), models.mass_kg.size()); ++i) {
-    std::optional<double>& mass_kg = told.models[i].mass_kg;
-    if (!mass_kg && models.mass_kg[i] > 0.0) mass_kg = models.mass_kg[i];
+/// The scenario, with what model files state of the masses of its shapes.
+inline Scenario with_stated_masses(const crashrank_scenario& scenario,
+                                   const crashrank_models& models) {
+  Scenario made = scenario.scenario;
+  for (std::size_t i = 0; i < std::min(made.models.size(), models.stated.size()); ++i) {
+    add_stated_mass(models.stated[i], made.models[i]);
   }
-  return told;
+  return made;
 }
 
 /// A pose from its 16 numbers. Errors: bad_input.

@@ -40,8 +40,8 @@ crashrank_status crashrank_models_import_scenario(crashrank_models* models,
       made.push_back(std::move(*read));
     }
     models->list.reserve(models->list.size() + made.size());
-    models->mass_kg.reserve(models->list.size() + made.size());
-    for (LoadedScenarioModel& read : made) models->add(std::move(read.model), read.mass_kg);
+    models->stated.reserve(models->list.size() + made.size());
+    for (LoadedScenarioModel& read : made) models->add(std::move(read.model), read.stated);
     return CRASHRANK_OK;
   });
 }

@@ -108,7 +108,7 @@ crashrank_status crashrank_models_load(crashrank_models* models, const char* fil
   return guarded(error, [&]() -> crashrank_status {
     Result<LoadedModel> loaded = load_model(file);
     if (!loaded) return refuse(loaded.error(), error);
-    models->add(std::move(loaded->stored.model), loaded->stored.mass.mass_kg);
+    models->add(std::move(loaded->stored.model), loaded->stored.stated);
     return CRASHRANK_OK;
   });
 }

@@ -36,9 +36,14 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
   };
   if (scenario.horizon_s != prepared.horizon_s) return other("horizon_s");
   const auto same_model = [](const ScenarioModel& a, const ScenarioModel& b) {
-    return a.kind == b.kind && (!a.mass_kg || a.mass_kg == b.mass_kg) &&
-           a.center_of_mass_m == b.center_of_mass_m && a.yaw_inertia_kgm2 == b.yaw_inertia_kgm2 &&
-           a.stiffness == b.stiffness && a.surface == b.surface;
+    // What an update leaves out may be stated in a model file.
+    const auto same_if_stated = [](const auto& now, const auto& then) {
+      return !now || now == then;
+    };
+    return a.kind == b.kind && same_if_stated(a.mass_kg, b.mass_kg) &&
+           same_if_stated(a.center_of_mass_m, b.center_of_mass_m) &&
+           same_if_stated(a.yaw_inertia_kgm2, b.yaw_inertia_kgm2) && a.stiffness == b.stiffness &&
+           a.surface == b.surface;
   };
   if (!std::equal(scenario.models.begin(), scenario.models.end(), prepared.models.begin(),
                   prepared.models.end(), same_model)) {
@@ -100,11 +105,11 @@ crashrank_status crashrank_ranker_create(const crashrank_scenario* scenario,
       if (options->most_candidates > 0) how.limits.candidates = options->most_candidates;
       if (options->most_actors > 0) how.limits.actors = options->most_actors;
     }
-    Scenario with_masses = c::with_masses(*scenario, *models);
-    Result<Ranker> made = Ranker::prepare(with_masses, models->list, how);
+    Scenario complete = c::with_stated_masses(*scenario, *models);
+    Result<Ranker> made = Ranker::prepare(complete, models->list, how);
     if (!made) return refuse(made.error(), error);
-    auto handle = std::make_unique<crashrank_ranker>(crashrank_ranker{
-        std::move(*made), how.limits.candidates, std::move(with_masses), {}, {}, {}});
+    auto handle = std::make_unique<crashrank_ranker>(
+        crashrank_ranker{std::move(*made), how.limits.candidates, std::move(complete), {}, {}, {}});
     for (const Model& model : models->list) {
       handle->ego_lengths_m.push_back(static_cast<double>(model.mesh.bounds().extent().x()));
     }

@@ -34,7 +34,7 @@ crashrank_status crashrank_rank(const crashrank_scenario* scenario, const crashr
   return guarded(error, [&]() -> crashrank_status {
     const Result<RankOptions> how = to_options(options);
     if (!how) return refuse(how.error(), error);
-    const Scenario told = c::with_masses(*scenario, *models);
+    const Scenario told = c::with_stated_masses(*scenario, *models);
     Result<RankResult> result = rank(told, models->list, *how);
     if (!result) return refuse(result.error(), error);
     auto made = std::make_unique<crashrank_ranking>();

@@ -5,7 +5,6 @@
 #include "rank/number_range.hpp"
 
 #include <cstddef>
-#include <optional>
 #include <utility>
 
 namespace crashrank {
@@ -23,6 +22,28 @@ Error of_model(Error error, const ScenarioModel& wanted) {
   return error;
 }
 
+/// What the scenario itself does not state has to be what it may state.
+Status check_limits(const StatedMass& stated, const ScenarioModel& wanted) {
+  constexpr detail::NumberRange masses{scenario_limits::min_mass_kg, scenario_limits::max_mass_kg};
+  constexpr detail::NumberRange inertias{0.0, scenario_limits::yaw_inertia_kgm2, true};
+  if (!wanted.mass_kg && stated.mass_kg && !masses.holds(*stated.mass_kg)) {
+    return make_error(ErrorCode::bad_input,
+                      "its mass of " + detail::number_text(*stated.mass_kg) + " kg is not from " +
+                          detail::number_text(masses.lowest) + " to " +
+                          detail::number_text(masses.highest) + " kg",
+                      "compile it again with --mass-kg, or give mass_kg in the scenario");
+  }
+  if (!wanted.yaw_inertia_kgm2 && stated.yaw_inertia_kgm2 &&
+      !inertias.holds(*stated.yaw_inertia_kgm2)) {
+    return make_error(ErrorCode::bad_input,
+                      "its yaw inertia of " + detail::number_text(*stated.yaw_inertia_kgm2) +
+                          " kg m2 is more than " + detail::number_text(inertias.highest) + " kg m2",
+                      "compile it again with --yaw-inertia-kgm2, or give yaw_inertia_kgm2 in the "
+                      "scenario");
+  }
+  return Success{};
+}
+
 Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
   if (!changes_nothing(wanted.transform)) {
     return make_error(ErrorCode::bad_input, "a model file has its frame already",
@@ -31,15 +52,8 @@ Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
   Result<LoadedModel> loaded = load_model(wanted.path);
   if (!loaded) return loaded.error();
   LoadedScenarioModel read;
-  read.mass_kg = loaded->stored.mass.mass_kg;
-  constexpr detail::NumberRange allowed{scenario_limits::min_mass_kg, scenario_limits::max_mass_kg};
-  if (!wanted.mass_kg && read.mass_kg > 0.0 && !allowed.holds(read.mass_kg)) {
-    return make_error(ErrorCode::bad_input,
-                      "its mass of " + detail::number_text(read.mass_kg) + " kg is not from " +
-                          detail::number_text(allowed.lowest) + " to " +
-                          detail::number_text(allowed.highest) + " kg",
-                      "compile it again with --mass-kg, or give mass_kg in the scenario");
-  }
+  read.stated = loaded->stored.stated;
+  if (Status status = check_limits(read.stated, wanted); !status) return status.error();
   read.model = std::move(loaded->stored.model);
   return read;
 }
@@ -78,16 +92,15 @@ Result<std::vector<Model>> load_scenario_models(Scenario& scenario,
                                                 const ScenarioModelOptions& options) {
   return detail::guarded([&]() -> Result<std::vector<Model>> {
     std::vector<Model> models;
-    std::vector<double> masses_kg;
+    std::vector<StatedMass> stated;
     for (const ScenarioModel& wanted : scenario.models) {
       Result<LoadedScenarioModel> read = load_scenario_model(wanted, options);
       if (!read) return read.error();
       models.push_back(std::move(read->model));
-      masses_kg.push_back(read->mass_kg);
+      stated.push_back(read->stated);
     }
-    for (std::size_t i = 0; i < masses_kg.size(); ++i) {
-      std::optional<double>& mass_kg = scenario.models[i].mass_kg;
-      if (!mass_kg && masses_kg[i] > 0.0) mass_kg = masses_kg[i];
+    for (std::size_t i = 0; i < stated.size(); ++i) {
+      add_stated_mass(stated[i], scenario.models[i]);
     }
     return models;
   });

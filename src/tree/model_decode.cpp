@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -28,9 +30,10 @@ Status check_size(const ModelHeader& header, std::size_t found) {
 }
 
 Status check_counts(const ModelHeader& header) {
-  const bool unused = std::all_of(header.unused.begin(), header.unused.end(),
-                                  [](std::uint64_t value) { return value == 0; });
-  if (!unused || header.axes_are_world > 1 || header.up > 5 || header.forward > 5) {
+  constexpr std::uint32_t flags = flag_axes_are_world | flag_center_of_mass_is_stated;
+  const bool stated = (header.flags & flag_center_of_mass_is_stated) != 0;
+  const bool unused = !stated && header.center_of_mass_um != std::array<std::int32_t, 3>{};
+  if (unused || (header.flags & ~flags) != 0 || header.up > 5 || header.forward > 5) {
     return refused("head", "it holds what this version never writes");
   }
   if (header.triangles == 0 || header.triangles > max_triangles) {
@@ -94,11 +97,28 @@ void read_properties(const ModelHeader& header, StoredModel& stored) {
   stored.transform.up = static_cast<Axis>(header.up);
   stored.transform.forward = static_cast<Axis>(header.forward);
   stored.transform.origin_m = {header.origin_m[0], header.origin_m[1], header.origin_m[2]};
-  stored.mass.mass_kg = header.mass_kg;
   stored.mass.area_m2 = header.area_m2;
   stored.mass.volume_m3 = header.volume_m3;
   stored.mass.center_m = {header.center_m[0], header.center_m[1], header.center_m[2]};
   stored.mass.inertia_per_kg_m2 = header.inertia_per_kg_m2;
+}
+
+/// Absent where the member is 0. A negative zero is stated: `check_stated` refuses it.
+std::optional<double> stated_number(double member) {
+  if (member == 0.0 && !std::signbit(member)) return std::nullopt;
+  return member;
+}
+
+StatedMass read_stated(const ModelHeader& header) {
+  constexpr double um_per_m = 1e6;
+  StatedMass stated;
+  stated.mass_kg = stated_number(header.mass_kg);
+  stated.yaw_inertia_kgm2 = stated_number(header.yaw_inertia_kgm2);
+  if ((header.flags & flag_center_of_mass_is_stated) != 0) {
+    const auto& um = header.center_of_mass_um;
+    stated.center_of_mass_m = Eigen::Vector3d(um[0], um[1], um[2]) / um_per_m;
+  }
+  return stated;
 }
 
 /// Null where the file holds none.
@@ -119,7 +139,8 @@ std::shared_ptr<const Profile> read_profile(const ModelHeader& header,
 /// would be written again as another file.
 Status check_missing_profile(const ModelHeader& header, const TriangleMesh& mesh) {
   const auto* const head = reinterpret_cast<const unsigned char*>(&header);
-  if (std::any_of(head + offsetof(ModelHeader, ground_m), head + offsetof(ModelHeader, unused),
+  if (std::any_of(head + offsetof(ModelHeader, ground_m),
+                  head + offsetof(ModelHeader, center_of_mass_um),
                   [](unsigned char byte) { return byte != 0; })) {
     return refused("profile", "it has no piece");
   }
@@ -174,7 +195,7 @@ Result<LoadedModel> decode_model(View<const unsigned char> bytes,
   for (int i = 0; i < 9; ++i) {
     model.tree.axes(i % 3, i / 3) = header.axes[static_cast<std::size_t>(i)];
   }
-  model.tree.axes_are_world = header.axes_are_world == 1;
+  model.tree.axes_are_world = (header.flags & flag_axes_are_world) != 0;
   model.tree.depth = header.tree_depth;
   model.tree.nodes = column<Node>(bytes, at[section_nodes], keeper);
   model.tree.order = column<std::uint32_t>(bytes, at[section_order], keeper);
@@ -186,6 +207,7 @@ Result<LoadedModel> decode_model(View<const unsigned char> bytes,
     model.wide.lanes_of = column<WideLanes>(bytes, at[section_lanes], keeper);
   }
   read_properties(header, loaded.stored);
+  loaded.stored.stated = read_stated(header);
   model.profile = read_profile(header, bytes, at[section_pieces]);
 
   if (Status status = check_stored(loaded.stored); !status) return with_remedy(status.error());

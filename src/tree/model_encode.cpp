@@ -80,9 +80,8 @@ Status check_properties(const StoredModel& stored) {
   const ShellProperties& mass = stored.mass;
   bool finite = mass.center_m.allFinite() && std::isfinite(mass.volume_m3);
   for (const double value : mass.inertia_per_kg_m2) finite = finite && std::isfinite(value);
-  if (!finite || !(mass.mass_kg >= 0.0) || !std::isfinite(mass.mass_kg) || !(mass.area_m2 >= 0.0) ||
-      !std::isfinite(mass.area_m2)) {
-    return broken("mass properties", "a number is not finite, or a mass or area negative");
+  if (!finite || !(mass.area_m2 >= 0.0) || !std::isfinite(mass.area_m2)) {
+    return broken("surface properties", "a number is not finite, or the area negative");
   }
   if (Status status = check(stored.transform); !status) {
     return broken("transform", status.error().reason);
@@ -179,6 +178,9 @@ Status check_stored(const StoredModel& stored) {
   if (Status status = check_properties(stored); !status) return status;
   if (Status status = check_vertices(stored.model.mesh); !status) return status;
   if (Status status = check_parts(stored.model.mesh); !status) return status;
+  if (Status status = check_stated_mass(stored.stated, stored.model.mesh.bounds()); !status) {
+    return status;
+  }
   if (stored.model.profile == nullptr) return Success{};
   return check_profile(*stored.model.profile, stored.model.mesh);
 }
@@ -198,6 +200,18 @@ Result<std::shared_ptr<const Profile>> profile_of(const Model& model) {
   return made.error();
 }
 
+void store(const StatedMass& stated, ModelHeader& header) {
+  constexpr double um_per_m = 1e6;
+  header.mass_kg = stated.mass_kg.value_or(0.0);
+  header.yaw_inertia_kgm2 = stated.yaw_inertia_kgm2.value_or(0.0);
+  if (!stated.center_of_mass_m) return;
+  header.flags |= flag_center_of_mass_is_stated;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double um = um_per_m * (*stated.center_of_mass_m)[static_cast<Eigen::Index>(i)];
+    header.center_of_mass_um[i] = static_cast<std::int32_t>(std::lround(um));
+  }
+}
+
 ModelHeader header_of(const StoredModel& stored, const Profile* profile, std::size_t name_bytes) {
   const Model& model = stored.model;
   ModelHeader header{};
@@ -212,11 +226,11 @@ ModelHeader header_of(const StoredModel& stored, const Profile* profile, std::si
   header.clusters = static_cast<std::uint32_t>(model.wide.clusters.size());
   header.tree_depth = model.tree.depth;
   header.wide_depth = model.wide.depth;
-  header.axes_are_world = model.tree.axes_are_world ? 1 : 0;
+  if (model.tree.axes_are_world) header.flags |= flag_axes_are_world;
   for (int i = 0; i < 9; ++i) {
     header.axes[static_cast<std::size_t>(i)] = model.tree.axes(i % 3, i / 3);
   }
-  header.mass_kg = stored.mass.mass_kg;
+  store(stored.stated, header);
   header.area_m2 = stored.mass.area_m2;
   header.volume_m3 = stored.mass.volume_m3;
   header.center_m = three(stored.mass.center_m);

@@ -17,6 +17,12 @@ namespace crashrank::detail {
 inline constexpr std::array<unsigned char, 8> model_magic{0x93, 'C',  'R',  'M',
                                                           '\r', '\n', 0x1a, '\n'};
 
+/// Bits of `ModelHeader::flags`.
+enum HeaderFlag : std::uint32_t {
+  flag_axes_are_world = 1,            ///< the boxes stand along the body's axes
+  flag_center_of_mass_is_stated = 2,  ///< (0, 0, 0) can be stated
+};
+
 /// The head of a model file, as it lies there: no gap between members. All numbers little-endian.
 struct ModelHeader {
   std::array<unsigned char, 8> magic;
@@ -32,9 +38,9 @@ struct ModelHeader {
   std::uint32_t clusters;
   std::uint32_t tree_depth;
   std::uint32_t wide_depth;
-  std::uint32_t axes_are_world;  ///< 0 or 1
-  std::array<double, 9> axes;    ///< of the boxes, one after the other
-  double mass_kg;
+  std::uint32_t flags;         ///< of `HeaderFlag`
+  std::array<double, 9> axes;  ///< of the boxes, one after the other
+  double mass_kg;              ///< 0: not stated
   double area_m2;
   double volume_m3;
   std::array<double, 3> center_m;
@@ -47,11 +53,14 @@ struct ModelHeader {
   /// Of each band, then the number of pieces.
   std::array<std::uint32_t, profile_bands + 1> first_piece;
   std::array<float, profile_bands> band_area_m2;
-  std::array<std::uint32_t, 5> unused;  ///< 0
+  std::array<std::int32_t, 3> center_of_mass_um;  ///< µm; 0 where it is not stated
+  double yaw_inertia_kgm2;                        ///< 0: not stated
 };
 static_assert(sizeof(ModelHeader) == 384);
 static_assert(offsetof(ModelHeader, axes) == 64 && offsetof(ModelHeader, ground_m) == 272);
-static_assert(offsetof(ModelHeader, band_area_m2) == 324 && offsetof(ModelHeader, unused) == 364);
+static_assert(offsetof(ModelHeader, band_area_m2) == 324);
+static_assert(offsetof(ModelHeader, center_of_mass_um) == 364);
+static_assert(offsetof(ModelHeader, yaw_inertia_kgm2) == 376);
 
 /// Where the checksum begins. It ends where the corners begin: they and the clusters repeat what
 /// other sections hold, and are compared with it bit for bit.
@@ -130,7 +139,8 @@ std::uint32_t checksum_of(View<const unsigned char> bytes, const ModelLayout& la
 
 /// What is checked of a stored model beyond its trees, when written and when read: parts that cover
 /// the triangles in order with names that are unique, UTF-8 and at most `max_part_name_bytes` long;
-/// finite vertices; finite properties; a sound profile, or none. Errors: bad_input, limit_exceeded.
+/// finite vertices; finite properties; what is stated of the mass as in `check_stated_mass`; a
+/// sound profile, or none. Errors: bad_input, limit_exceeded.
 Status check_stored(const StoredModel& stored);
 
 /// Longest outline piece in a model file, m.

@@ -1,6 +1,7 @@
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include "crashrank/base/guarded.hpp"
+#include "crashrank/mesh/stated_mass.hpp"
 
 #include <algorithm>
 #include <array>
@@ -45,6 +46,46 @@ std::optional<Axles> find_axles(const Profile& profile, double rear_x, double le
   }
   const double rear = 0.5 * (low[0] + high[0]);
   return Axles{rear, 0.5 * (low[1] + high[1]) - rear};
+}
+
+/// Wheels of two axles, a fifth and four fifths of a car's length where none are seen. Without
+/// wheelbase for other kinds.
+Axles axles_of(BodyKind kind, const Profile& profile, double rear_x, double length) {
+  const bool car = kind == BodyKind::car;
+  if (!car && kind != BodyKind::truck && kind != BodyKind::bus) return {};
+  const Axles unseen = car ? Axles{rear_x + 0.2 * length, 0.6 * length} : Axles{};
+  return find_axles(profile, rear_x, length).value_or(unseen);
+}
+
+/// x of the centre of mass, from the ends of the box or from the axles.
+double center_x(BodyKind kind, const Axles& axles, double rear_x, double length) {
+  constexpr double front_load_of_cars = 0.58;
+  constexpr double bicycle = 0.385;
+  if (kind == BodyKind::car) return axles.rear_x_m + front_load_of_cars * axles.wheelbase_m;
+  return rear_x + (kind == BodyKind::bicycle ? bicycle : 0.5) * length;
+}
+
+/// Square of the radius of gyration in yaw, m². `size` is length, width, height.
+double gyration2(BodyKind kind, const Vector3d& size) {
+  constexpr double car = 0.29;
+  constexpr double motorcycle = 0.215;
+  constexpr double bicycle = 0.15;
+  constexpr double pedestrian = 0.077;
+  const auto square = [](double x) { return x * x; };
+  switch (kind) {
+    case BodyKind::car:
+      return square(car * size.x());
+    case BodyKind::motorcycle:
+      return square(motorcycle * size.x());
+    case BodyKind::bicycle:
+      return square(bicycle * size.x());
+    case BodyKind::pedestrian:
+      return square(pedestrian * size.z());
+    case BodyKind::pole:
+      return (square(size.x()) + square(size.y())) / 16.0;
+    default:
+      return (square(size.x()) + square(body_width_m(kind, size))) / 12.0;
+  }
 }
 
 CrushStrength even_strength(double yield_npm, double slope_npm2, double length_m, double height_m) {
@@ -147,8 +188,7 @@ Surface surface_of(BodyKind kind) {
 
 Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
                           std::shared_ptr<const Profile> profile) {
-  constexpr double front_load = 0.58;
-  constexpr double gyration = 0.29;
+  constexpr double least_gyration2_m2 = 1e-6;
   Vehicle v;
   if (profile == nullptr || profile->pieces.empty()) {
     Result<Profile> made = make_profile(mesh);
@@ -165,25 +205,18 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
   v.mass_is_guessed = !facts.mass_kg.has_value();
   v.center_m = box.center().cast<double>();
   v.leading_edge_m = 0.0;
-  const double flat = (size.x() * size.x() + size.y() * size.y()) / 12.0;
-  double gyration2 = std::max(flat, 1e-6);
-  if (v.kind == BodyKind::car) {
-    const std::optional<Axles> axles = find_axles(*v.profile, rear_x, size.x());
-    v.rear_axle_x_m = axles ? axles->rear_x_m : rear_x + 0.2 * size.x();
-    v.wheelbase_m = axles ? axles->wheelbase_m : 0.6 * size.x();
-    v.center_m.x() = v.rear_axle_x_m + front_load * v.wheelbase_m;
-    gyration2 = std::max(gyration * gyration * size.x() * size.x(), 1e-6);
-  }
+  const Axles axles = axles_of(v.kind, *v.profile, rear_x, size.x());
+  v.rear_axle_x_m = axles.rear_x_m;
+  v.wheelbase_m = axles.wheelbase_m;
+  v.center_m.x() = center_x(v.kind, axles, rear_x, size.x());
   if (facts.center_of_mass_m) v.center_m = *facts.center_of_mass_m;
   if (v.movable()) {
-    v.yaw_inertia_kgm2 = facts.yaw_inertia_kgm2.value_or(v.mass_kg * gyration2);
-    // All mass at the ends of the box's diagonal, and a hundredth of a rod's.
-    const double most = v.mass_kg * std::max(3.0 * flat, 1e-4);
-    const double least = 0.01 * v.mass_kg * flat;
-    if (facts.yaw_inertia_kgm2 && !(v.yaw_inertia_kgm2 <= most && v.yaw_inertia_kgm2 >= least)) {
-      return make_error(ErrorCode::bad_input,
-                        "has a yaw inertia that no body of its size and mass can have",
-                        "state it in kg m2 about the centre of mass, or leave it out");
+    v.yaw_inertia_kgm2 = v.mass_kg * std::max(gyration2(v.kind, size), least_gyration2_m2);
+    if (facts.yaw_inertia_kgm2) {
+      v.yaw_inertia_kgm2 = *facts.yaw_inertia_kgm2;
+      if (Status status = check_yaw_inertia(v.yaw_inertia_kgm2, v.mass_kg, size); !status) {
+        return status.error();
+      }
     }
     v.density_kgm3 = v.mass_kg / v.profile->volume_m3();
   }

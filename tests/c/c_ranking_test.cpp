@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -199,8 +200,10 @@ TEST(CApi, ARankerAnswersAsRankDoesAndWithinABudgetSoundly) {
   EXPECT_EQ(crashrank_ranker_candidate_name(ranker.get(), 1000), nullptr);
 }
 
-/// The ego, 10 m/s, before a wall that stands still; scores by delta-v, which hangs on its mass.
-double delta_v_of(double told_kg, double stored_kg) {
+/// The ego, 10 m/s, before a wall that stands still; scores by delta-v, which hangs on its
+/// mass. The other stands to the left, so that centre of mass and inertia count, too.
+double delta_v_of(double told_kg, double stored_kg, const crashrank::StatedMass& stated = {},
+                  const crashrank_body* body = nullptr) {
   crashrank::TriangleMesh box;
   for (int i = 0; i < 8; ++i) {
     box.vertices.emplace_back((i & 1) != 0 ? 2.0F : -2.0F, (i & 2) != 0 ? 0.9F : -0.9F,
@@ -214,7 +217,8 @@ double delta_v_of(double told_kg, double stored_kg) {
   crashrank::StoredModel stored;
   stored.model = *crashrank::make_model(box);
   stored.mass = crashrank::shell_properties(box);
-  stored.mass.mass_kg = stored_kg;
+  stored.stated = stated;
+  if (stored_kg > 0.0) stored.stated.mass_kg = stored_kg;
   const std::string file = testing::TempDir() + "/c_api_mass.crm";
   EXPECT_TRUE(crashrank::save_model(stored, file, true).ok());
 
@@ -224,6 +228,11 @@ double delta_v_of(double told_kg, double stored_kg) {
   const Scenario scenario(made);
   crashrank_scenario_add_model(scenario.get(), "ego", "car", told_kg, &error);
   crashrank_scenario_add_model(scenario.get(), "other", "car", 1500.0, &error);
+  if (body != nullptr) {
+    // Both shapes are of the one file.
+    crashrank_scenario_set_body(scenario.get(), 0, body, &error);
+    crashrank_scenario_set_body(scenario.get(), 1, body, &error);
+  }
   crashrank_ego ego{};
   std::memcpy(ego.pose, identity, sizeof identity);
   ego.speed_mps = 10.0;
@@ -233,6 +242,7 @@ double delta_v_of(double told_kg, double stored_kg) {
   actor.model = 1;
   std::memcpy(actor.pose, identity, sizeof identity);
   actor.pose[3] = 8.0;
+  actor.pose[7] = 0.8;
   EXPECT_EQ(crashrank_scenario_add_actor(scenario.get(), &actor, &error), CRASHRANK_OK);
   crashrank_candidate straight{};
   straight.name = "straight";
@@ -271,6 +281,18 @@ TEST(CApi, TheMassThatAModelFileTellsCountsWhereTheScenarioGivesNone) {
   EXPECT_EQ(heavy, delta_v_of(4000.0, 0.0));
   EXPECT_EQ(heavy, delta_v_of(4000.0, 900.0));
   EXPECT_GT(delta_v_of(0.0, 900.0), heavy);
+}
+
+TEST(CApi, CentreAndInertiaOfAModelFileCountWhereTheScenarioGivesNone) {
+  const crashrank::StatedMass of_file{std::nullopt, Eigen::Vector3d(0.5, 0.3, 0.6), 900.0};
+  const double center_m[3] = {0.5, 0.3, 0.6};
+  const crashrank_body body{center_m, 900.0, 0.0, nullptr};
+  const double stated = delta_v_of(1500.0, 0.0, of_file);
+  EXPECT_EQ(stated, delta_v_of(1500.0, 0.0, {}, &body));
+  const crashrank::StatedMass other{std::nullopt, Eigen::Vector3d(-0.5, 0.0, 0.6), 2000.0};
+  EXPECT_EQ(stated, delta_v_of(1500.0, 0.0, other, &body));
+  EXPECT_NE(stated, delta_v_of(1500.0, 0.0, other));
+  EXPECT_NE(stated, delta_v_of(1500.0, 0.0));
 }
 
 TEST(CApi, AnUpdateRefusesWhatCreateRefuses) {

@@ -146,6 +146,76 @@ TEST(Compile, InspectTellsWhatAModelFileHolds) {
   EXPECT_EQ(place.read("again.crm"), place.read("mm.crm"));
 }
 
+TEST(Compile, StatedMassStandsInTheFileAndIsKept) {
+  const Workplace place;
+  write_boxes(place);
+  ASSERT_EQ(
+      place
+          .crashrank({"compile", "a.obj", "-o", "a.crm", "--mass-kg", "1450", "--center-of-mass-m",
+                      "1.234567,-0.1,0.55", "--yaw-inertia-kgm2", "2100.5"})
+          .code,
+      0);
+  const auto model_of = [&](const std::string& file) {
+    const Outcome run = place.crashrank({"inspect", file, "--json"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return run.json()["files"][0]["model"];
+  };
+  const Json stated = model_of("a.crm");
+  EXPECT_EQ(stated.at("center_of_mass_m"), (Json{1.234567, -0.1, 0.55}));
+  EXPECT_EQ(stated.at("yaw_inertia_kgm2"), 2100.5);
+  const std::string text = place.crashrank({"inspect", "a.crm"}).out;
+  EXPECT_NE(text.find("centre of mass at (1.23457, -0.1, 0.55) m"), std::string::npos) << text;
+  EXPECT_NE(text.find("yaw inertia 2100.5 kg m2"), std::string::npos) << text;
+
+  // Compiled again: what is not stated anew stays. A height that is left out is the box's middle.
+  ASSERT_EQ(
+      place.crashrank({"compile", "a.crm", "-o", "b.crm", "--center-of-mass-m", "-0.5,0"}).code, 0);
+  const Json again = model_of("b.crm");
+  EXPECT_EQ(again.at("mass_kg"), 1450.0);
+  EXPECT_EQ(again.at("yaw_inertia_kgm2"), 2100.5);
+  EXPECT_EQ(again.at("center_of_mass_m"), (Json{-0.5, 0.0, 0.85}));
+
+  ASSERT_EQ(place.crashrank({"compile", "a.obj", "-o", "c.crm"}).code, 0);
+  const Json nothing = model_of("c.crm");
+  for (const char* key : {"mass_kg", "center_of_mass_m", "yaw_inertia_kgm2"}) {
+    EXPECT_TRUE(nothing.at(key).is_null()) << key;
+  }
+}
+
+// A ranking is the same whether scenario or model file states mass, centre and inertia; the
+// scenario comes first.
+TEST(Compile, RanksByWhatAModelFileStates) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const auto ranking = [&](const std::string& mesh, const char* stated) {
+    Json scenario = Json::parse(place.read("scenario.json"));
+    Json& ego = scenario["models"]["ego"];
+    ego["mesh"] = mesh;
+    for (const char* key : {"mass_kg", "center_of_mass_m", "yaw_inertia_kgm2"}) ego.erase(key);
+    ego.update(Json::parse(stated));
+    place.write("other.json", scenario.dump());
+    const Outcome run = place.crashrank({"rank", "other.json", "--json", "--measure", "delta-v"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return run.json().at("ranking");
+  };
+  const auto compile = [&](const std::string& file, const char* center, const char* inertia) {
+    const Outcome run =
+        place.crashrank({"compile", "ego.obj", "-o", file, "--mass-kg", "1450",
+                         "--center-of-mass-m", center, "--yaw-inertia-kgm2", inertia});
+    EXPECT_EQ(run.code, 0) << run.err;
+  };
+  compile("stated.crm", "0.3,0.2,0.5", "1234.5");
+  compile("other.crm", "0.9,-0.3,0.7", "2000");
+  constexpr const char* all =
+      R"({"mass_kg": 1450, "center_of_mass_m": [0.3, 0.2, 0.5], "yaw_inertia_kgm2": 1234.5})";
+  const Json expected = ranking("ego.obj", all);
+  EXPECT_EQ(ranking("stated.crm", "{}"), expected);
+  EXPECT_EQ(ranking("other.crm", all), expected);
+  EXPECT_NE(ranking("other.crm", "{}"), expected);
+  EXPECT_NE(ranking("ego.obj", R"({"mass_kg": 1450})"), expected);
+  EXPECT_NE(ranking("other.crm", R"({"center_of_mass_m": [0.3, 0.2, 0.5]})"), expected);
+}
+
 TEST(Compile, RefusesWhatMakesNoSense) {
   const Workplace place;
   write_boxes(place);
@@ -167,6 +237,31 @@ TEST(Compile, RefusesWhatMakesNoSense) {
     const Outcome run = place.crashrank({"compile", "a.obj", "-o", "x.crm", "--mass-kg", mass});
     EXPECT_EQ(run.code, 2);
     EXPECT_NE(run.err.find("from 0.1 to 1000000"), std::string::npos) << run.err;
+  }
+  struct Refused {
+    const char* option;
+    const char* value;
+    int code;
+    const char* part;
+  };
+  for (const Refused& bad : std::vector<Refused>{
+           {"--center-of-mass-m", "1", 2, "needs two or three finite numbers"},
+           {"--center-of-mass-m", "1,0,0.5,2", 2, "needs two or three finite numbers"},
+           {"--center-of-mass-m", "1,zero", 2, "needs two or three finite numbers"},
+           {"--center-of-mass-m", "1,nan", 2, "needs two or three finite numbers"},
+           {"--center-of-mass-m", "3.1,0", 3, "a.obj: centre of mass: (3.1, 0, 0.85) m is not"},
+           {"--center-of-mass-m", "1,0,1500", 3, "centre of mass"},
+           {"--yaw-inertia-kgm2", "0", 2, "a number above 0"},
+           {"--yaw-inertia-kgm2", "-5", 2, "a number above 0"},
+           {"--yaw-inertia-kgm2", "nan", 2, "a number above 0"},
+           {"--yaw-inertia-kgm2", "2e9", 2, "a number above 0"},
+           {"--yaw-inertia-kgm2", "9000", 3, "a.obj: yaw inertia: "},
+           {"--yaw-inertia-kgm2", "10", 3, "a.obj: yaw inertia: "}}) {
+    const Outcome run = place.crashrank(
+        {"compile", "a.obj", "-o", "x.crm", "--mass-kg", "1450", bad.option, bad.value});
+    EXPECT_EQ(run.code, bad.code) << bad.option << " " << bad.value << ": " << run.err;
+    EXPECT_NE(run.err.find(bad.part), std::string::npos) << run.err;
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
   }
   const std::string mesh = place.read("a.obj");
   EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "./a.obj", "--force"}).code, 2);

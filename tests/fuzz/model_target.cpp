@@ -43,6 +43,10 @@ Bytes encoded(std::size_t count, const BuildOptions& options) {
   stored.mass = shell_properties(soup(count, count));
   Result<Model> model = make_model(soup(count, count), options);
   require(model.ok(), "a seed cannot be built");
+  const Box bounds = model->mesh.bounds();
+  constexpr double mass_kg = 12.0;
+  const double block = bounds.extent().cast<double>().head<2>().squaredNorm() / 12.0;
+  stored.stated = {mass_kg, bounds.center().cast<double>(), mass_kg * block};
   stored.model = std::move(*model);
   const Result<std::vector<unsigned char>> bytes = encode_model(stored);
   require(bytes.ok(), "a seed cannot be encoded");

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,14 +18,20 @@ using test::ScratchDir;
 
 constexpr const char* triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-std::string compiled(const ScratchDir& dir, double mass_kg) {
+std::string compiled(const ScratchDir& dir, const StatedMass& stated) {
   StoredModel stored;
   stored.model = *make_model(scenes::box_mesh({2.0F, 0.9F, 0.7F}, 3));
   stored.mass = shell_properties(stored.model.mesh);
-  stored.mass.mass_kg = mass_kg;
+  stored.stated = stated;
   const std::string file = (dir.path() / "car.crm").string();
   EXPECT_TRUE(save_model(stored, file, true).ok());
   return file;
+}
+
+std::string compiled(const ScratchDir& dir, double mass_kg) {
+  StatedMass stated;
+  if (mass_kg > 0.0) stated.mass_kg = mass_kg;
+  return compiled(dir, stated);
 }
 
 ScenarioModel wanted(const std::string& name, const std::string& path) {
@@ -50,6 +57,44 @@ TEST(ScenarioModels, MeshesAndModelFilesAreReadInOrderAndTellTheirMass) {
   EXPECT_FALSE(scenario.models[0].mass_kg.has_value());
   EXPECT_EQ(scenario.models[1].mass_kg, 3000.0);
   EXPECT_EQ(scenario.models[2].mass_kg, 1200.0);
+}
+
+TEST(ScenarioModels, EachStatedQuantityIsTheFilesUnlessTheScenarioStatesIt) {
+  const ScratchDir dir;
+  const StatedMass of_file{1500.0, Eigen::Vector3d(0.4, 0.01, 0.6), 2400.0};
+  const StatedMass of_scenario{1200.0, Eigen::Vector3d(-0.2, 0.0, 0.5), 1900.0};
+  const std::string car = compiled(dir, of_file);
+  for (unsigned chosen = 0; chosen < 8; ++chosen) {
+    SCOPED_TRACE(chosen);
+    Scenario scenario;
+    ScenarioModel model = wanted("car", car);
+    const bool mass = (chosen & 1U) != 0;
+    const bool center = (chosen & 2U) != 0;
+    const bool inertia = (chosen & 4U) != 0;
+    if (mass) model.mass_kg = of_scenario.mass_kg;
+    if (center) model.center_of_mass_m = of_scenario.center_of_mass_m;
+    if (inertia) model.yaw_inertia_kgm2 = of_scenario.yaw_inertia_kgm2;
+    scenario.models = {model};
+    ASSERT_TRUE(load_scenario_models(scenario).ok());
+    const ScenarioModel& read = scenario.models[0];
+    EXPECT_EQ(read.mass_kg, (mass ? of_scenario : of_file).mass_kg);
+    EXPECT_EQ(read.center_of_mass_m, (center ? of_scenario : of_file).center_of_mass_m);
+    EXPECT_EQ(read.yaw_inertia_kgm2, (inertia ? of_scenario : of_file).yaw_inertia_kgm2);
+  }
+}
+
+TEST(ScenarioModels, AYawInertiaThatNoScenarioMayGiveIsTheFilesFault) {
+  const ScratchDir dir;
+  ScenarioModel model = wanted("car", compiled(dir, {std::nullopt, std::nullopt, 1.1e9}));
+  const Result<LoadedScenarioModel> refused = load_scenario_model(model);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::bad_input);
+  EXPECT_EQ(refused.error().file, model.path);
+  for (const char* part : {"yaw inertia", "1e+09", "--yaw-inertia-kgm2", "yaw_inertia_kgm2"}) {
+    EXPECT_NE(refused.error().message().find(part), std::string::npos) << refused.error().message();
+  }
+  model.yaw_inertia_kgm2 = 2000.0;
+  EXPECT_TRUE(load_scenario_model(model).ok());
 }
 
 TEST(ScenarioModels, WhatCannotBeReadNamesItsModelAndChangesNothing) {

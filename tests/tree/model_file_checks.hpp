@@ -59,7 +59,13 @@ inline StoredModel sample(std::size_t triangles, const BuildOptions& options = {
   mesh.parts = {{"front \"bumper\"", 0, 1},
                 {"T\xc3\xbcr", 1, static_cast<std::uint32_t>(triangles) - 1}};
   stored.mass = shell_properties(mesh);
-  stored.mass.mass_kg = 1400.0;
+  stored.stated.mass_kg = 1400.0;
+  const Box bounds = mesh.bounds();
+  // In whole micrometres, as a file stores it.
+  const Eigen::Vector3d middle = bounds.center().cast<double>();
+  stored.stated.center_of_mass_m = (1e6 * middle).array().round().matrix() / 1e6;
+  const Eigen::Vector3d extent = bounds.extent().cast<double>();
+  stored.stated.yaw_inertia_kgm2 = 1400.0 * extent.head<2>().squaredNorm() / 12.0;
   stored.transform.scale = 0.001;
   stored.transform.up = Axis::plus_y;
   stored.transform.forward = Axis::minus_z;
@@ -151,7 +157,9 @@ inline void expect_same(const StoredModel& a, const StoredModel& b) {
   EXPECT_EQ(a.transform.up, b.transform.up);
   EXPECT_EQ(a.transform.forward, b.transform.forward);
   EXPECT_EQ(a.transform.origin_m, b.transform.origin_m);
-  EXPECT_EQ(a.mass.mass_kg, b.mass.mass_kg);
+  EXPECT_EQ(a.stated.mass_kg, b.stated.mass_kg);
+  EXPECT_EQ(a.stated.center_of_mass_m, b.stated.center_of_mass_m);
+  EXPECT_EQ(a.stated.yaw_inertia_kgm2, b.stated.yaw_inertia_kgm2);
   EXPECT_EQ(a.mass.area_m2, b.mass.area_m2);
   EXPECT_EQ(a.mass.volume_m3, b.mass.volume_m3);
   EXPECT_EQ(a.mass.center_m, b.mass.center_m);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -119,6 +120,55 @@ TEST_F(ModelFile, RefusesForgedPieces) {
   }
   EXPECT_TRUE(
       decoded(with_other_piece(bytes, 3, [](OutlinePiece& p) { p.length_m = 1e3F; }), false).ok());
+}
+
+TEST_F(ModelFile, RefusesForgedMasses) {
+  // 0.3 x 0.2 x 0.25 m; an even block of it and 12 kg has 0.13 kg m2.
+  StoredModel stored = sample_box();
+  stored.stated = {12.0, Eigen::Vector3d(0.1, 0.1, 0.1), 0.13};
+  const Bytes bytes = encoded(stored);
+  ASSERT_TRUE(decoded(bytes).ok());
+  const auto accepted = [&](const std::function<void(detail::ModelHeader&)>& change) {
+    return decoded(with_other_head(bytes, change), false).ok();
+  };
+  const auto refuse = [&](const std::string& place,
+                          const std::function<void(detail::ModelHeader&)>& change) {
+    const Result<LoadedModel> loaded = decoded(with_other_head(bytes, change), false);
+    ASSERT_FALSE(loaded.ok()) << place;
+    EXPECT_EQ(loaded.error().code, ErrorCode::bad_input);
+    EXPECT_EQ(loaded.error().place, place);
+    EXPECT_NE(loaded.error().reason, "");
+    EXPECT_EQ(loaded.error().remedy, "compile it again from its mesh");
+  };
+  for (const double wrong : {-0.0, -1.0, std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    refuse("mass", [&](detail::ModelHeader& h) { h.mass_kg = wrong; });
+    refuse("yaw inertia", [&](detail::ModelHeader& h) { h.yaw_inertia_kgm2 = wrong; });
+  }
+  for (const double wrong : {0.0012, 0.391, 1e9, 1e-300}) {
+    refuse("yaw inertia", [&](detail::ModelHeader& h) { h.yaw_inertia_kgm2 = wrong; });
+  }
+  for (const double possible : {0.0, 0.0014, 0.389}) {
+    EXPECT_TRUE(accepted([&](detail::ModelHeader& h) { h.yaw_inertia_kgm2 = possible; }));
+  }
+  // Without a mass the inertia is checked where the body's mass is known.
+  EXPECT_TRUE(accepted([](detail::ModelHeader& h) {
+    h.mass_kg = 0.0;
+    h.yaw_inertia_kgm2 = 1e9;
+  }));
+  constexpr std::int32_t largest = std::numeric_limits<std::int32_t>::max();
+  for (const std::int32_t wrong : {-2, 300'003, largest, -largest - 1}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      refuse("centre of mass", [&](detail::ModelHeader& h) { h.center_of_mass_um[axis] = wrong; });
+    }
+  }
+  refuse("head", [](detail::ModelHeader& h) { h.flags &= ~2U; });
+  for (unsigned bit = 2; bit < 32; ++bit) {
+    refuse("head", [&](detail::ModelHeader& h) { h.flags |= 1U << bit; });
+  }
+  EXPECT_TRUE(accepted([](detail::ModelHeader& h) {
+    h.flags &= ~2U;
+    h.center_of_mass_um = {};
+  }));
 }
 
 TEST_F(ModelFile, RefusesForgedBands) {

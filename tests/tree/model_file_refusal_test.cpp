@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,11 +43,17 @@ TEST_F(ModelFile, RefusesWhatCannotBeLoadedAgain) {
   wrong.model.mesh.parts.pop_back();
   EXPECT_TRUE(refused(wrong)) << "parts that do not cover the triangles";
   wrong = sample(9);
-  wrong.mass.mass_kg = NAN;
+  wrong.stated.mass_kg = NAN;
   EXPECT_TRUE(refused(wrong));
   wrong = sample(9);
-  wrong.mass.mass_kg = -1.0;
+  wrong.stated.mass_kg = -1.0;
   EXPECT_TRUE(refused(wrong));
+  wrong = sample(9);
+  wrong.stated.center_of_mass_m->x() = 2.0;
+  EXPECT_TRUE(refused(wrong)) << "a centre of mass beside the body";
+  wrong = sample(9);
+  wrong.stated.yaw_inertia_kgm2 = 1e5;
+  EXPECT_TRUE(refused(wrong)) << "more than a ring's inertia";
   wrong = sample(9);
   wrong.transform.forward = wrong.transform.up;
   EXPECT_TRUE(refused(wrong));
@@ -82,6 +89,32 @@ TEST_F(ModelFile, RefusesToWriteAnUnsoundProfile) {
   EXPECT_EQ(written(Profile{}).error().message(), "profile: it has no piece");
   wrong.pieces.resize(max_profile_pieces + 1);
   EXPECT_EQ(written(wrong).error().code, ErrorCode::limit_exceeded);
+}
+
+TEST_F(ModelFile, StoresWhatIsStatedOfTheMass) {
+  const StatedMass all{1400.0, Eigen::Vector3d(0.1, -0.000001, 0.25), 40.5};
+  const StatedMass origin{std::nullopt, Eigen::Vector3d(0.0, 0.0, 0.0), std::nullopt};
+  const StatedMass inertia{std::nullopt, std::nullopt, 1e-3};
+  for (const StatedMass& stated : {StatedMass{}, all, origin, inertia}) {
+    StoredModel stored = test::sample_box();
+    stored.stated = stated;
+    const Bytes bytes = encoded(stored);
+    const Result<LoadedModel> loaded = decoded(bytes);
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message();
+    const StatedMass& found = loaded->stored.stated;
+    EXPECT_EQ(found.mass_kg, stated.mass_kg);
+    EXPECT_EQ(found.center_of_mass_m, stated.center_of_mass_m);
+    EXPECT_EQ(found.yaw_inertia_kgm2, stated.yaw_inertia_kgm2);
+    EXPECT_EQ(encoded(loaded->stored), bytes);
+  }
+  // Parts of a micrometre are rounded away, once.
+  StoredModel stored = test::sample_box();
+  stored.stated.center_of_mass_m = Eigen::Vector3d(0.1000004, 0.1999996, 0.0);
+  const Bytes bytes = encoded(stored);
+  const Result<LoadedModel> loaded = decoded(bytes);
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_EQ(loaded->stored.stated.center_of_mass_m, Eigen::Vector3d(0.1, 0.2, 0.0));
+  EXPECT_EQ(encoded(loaded->stored), bytes);
 }
 
 // A flat plate on the ground has no outline, and yet can be collided with.

@@ -9,9 +9,8 @@
 
 namespace crashrank {
 
-/// How heavy a body is, as far as that is known, and how its surface is spread.
+/// How the surface of a body is spread.
 struct ShellProperties {
-  double mass_kg = 0.0;    ///< as somebody stated it; 0: nobody did
   double area_m2 = 0.0;    ///< of the surface, every triangle counted
   double volume_m3 = 0.0;  ///< enclosed; means something for closed, evenly turned meshes only
   /// Middle of the surface, body coordinates, m.

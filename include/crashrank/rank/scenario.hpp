@@ -5,6 +5,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/crash/motion.hpp"
 #include "crashrank/mesh/import.hpp"
+#include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/measure.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
@@ -25,16 +26,26 @@ struct ScenarioModel {
   std::string mesh;  ///< as the scenario writes it
   std::string path;  ///< where it is; what `load_scenario` found to be allowed, else empty
   BodyKind kind = BodyKind::car;  ///< what it is
-  std::optional<double> mass_kg;  ///< absent: guessed from kind and size
-  ImportTransform transform;      ///< how its mesh is read
-  /// Center of mass in body coordinates, m; absent: estimated from kind and mesh.
+  /// Mass with all aboard, kg; absent: as its model file states, else guessed from kind and size.
+  std::optional<double> mass_kg;
+  ImportTransform transform;  ///< how its mesh is read
+  /// Center of mass in body coordinates, m; absent: as its model file states, else estimated from
+  /// kind and mesh.
   std::optional<Eigen::Vector3d> center_of_mass_m;
-  /// Moment of inertia about the vertical axis through the center of mass, kg·m²; absent: estimated
-  /// from mass and mesh.
+  /// Moment of inertia about the vertical axis through the center of mass, kg·m²; absent: as its
+  /// model file states, else estimated from kind, mass and mesh.
   std::optional<double> yaw_inertia_kgm2;
   double stiffness = 1.0;          ///< crush strength, times the default of its kind
   std::optional<Surface> surface;  ///< outer material; absent: by kind
 };
+
+/// Sets the mass, centre of mass and yaw inertia that a model file states where the scenario states
+/// none: each of the three by itself, the scenario's first.
+inline void add_stated_mass(const StatedMass& stated, ScenarioModel& model) {
+  if (!model.mass_kg) model.mass_kg = stated.mass_kg;
+  if (!model.center_of_mass_m) model.center_of_mass_m = stated.center_of_mass_m;
+  if (!model.yaw_inertia_kgm2) model.yaw_inertia_kgm2 = stated.yaw_inertia_kgm2;
+}
 
 /// The ego vehicle at time 0.
 struct ScenarioEgo {

@@ -3,6 +3,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/mesh/import.hpp"
+#include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
@@ -21,21 +22,22 @@ struct ScenarioModelOptions {
 /// What the file of one model of a scenario holds.
 struct LoadedScenarioModel {
   Model model;                        ///< ready for use
-  double mass_kg = 0.0;               ///< as a model file tells it; 0: it does not, or is a mesh
+  StatedMass stated;                  ///< in a model file; empty for a mesh
   std::vector<std::string> warnings;  ///< of a mesh, one sentence each
 };
 
 /// Reads one model: a mesh as `import_mesh` does and builds its trees, or a model file as
 /// `load_model` does. In crashrank::import. Blocks; safe from any thread.
 /// Errors: those of the two, naming file and model; bad_input for a model file that the scenario
-/// wants scaled, turned or moved, or whose mass is outside `scenario_limits` where the scenario
-/// gives none; usage for a model without a path.
+/// wants scaled, turned or moved, or whose mass or yaw inertia is outside `scenario_limits` where
+/// the scenario gives none; usage for a model without a path.
 CRASHRANK_API Result<LoadedScenarioModel> load_scenario_model(
     const ScenarioModel& wanted, const ScenarioModelOptions& options = {});
 
-/// Reads all models of a scenario, in its order, as `rank` and `Ranker::prepare` take them. Gives
-/// models without a mass the one that their model file tells; from then on it is the scenario's,
-/// also where another file is read later. Errors: as above, and then the scenario is as it was.
+/// Reads all models of a scenario, in its order, as `rank` and `Ranker::prepare` take them, and
+/// gives the scenario what their files state of the mass (`add_stated_mass`). From then on it is
+/// the scenario's, also where another file is read later. Errors: as above, and then the scenario
+/// is as it was.
 CRASHRANK_API Result<std::vector<Model>> load_scenario_models(
     Scenario& scenario, const ScenarioModelOptions& options = {});
 

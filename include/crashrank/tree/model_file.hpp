@@ -4,6 +4,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/mesh/shell_properties.hpp"
+#include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/mesh/transform.hpp"
 #include "crashrank/tree/model.hpp"
 
@@ -18,13 +19,16 @@ namespace crashrank {
 /// The version of model files that this library writes, and the only one that it reads.
 inline constexpr std::uint32_t model_file_version = 2;
 
-/// A body as a model file stores it: ready for queries and for ranking, with its import transform
-/// and mass properties. docs/model-file.md has the file byte by byte.
+/// A body as a model file stores it: ready for queries and for ranking, with its import transform,
+/// what is stated of its mass and the properties of its surface. docs/model-file.md has the file
+/// byte by byte.
 struct StoredModel {
   Model model;  ///< ready for queries; its profile is null where its mesh has no outline
   /// How the file that the mesh came from was turned into body coordinates; done already.
   ImportTransform transform;
-  ShellProperties mass;  ///< of the body
+  ShellProperties mass;  ///< of its surface
+  /// As given when it was compiled. A file stores the centre of mass in whole micrometres.
+  StatedMass stated;
 };
 
 /// What a model file was, beside what is in it.

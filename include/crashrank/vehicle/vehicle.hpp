@@ -21,8 +21,8 @@ namespace crashrank {
 struct VehicleFacts {
   BodyKind kind = BodyKind::car;                    ///< what it is
   std::optional<double> mass_kg;                    ///< absent: guessed from kind and size
-  std::optional<Eigen::Vector3d> center_of_mass_m;  ///< body coordinates, m
-  std::optional<double> yaw_inertia_kgm2;           ///< about the centre of mass
+  std::optional<Eigen::Vector3d> center_of_mass_m;  ///< body coordinates, m; absent: derived
+  std::optional<double> yaw_inertia_kgm2;           ///< about the centre of mass; absent: derived
   double stiffness = 1.0;                           ///< times the kind's strength, > 0
   std::optional<Surface> surface;                   ///< absent: the kind's
 };
@@ -37,7 +37,7 @@ struct Vehicle {
   CrushStrength strength;                                    ///< what it takes to crush it
   Surface surface = Surface::sheet_metal;                    ///< decides friction
   double rear_axle_x_m = 0.0;                                ///< of two-axled vehicles, m
-  double wheelbase_m = 0.0;                                  ///< 0 without wheels, m
+  double wheelbase_m = 0.0;                                  ///< 0 where no axles are known, m
   double leading_edge_m = 0.0;                               ///< see crash/injury.hpp
   double density_kgm3 = 0.0;                                 ///< mass over the profile's volume
   std::shared_ptr<const Profile> profile;                    ///< its outlines, never null
@@ -48,13 +48,27 @@ struct Vehicle {
 };
 
 /// Describes a body: what is stated of it, the rest derived from kind and mesh.
-/// Cars: axles at the middles of the wheels where the lowest outlines show four, else a fifth and
-/// four fifths of the length; centre of mass 0.58 of the wheelbase before the rear axle (58 % of
-/// the load on the front axle, as passenger cars with front engines stand); radius of gyration
-/// 0.29 of the length in yaw, as published for a mid-size saloon of 4.84 m, 1,621 kg and 3,167
-/// kg·m². Other kinds: the middle of the box, and the inertia of an even block over its box.
+///
+/// Axles of cars, trucks and buses: at the middles of the wheels where the lowest outlines show
+/// those of two axles; else at a fifth and four fifths of a car's length, and none for the others.
+///
+/// Centre of mass: the middle of the mesh's box, but for
+/// - cars, 0.58 of the wheelbase before the rear axle (58 % of the load on the front axle, as
+///   passenger cars with front engines stand);
+/// - bicycles, 0.385 of the length before the rear end (the benchmark bicycle with rider of
+///   Meijaard, Papadopoulos, Ruina and Schwab, Proc. R. Soc. A 463, 2007).
+///
+/// Radius of gyration in yaw:
+/// - cars, 0.29 of the length, as published for a saloon of 4.84 m, 1,621 kg and 3,167 kg·m²;
+/// - motorcycles with rider, 0.215 of the length: 0.45 m of a roadster of 2.1 m, 285 kg in all;
+/// - bicycles with rider, 0.15 of the length (the benchmark bicycle: 0.25 m of 1.67 m);
+/// - pedestrians, 0.077 of the height: standing adults measured 0.071 to 0.077 (Santschi, DuBois
+///   and Omoto, AMRL-TDR-63-36, 1963), the upper end since legs and arms are apart in walking;
+/// - poles, of an even cylinder; all others, of an even block over the box without mirrors, which a
+///   laden lorry is about.
+///
 /// `profile` null: made of the mesh. O(triangles). Errors: bad_input where no outline can be made,
-/// or where the inertia is more than a ring around the body or less than 1 % of an even rod's.
+/// or as `check_yaw_inertia` for a stated inertia.
 CRASHRANK_API Result<Vehicle> describe_vehicle(const TriangleMesh& mesh, const VehicleFacts& facts,
                                                std::shared_ptr<const Profile> profile = nullptr);
 
