@@ -78,6 +78,8 @@ ContactRun::ContactRun(const ContactBody& a, const ContactBody& b, View<const Co
   }
   energy_before_j_ = moving_j();
   speed_before_mps_ = relative_speed();
+  momentum_before_ns_ =
+      speed_before_mps_ / (start_first_.inverse_mass + start_second_.inverse_mass);
   const PlanarBody& p = start_first_;
   const PlanarBody& q = start_second_;
   speeds_before_mps_ = std::hypot(p.vx, p.vy) + std::hypot(q.vx, q.vy);
@@ -277,12 +279,14 @@ void ContactRun::move(double seconds) {
 
 void ContactRun::step() {
   // Ends: bodies that have travelled this far without force have parted; a force that gave less
-  // than this share of the impulse in such a time and travel has all but ended; bodies that never
+  // than this share of the impulse in such a time and travel has all but ended, once a share of
+  // the momentum at stake is taken (a faint clip may come before the crash); bodies that never
   // pressed within this travel brushed past each other.
   constexpr double parted_m = 0.15;
   constexpr double faded_s = 0.03;
   constexpr double faded_m = 0.1;
   constexpr double faded_share = 0.03;
+  constexpr double taken_share = 0.3;
   constexpr double missed_m = 0.5;
   constexpr double least_speed_mps = 0.5;
   const double last_s = step_s_;
@@ -335,7 +339,8 @@ void ContactRun::step() {
   }
   over_ = quiet_m_ > (acts_ ? parted_m : missed_m) || time_s_ > longest_contact_s;
   if (acts_ && time_s_ - late_from_s_ > faded_s && late_m_ > faded_m) {
-    over_ = over_ || late_ns_ < faded_share * impulse_ns_;
+    over_ = over_ || (late_ns_ < faded_share * impulse_ns_ &&
+                      impulse_ns_ > taken_share * momentum_before_ns_);
     late_ns_ = 0.0;
     late_from_s_ = time_s_;
     late_m_ = 0.0;

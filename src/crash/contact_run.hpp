@@ -125,6 +125,7 @@ private:
   double moved_m_ = 0.0;            ///< in the last step
   double energy_before_j_ = 0.0;
   double speed_before_mps_ = 0.0;
+  double momentum_before_ns_ = 0.0;  ///< of the bodies against each other
   double speeds_before_mps_ = 0.0;
   double lost_j_ = 0.0;      ///< since the last rebound
   double restored_j_ = 0.0;  ///< by rebounds

@@ -315,24 +315,26 @@ template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& 
   s.fresh = s.fresh + whole * fresh;
   s.power_own = s.power_own + power * own_share;
   s.power_friction = s.power_friction + rubbing * slip;
-  s.depth_own = maximum(s.depth_own, select(where, own_depth, zero));
-  own_bounds_.grow(where, px, py);
-  // No reach counts that is not crush, and none of what only slides past.
-  const auto intrusion = [&](F8 inside, F8 crushed, F8 normal_x, F8 normal_y) {
-    const F8 weight = normal_x * normal_x + flank * normal_y * normal_y;
-    return select(where, closing * minimum(inside, crushed / weight), zero);
+  // Along flanks less depth counts than there is. No reach counts that is not crush, and none of
+  // what only slides past.
+  const F8 own_crush = own_depth / (ahead + across);
+  const auto intrusion = [&](F8 inside, F8 crush) {
+    return select(where, closing * minimum(inside, crush), zero);
   };
+  s.depth_own = maximum(s.depth_own, select(where, own_crush, zero));
+  own_bounds_.grow(where, px, py);
   s.intrusion_own =
-      maximum(s.intrusion_own, intrusion(inside_compartment(own_, px, py, nx), own_depth, nx, ny));
+      maximum(s.intrusion_own, intrusion(inside_compartment(own_, px, py, nx), own_crush));
   if constexpr (both_yield) {
+    const F8 other_crush = other_depth / (own_nx * own_nx + flank * own_ny * own_ny);
     s.power_other = s.power_other + power * (one - own_share);
-    s.depth_other = maximum(s.depth_other, select(where, other_depth, zero));
+    s.depth_other = maximum(s.depth_other, select(where, other_crush, zero));
     other_bounds_.grow(where, own_x, own_y);
     const F8 back_x = own_x - other_depth * own_nx;
     const F8 back_y = own_y - other_depth * own_ny;
     s.intrusion_other =
-        maximum(s.intrusion_other, intrusion(inside_compartment(other_, back_x, back_y, -own_nx),
-                                             other_depth, own_nx, own_ny));
+        maximum(s.intrusion_other,
+                intrusion(inside_compartment(other_, back_x, back_y, -own_nx), other_crush));
   }
 }
 

@@ -35,10 +35,11 @@ void fill(const ContactBody& body, const Model& model, const BodyContact& from, 
   to.crush_energy_j = from.crush_energy_j;
   to.ees_mps = v.movable() ? std::sqrt(2.0 * from.crush_energy_j / v.mass_kg) : 0.0;
   to.intrusion_m = from.intrusion_m;
+  to.crush_m = from.crush_depth_m;
   if (from.damaged.empty()) return;
   const Box bounds = model.mesh.bounds();
-  to.crush_m = damage_depth_m(from.damaged, bounds);
-  to.cdc = cdc_code({to.pdof_deg, from.damaged, bounds, to.crush_m, slides});
+  to.cdc =
+      cdc_code({to.pdof_deg, from.damaged, bounds, damage_depth_m(from.damaged, bounds), slides});
 }
 
 }  // namespace
