@@ -143,7 +143,7 @@ TEST(ContactLaw, EveryContactEndsWithFiniteNumbers) {
         }
         const ContactOutcome r = simulate(scene, any_variant(i));
         // The longest that a contact is followed, and a step.
-        EXPECT_LT(r.duration_s, 1.505);
+        EXPECT_LE(r.duration_s, 1.5 + ContactOptions{}.longest_s);
         EXPECT_GE(r.duration_s, 0.0);
         EXPECT_LT(r.steps, 20000U);
         EXPECT_TRUE(r.point_m.allFinite());
