@@ -125,5 +125,28 @@ TEST(ContactLaw, ASmoothFlankTakesOnlyTheSpeedAcross) {
   }
 }
 
+TEST(ContactLaw, AFaintClipDoesNotHideTheCrashBehindIt) {
+  // Under the overhang of a lorry's side a saloon clips the guard's end with next to no force, and
+  // meets the box with its windscreen almost a metre further on.
+  const auto named = [](const char* name) -> const Vehicle& {
+    std::size_t i = 0;
+    while (company().any(i).name != name) ++i;
+    return company().any(i).vehicle;
+  };
+  for (const double aside : {1.45, 1.48, 1.50, 1.52}) {
+    double before = 0.0;
+    for (const double speed : {1.0, 2.0, 3.0, 5.0, 6.0, 8.0}) {
+      ContactScene scene;
+      scene.a = {&named("sedan"), test::flat_pose(0, 0, 0), {{speed, 0, 0}, {0, 0, 0}}};
+      scene.b = {&named("truck"), test::flat_pose(8.0, aside, 0.5 * detail::pi), {}};
+      ASSERT_TRUE(test::bring_together(scene, 0.001));
+      const double delta_v = simulate(scene).a.delta_v_mps.norm();
+      EXPECT_GT(delta_v, 0.5 * speed) << aside << " m aside at " << speed << " m/s";
+      EXPECT_GT(delta_v, before) << aside << " m aside at " << speed << " m/s";
+      before = delta_v;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace crashrank
