@@ -35,11 +35,12 @@ void fill(const ContactBody& body, const Model& model, const BodyContact& from, 
   to.crush_energy_j = from.crush_energy_j;
   to.ees_mps = v.movable() ? std::sqrt(2.0 * from.crush_energy_j / v.mass_kg) : 0.0;
   to.intrusion_m = from.intrusion_m;
-  to.crush_m = from.crush_depth_m;
   if (from.damaged.empty()) return;
   const Box bounds = model.mesh.bounds();
-  to.cdc =
-      cdc_code({to.pdof_deg, from.damaged, bounds, damage_depth_m(from.damaged, bounds), slides});
+  const double damage_m = damage_depth_m(from.damaged, bounds);
+  // What ploughs along a flank is deep below the front, but damage is no deeper than its bounds.
+  to.crush_m = std::min(from.crush_depth_m, damage_m);
+  to.cdc = cdc_code({to.pdof_deg, from.damaged, bounds, damage_m, slides});
 }
 
 }  // namespace

@@ -71,7 +71,9 @@ TEST(Footing, AStatedCentreOfMassShiftsTheLoads) {
 TEST(Footing, BodiesWithoutAxlesSlideOnTheMiddlesOfTheirQuarters) {
   for (const BodyKind kind : {BodyKind::motorcycle, BodyKind::bicycle, BodyKind::pedestrian,
                               BodyKind::truck, BodyKind::bus}) {
-    const Vehicle v = box_vehicle(kind, 2.0, 0.8, 1.5);
+    Vehicle v = box_vehicle(kind, 2.0, 0.8, 1.5);
+    v.wheelbase_m = 0.0;
+    v.center_m.x() = 1.0;  // the middle of the box
     const Footing f = detail::footing_of(v);
     EXPECT_FALSE(f.wheels);
     EXPECT_EQ(f.cornering, 0.0);
