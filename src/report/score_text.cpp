@@ -211,7 +211,8 @@ std::vector<std::string> harm_words(const HarmOptions& harm) {
       risk_outcome(harm.model), risk_model_name(harm.model), w.ego_occupant, w.other_occupant,
       w.pedestrian, w.cyclist, w.motorcyclist, w.property_per_mj));
   lines.push_back(
-      fmt::format("People: {:g} in the ego, {:g} in a car, {:g} in a truck, {:g} in a bus.",
+      fmt::format("People where the scenario states no occupants: {:g} in the ego, {:g} in a car, "
+                  "{:g} in a truck, {:g} in a bus.",
                   w.people_in_ego, w.people_in_car, w.people_in_truck, w.people_in_bus));
   lines.push_back(fmt::format(
       "Friction {:g} ({:g} to {:g}); ranges: stiffness x {:g} to {:g}, restitution x {:g} to {:g}, "

@@ -221,7 +221,11 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
   v.rear_axle_x_m = axles.rear_x_m;
   v.wheelbase_m = axles.wheelbase_m;
   v.center_m.x() = center_x(v.kind, axles, rear_x, size.x());
-  if (facts.center_of_mass_m) v.center_m = *facts.center_of_mass_m;
+  if (facts.center_of_mass_m) {
+    StatedMass center;
+    center.center_of_mass_m = v.center_m = *facts.center_of_mass_m;
+    if (Status status = check_stated_mass(center, box); !status) return status.error();
+  }
   if (v.movable()) {
     v.yaw_inertia_kgm2 = v.mass_kg * std::max(gyration2(v.kind, size), least_gyration2_m2);
     if (facts.yaw_inertia_kgm2) {

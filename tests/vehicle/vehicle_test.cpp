@@ -202,6 +202,20 @@ TEST(Vehicle, StatedFactsOverrideDerivedOnes) {
   EXPECT_EQ(stiff->mass_kg, v->mass_kg);
 }
 
+TEST(Vehicle, ACentreOfMassOutsideTheBodyIsRefused) {
+  const TriangleMesh mesh = test::box_mesh({2.0, 0.9, 0.7}, {2.0, 0.0, 0.7});
+  for (const Vector3d& center : {Vector3d(50, 0, 0.5), Vector3d(2, -1, 0.5), Vector3d(2, 0, -50)}) {
+    VehicleFacts facts;
+    facts.center_of_mass_m = center;
+    const Result<Vehicle> vehicle = describe_vehicle(mesh, facts);
+    ASSERT_FALSE(vehicle);
+    EXPECT_EQ(vehicle.error().code, ErrorCode::bad_input);
+  }
+  VehicleFacts facts;
+  facts.center_of_mass_m = Vector3d(1.5, 0.1, 0.4);
+  EXPECT_TRUE(describe_vehicle(mesh, facts));
+}
+
 TEST(Vehicle, AbsurdInertiaIsRefused) {
   VehicleFacts facts;
   facts.mass_kg = 1500.0;

@@ -68,7 +68,7 @@ struct Vehicle {
 ///   laden lorry is about.
 ///
 /// `profile` null: made of the mesh. O(triangles). Errors: bad_input where no outline can be made,
-/// or as `check_yaw_inertia` for a stated inertia.
+/// or as `check_yaw_inertia` and `check_stated_mass` for a stated inertia and centre of mass.
 CRASHRANK_API Result<Vehicle> describe_vehicle(const TriangleMesh& mesh, const VehicleFacts& facts,
                                                std::shared_ptr<const Profile> profile = nullptr);
 
