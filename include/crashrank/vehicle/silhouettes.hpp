@@ -50,7 +50,7 @@ struct alignas(64) PieceRows {
   std::array<float, block_pieces> y{};         ///< m
   std::array<float, block_pieces> normal_x{};  ///< unit, outward
   std::array<float, block_pieces> normal_y{};  ///< unit, outward
-  std::array<float, block_pieces> length_m{};
+  std::array<float, block_pieces> length_m{};  ///< m
   /// The body's chords through the piece along x and across, blended as depths are by the squares
   /// of its normal, those across times `flank_share`, m.
   std::array<float, block_pieces> thickness_m{};
