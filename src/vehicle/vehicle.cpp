@@ -146,8 +146,9 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
       return strength;
     case BodyKind::motorcycle:
       // Fork and front wheel, 0.12 m wide, shorten by about 0.03 m for each m/s above 3 in barrier
-      // tests (Severy 1970: a third of a metre at 13 m/s): mass · 3 / 0.03 over the width, and mass
-      // / 0.03², of the machine without its rider, which leaves it; then the engine follows.
+      // tests (a third of a metre at 13 m/s; Severy 1970, from memory): mass · 3 / 0.03 over the
+      // width, and mass / 0.03², of the machine without its rider, which leaves it; then the engine
+      // follows.
       strength = even_strength(10e3, 200e3, 0.35, size.z());
       strength.front.yield_npm = 160e3;
       strength.front.slope_npm2 = 1.7e6;
