@@ -17,8 +17,9 @@ function(crashrank_compile target)
     -Wold-style-cast -Woverloaded-virtual
     -ffp-contract=off $<$<BOOL:${CRASHRANK_WERROR}>:-Werror>)
   if(CMAKE_UNITY_BUILD)
-    # GCC 12 takes a header's names for a source's own, and sees less of what is set where.
-    target_compile_options(${target} PRIVATE
+    # GCC 12 takes a header's names for a source's own, and sees less of what is set where. A local
+    # name that hides a neighbour's constant hides nothing where each source is compiled alone.
+    target_compile_options(${target} PRIVATE -Wno-shadow
       $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage -Wno-maybe-uninitialized>)
   endif()
   set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden
