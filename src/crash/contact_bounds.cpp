@@ -11,8 +11,8 @@ namespace crashrank::detail {
 
 double ContactRun::most_speed_mps() const {
   constexpr double most_restored = 0.25;
-  const PlanarBody& p = state_.bodies[0].motion;
-  const PlanarBody& q = state_.bodies[1].motion;
+  const PlanarBody& p = motion_of(first_);
+  const PlanarBody& q = motion_of(second());
   const double inverse = p.inverse_mass + q.inverse_mass;
   const auto turning = [](const PlanarBody& body) {
     return body.inverse_inertia > 0.0 ? body.spin * body.spin / body.inverse_inertia : 0.0;
@@ -26,32 +26,30 @@ double ContactRun::most_speed_mps() const {
 
 double ContactRun::most_left_ns() const {
   const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
+      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   if (over_ || !(inverse > 0.0)) return 0.0;
   return ((1.0 + 1e-9) * relative_speed() + most_speed_mps()) / inverse;
 }
 
 double ContactRun::rounding_ns() const {
   const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
+      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   return inverse > 0.0 ? 1e-12 * speeds_before_mps_ / inverse : 0.0;
 }
 
 double ContactRun::least_whole_ns() const {
   const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
+      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   if (!(inverse > 0.0)) return 0.0;
   return std::max(0.0, (1.0 - 1e-9) * speed_before_mps_ - most_speed_mps()) / inverse;
 }
 
 double ContactRun::most_whole_ns() const {
   const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
+      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   if (!(inverse > 0.0)) return 0.0;
   return ((1.0 + 1e-9) * speed_before_mps_ + most_speed_mps()) / inverse;
 }
-
-double ContactRun::dissipated_j() const { return std::max(0.0, energy_before_j_ - moving_j()); }
 
 double ContactRun::least_whole_j() const {
   constexpr double most_restored = 0.25;
@@ -64,7 +62,7 @@ double ContactRun::most_whole_j() const {
   if (over_) return lost;
   const double most = most_speed_mps();
   const double inverse =
-      state_.bodies[0].motion.inverse_mass + state_.bodies[1].motion.inverse_mass;
+      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   return lost + 0.5 * most * most / inverse + rounding_j();
 }
 

@@ -1,6 +1,6 @@
 #include "crashrank/crash/contact_law.hpp"
 
-#include "crash/contact_run.hpp"
+#include "crash/lone_contact.hpp"
 
 #include <limits>
 
@@ -11,16 +11,35 @@ ContactWorkspace::~ContactWorkspace() = default;
 ContactWorkspace::ContactWorkspace(ContactWorkspace&&) noexcept = default;
 ContactWorkspace& ContactWorkspace::operator=(ContactWorkspace&&) noexcept = default;
 
+void ContactWorkspace::State::begin() {
+  bodies.clear();
+  pairs_in_use = 0;
+}
+
+void ContactWorkspace::State::add_body(const ContactBody& body, const Eigen::Vector3d& origin_m,
+                                       const ContactVariant& variant) {
+  bodies.push_back({body.vehicle,
+                    {body.vehicle->strength, variant.strength},
+                    detail::make_planar(body, origin_m)});
+}
+
+std::uint32_t ContactWorkspace::State::take_pair(std::size_t first, std::size_t second) {
+  if (pairs_in_use == pairs.size()) pairs.emplace_back();
+  detail::BodyPair& pair = pairs[pairs_in_use];
+  pair.of_first.resize(bodies[first].vehicle->profile->pieces.size());
+  pair.of_second.resize(bodies[second].vehicle->profile->pieces.size());
+  pair.begin(static_cast<std::uint32_t>(second));
+  return static_cast<std::uint32_t>(pairs_in_use++);
+}
+
 void ContactWorkspace::prepare(std::size_t pieces, std::size_t fixed_bodies) {
-  const std::size_t bodies = fixed_bodies + 2;
   State& state = *state_;
-  if (state.near.size() < bodies) state.near.resize(bodies);
-  for (detail::NearPieces& near : state.near) near.resize(pieces);
-  state.bodies.reserve(bodies);
-  state.records.reserve(bodies);
-  state.forces.reserve(bodies);
-  state.impulses.reserve(bodies);
-  state.pressed.reserve(bodies);
+  state.bodies.reserve(fixed_bodies + 2);
+  if (state.pairs.size() < fixed_bodies + 1) state.pairs.resize(fixed_bodies + 1);
+  for (detail::BodyPair& pair : state.pairs) {
+    pair.of_first.resize(pieces);
+    pair.of_second.resize(pieces);
+  }
 }
 
 double friction_between(Surface a, Surface b) noexcept {
@@ -39,7 +58,7 @@ ContactOutcome simulate_contact(const ContactBody& a, const ContactBody& b,
                                 View<const ContactBody> fixed, const Eigen::Vector3d& point_m,
                                 const ContactVariant& variant, ContactWorkspace& workspace,
                                 const ContactOptions& options) {
-  detail::ContactRun run(a, b, fixed, point_m, variant, options, workspace);
+  detail::LoneContact run(a, b, fixed, point_m, variant, options, workspace);
   run.advance(std::numeric_limits<int>::max());
   return run.outcome();
 }

@@ -30,185 +30,215 @@ double rim_of(const Vehicle& v) {
 
 }  // namespace
 
-bool can_press(const ContactBody& a, const ContactBody& b) {
-  return (a.vehicle->movable() || b.vehicle->movable()) &&
-         (!a.vehicle->strength.rigid || !b.vehicle->strength.rigid);
+bool can_press(const Vehicle& a, const Vehicle& b) {
+  return (a.movable() || b.movable()) && (!a.strength.rigid || !b.strength.rigid);
 }
 
-ContactRun::ContactRun(const ContactBody& a, const ContactBody& b, View<const ContactBody> fixed,
-                       const Vector3d& point_m, const ContactVariant& variant,
-                       const ContactOptions& options, ContactWorkspace& workspace)
-    : options_(options),
-      variant_(variant),
-      swapped_(goes_second(a, b)),
-      origin_m_(point_m.x(), point_m.y(), 0.0),
-      state_(workspace.state()) {
-  given_first_ = swapped_ ? b : a;
-  given_second_ = swapped_ ? a : b;
-  const std::size_t others = 1 + (given_second_.vehicle->movable() ? 0 : fixed.size());
-  state_.bodies.clear();
-  const auto add = [&](const ContactBody& body) {
-    state_.bodies.push_back(
-        {body.vehicle, {body.vehicle->strength, variant.strength}, make_planar(body, origin_m_)});
-  };
-  add(given_first_);
-  add(given_second_);
-  for (std::size_t k = 1; k < others; ++k) add(fixed[k - 1]);
-  std::size_t pieces = 0;
-  for (const PressedBody& body : state_.bodies) {
-    pieces = std::max(pieces, body.vehicle->profile->pieces.size());
-  }
-  if (state_.near.size() < others + 1) state_.near.resize(others + 1);
-  for (std::size_t k = 0; k <= others; ++k) {
-    state_.near[k].resize(pieces);
-    state_.near[k].begin();
-  }
-  state_.records.assign(others + 1, {});
-  state_.forces.assign(others + 1, {});
-  state_.impulses.assign(others + 1, {});
-  state_.pressed.assign(others + 1, 0);
+void BodyPair::begin(std::uint32_t other) {
+  second = other;
+  of_first.begin();
+  of_second.begin();
+  in_first = {};
+  in_second = {};
+  on_second = {};
+  since_rebound = {};
+  impulse_on_second = {};
+  pressed = false;
+}
 
-  start_first_ = end_first_ = state_.bodies[0].motion;
-  start_second_ = end_second_ = state_.bodies[1].motion;
-  record_.begin(start_first_, start_second_);
-  friction_ = friction_between(given_first_.vehicle->surface, given_second_.vehicle->surface);
-  rim_m_ = rim_of(*given_first_.vehicle);
-  if (given_second_.vehicle->movable()) {
-    rim_m_ = std::max(rim_m_, rim_of(*given_second_.vehicle));
-  }
+void ContactRun::begin(ContactWorkspace::State& state, std::size_t first, std::uint32_t pair,
+                       const ContactBody& given_first, const ContactBody& given_second,
+                       const Vector3d& origin_m, const ContactVariant& variant,
+                       const ContactOptions& options) {
+  *this = {};
+  state_ = &state;
+  options_ = options;
+  variant_ = variant;
+  given_first_ = given_first;
+  given_second_ = given_second;
+  origin_m_ = origin_m;
+  first_ = first;
+  add(pair);
+  const PlanarBody& p = motion_of(first_);
+  const PlanarBody& q = motion_of(second());
+  start_first_ = end_first_ = p;
+  start_second_ = end_second_ = q;
+  record_.begin(p, q);
+  rim_m_ = rim_of(*given_first.vehicle);
+  if (given_second.vehicle->movable()) rim_m_ = std::max(rim_m_, rim_of(*given_second.vehicle));
   energy_before_j_ = moving_j();
   speed_before_mps_ = relative_speed();
-  momentum_before_ns_ =
-      speed_before_mps_ / (start_first_.inverse_mass + start_second_.inverse_mass);
-  const PlanarBody& p = start_first_;
-  const PlanarBody& q = start_second_;
+  momentum_before_ns_ = speed_before_mps_ / (p.inverse_mass + q.inverse_mass);
   speeds_before_mps_ = std::hypot(p.vx, p.vy) + std::hypot(q.vx, q.vy);
   speed_mps_ = speed_at_rims();
-  over_ = !can_press(given_first_, given_second_);
+  over_ = !can_press(*given_first.vehicle, *given_second.vehicle);
+}
+
+bool ContactRun::add(std::uint32_t pair) {
+  if (pair_count_ == most_others) return false;
+  others_[pair_count_] = &state_->bodies[state_->pairs[pair].second];
+  pairs_[pair_count_++] = pair;
+  return true;
 }
 
 double ContactRun::relative_speed() const {
-  const PlanarBody& p = state_.bodies[0].motion;
-  const PlanarBody& q = state_.bodies[1].motion;
+  const PlanarBody& p = motion_of(first_);
+  const PlanarBody& q = motion_of(second());
   return std::hypot(p.vx - q.vx, p.vy - q.vy);
 }
 
 double ContactRun::speed_at_rims() const {
-  const PlanarBody& p = state_.bodies[0].motion;
-  const PlanarBody& q = state_.bodies[1].motion;
-  return relative_speed() + rim_m_ * std::abs(p.spin - q.spin);
+  return relative_speed() +
+         rim_m_ * std::abs(motion_of(first_).spin - motion_of(second()).spin);
 }
 
+/// Bodies that nothing moves have none, and so the others of several.
 double ContactRun::moving_j() const {
-  return state_.bodies[0].motion.energy() + state_.bodies[1].motion.energy();
+  return motion_of(first_).energy() + motion_of(second()).energy();
 }
 
-ContactRun::Totals ContactRun::feel() {
-  PressedBody& first = state_.bodies[0];
-  const std::size_t others = state_.bodies.size() - 1;
-  Totals totals;
-  std::fill(state_.forces.begin(), state_.forces.end(), PlanarForce{});
-  const auto add = [&](const PassSums& sums, bool own_is_first) {
-    totals.approaching = totals.approaching || sums.approaching;
-    totals.pressing += sums.pressing;
-    totals.closing += sums.closing;
-    totals.passing += sums.passing;
-    const double own_j = sums.power_own * step_s_;
-    const double other_j = sums.power_other * step_s_;
-    crush_first_j_ += own_is_first ? own_j : other_j;
-    crush_second_j_ += own_is_first ? other_j : own_j;
-    friction_j_ += sums.power_friction * step_s_;
-    depth_first_m_ = std::max(depth_first_m_, own_is_first ? sums.depth_own : sums.depth_other);
-    depth_second_m_ = std::max(depth_second_m_, own_is_first ? sums.depth_other : sums.depth_own);
-    totals.fresh += sums.fresh;
-    totals.weight += sums.weight;
-    totals.point_x += sums.point_x;
-    totals.point_y += sums.point_y;
-  };
+void ContactRun::add_sums(const PassSums& sums, bool own_is_first) {
+  Totals& totals = totals_;
+  totals.approaching = totals.approaching || sums.approaching;
+  totals.pressing += sums.pressing;
+  totals.closing += sums.closing;
+  totals.passing += sums.passing;
+  const double own_j = sums.power_own * step_s_;
+  const double other_j = sums.power_other * step_s_;
+  crush_first_j_ += own_is_first ? own_j : other_j;
+  crush_second_j_ += own_is_first ? other_j : own_j;
+  friction_j_ += sums.power_friction * step_s_;
+  depth_first_m_ = std::max(depth_first_m_, own_is_first ? sums.depth_own : sums.depth_other);
+  depth_second_m_ = std::max(depth_second_m_, own_is_first ? sums.depth_other : sums.depth_own);
+  totals.fresh += sums.fresh;
+  totals.weight += sums.weight;
+  totals.point_x += sums.point_x;
+  totals.point_y += sums.point_y;
+}
+
+void ContactRun::feel_pair(BodyPair& pair, std::size_t place, PassSettings& settings) {
+  PressedBody& first = state_->bodies[first_];
+  PressedBody& other = state_->bodies[pair.second];
+  const double base = friction_between(first.vehicle->surface, other.vehicle->surface);
+  settings.friction = static_cast<float>(base * variant_.friction);
+  const bool metals = first.vehicle->surface == Surface::sheet_metal &&
+                      other.vehicle->surface == Surface::sheet_metal;
+  settings.interlocked = metals ? interlocked_friction : 0.0F;
+  PlanarForce on_first;
+  double pressing = 0.0;
+  if (!first.response.rigid) {
+    settings.neighbours = {others_.data(), pair_count_ > 1 ? pair_count_ : 0};
+    settings.self = place;
+    PassSums sums;
+    press_pieces(other, first, settings, moved_m_, pair.of_second, sums, pair.in_first);
+    pieces_ += pair.of_second.pieces;
+    add_sums(sums, true);
+    on_first = sums.on_pressed;
+    pressing += sums.pressing;
+  }
+  if (!other.response.rigid) {
+    settings.neighbours = {};
+    PassSums sums;
+    press_pieces(first, other, settings, moved_m_, pair.of_first, sums, pair.in_second);
+    pieces_ += pair.of_first.pieces;
+    add_sums(sums, false);
+    on_first.x -= sums.on_pressed.x;
+    on_first.y -= sums.on_pressed.y;
+    on_first.moment -= sums.on_pressed.moment;
+    pressing += sums.pressing;
+  }
+  if (pressing > 0.0) pair.pressed = true;
+  // Moments about the origin become those about the centres of mass.
+  const PlanarBody& p = first.motion;
+  const PlanarBody& q = other.motion;
+  on_first_.x += on_first.x;
+  on_first_.y += on_first.y;
+  on_first_.moment += on_first.moment - (p.x * on_first.y - p.y * on_first.x);
+  pair.on_second = {-on_first.x, -on_first.y,
+                    -(on_first.moment - (q.x * on_first.y - q.y * on_first.x))};
+}
+
+double ContactRun::next_step_s() const {
+  double step_s = std::clamp(options_.travel_m / std::max(speed_mps_, 1e-3), options_.shortest_s,
+                             options_.longest_s);
+  if (acceleration_mps2_ > 0.0) {
+    step_s = std::max(0.25 * options_.shortest_s,
+                      std::min(step_s, options_.speed_change * speed_mps_ / acceleration_mps2_));
+  }
+  return step_s;
+}
+
+void ContactRun::feel(double step_s) {
+  since_s_ = 0.5 * (step_s_ + step_s);
+  step_s_ = step_s;
+  totals_ = {};
+  on_first_ = {};
   PassSettings settings;
   settings.step_s = step_s_;
   settings.since_s = since_s_;
-  for (std::size_t k = 1; k <= others; ++k) {
-    PressedBody& other = state_.bodies[k];
-    const double base = friction_between(first.vehicle->surface, other.vehicle->surface);
-    settings.friction = static_cast<float>(base * variant_.friction);
-    const bool metals = first.vehicle->surface == Surface::sheet_metal &&
-                        other.vehicle->surface == Surface::sheet_metal;
-    settings.interlocked = metals ? interlocked_friction : 0.0F;
-    PlanarForce on_first;
-    double pressing = 0.0;
-    if (!first.response.rigid) {
-      settings.neighbours = {state_.bodies.data() + 1, others > 1 ? others : 0};
-      settings.self = k - 1;
-      PassSums sums;
-      press_pieces(other, first, settings, moved_m_, state_.near[k], sums, state_.records[k]);
-      pieces_ += state_.near[k].pieces;
-      add(sums, true);
-      on_first = sums.on_pressed;
-      pressing += sums.pressing;
-    }
-    if (!other.response.rigid) {
-      settings.neighbours = {};
-      PassSums sums;
-      press_pieces(first, other, settings, moved_m_, state_.near[0], sums, state_.records[0]);
-      pieces_ += state_.near[0].pieces;
-      add(sums, false);
-      on_first.x -= sums.on_pressed.x;
-      on_first.y -= sums.on_pressed.y;
-      on_first.moment -= sums.on_pressed.moment;
-      pressing += sums.pressing;
-    }
-    if (pressing > 0.0) state_.pressed[k] = 1;
-    // Moments about the point of first contact become those about the centres of mass.
-    const PlanarBody& p = first.motion;
-    const PlanarBody& q = other.motion;
-    PlanarForce& on = state_.forces[0];
-    on.x += on_first.x;
-    on.y += on_first.y;
-    on.moment += on_first.moment - (p.x * on_first.y - p.y * on_first.x);
-    state_.forces[k] = {-on_first.x, -on_first.y,
-                        -(on_first.moment - (q.x * on_first.y - q.y * on_first.x))};
+  for (std::size_t k = 0; k < pair_count_; ++k) {
+    feel_pair(state_->pairs[pairs_[k]], k, settings);
   }
-  return totals;
 }
 
-/// How the energy changes along a share k of forces or impulses: slope·k + bend·k²/2.
-ContactRun::EnergyChange ContactRun::energy_along(const std::vector<PlanarForce>& on) const {
-  EnergyChange change;
-  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
-    const PlanarBody& body = state_.bodies[k].motion;
-    const PlanarForce& f = on[k];
-    change.slope += f.x * body.vx + f.y * body.vy + f.moment * body.spin;
-    change.bend +=
-        (f.x * f.x + f.y * f.y) * body.inverse_mass + f.moment * f.moment * body.inverse_inertia;
-  }
-  return change;
+void ContactRun::EnergyChange::add(const PlanarBody& body, const PlanarForce& f) {
+  slope += f.x * body.vx + f.y * body.vy + f.moment * body.spin;
+  bend += (f.x * f.x + f.y * f.y) * body.inverse_mass + f.moment * f.moment * body.inverse_inertia;
 }
 
-/// Applies the forces for the step, but no longer than until the energy is least: so none is ever
-/// gained, however stiff what was met is.
+namespace {
+
+void push_by(PlanarBody& body, const PlanarForce& f, double share, PlanarForce& sum) {
+  body.push(share * f.x, share * f.y, share * f.moment);
+  sum.x += share * f.x;
+  sum.y += share * f.y;
+  sum.moment += share * f.moment;
+}
+
+/// A moment about a body's centre of mass becomes that about the origin, or back with -1.
+double about_origin(const PlanarBody& body, const PlanarForce& f, double sign) {
+  return f.moment + sign * (body.x * f.y - body.y * f.x);
+}
+
+}  // namespace
+
+/// Applies the forces for the step, but no longer than until the energy is least along them: how it
+/// changes along a share k of them is slope·k + bend·k²/2. So none is ever gained, however stiff
+/// what was met is.
 void ContactRun::push() {
-  const auto [slope, bend] = energy_along(state_.forces);
-  const PlanarBody& p = state_.bodies[0].motion;
-  const PlanarBody& q = state_.bodies[1].motion;
-  const PlanarForce& on = state_.forces[0];
-  const double force = std::hypot(on.x, on.y);
-  acceleration_mps2_ = force * (p.inverse_mass + q.inverse_mass) +
-                       rim_m_ * (std::abs(on.moment) * p.inverse_inertia +
-                                 std::abs(state_.forces[1].moment) * q.inverse_inertia);
-  double seconds = 0.0;
-  if (slope < 0.0 && bend > 0.0) seconds = std::min(step_s_, -slope / bend);
-  const double before = moving_j();
-  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
-    const PlanarForce& f = state_.forces[k];
-    state_.bodies[k].motion.push(seconds * f.x, seconds * f.y, seconds * f.moment);
-    PlanarForce& sum = state_.impulses[k];
-    sum.x += seconds * f.x;
-    sum.y += seconds * f.y;
-    const PlanarBody& at = state_.bodies[k].motion;
-    sum.moment += seconds * (f.moment + at.x * f.y - at.y * f.x);
+  EnergyChange change;
+  change.add(motion_of(first_), on_first_);
+  for (const std::uint32_t k : pairs()) {
+    change.add(motion_of(state_->pairs[k].second), state_->pairs[k].on_second);
   }
-  lost_j_ += before - moving_j();
+  const PlanarBody& p = motion_of(first_);
+  const PlanarBody& q = motion_of(second());
+  const double force = std::hypot(on_first_.x, on_first_.y);
+  acceleration_mps2_ =
+      force * (p.inverse_mass + q.inverse_mass) +
+      rim_m_ *
+          (std::abs(on_first_.moment) * p.inverse_inertia +
+           std::abs(state_->pairs[pairs_[0]].on_second.moment) * q.inverse_inertia);
+  double seconds = 0.0;
+  if (change.slope < 0.0 && change.bend > 0.0) {
+    seconds = std::min(step_s_, -change.slope / change.bend);
+  }
+  const double before = moving_j();
+  const auto push_one = [&](PlanarBody& body, const PlanarForce& f, PlanarForce& whole,
+                            PlanarForce& since) {
+    push_by(body, f, seconds, whole);
+    since.x += seconds * f.x;
+    since.y += seconds * f.y;
+    since.moment += seconds * about_origin(body, f, 1.0);
+  };
+  push_one(motion_of(first_), on_first_, impulse_on_first_, since_rebound_);
+  for (const std::uint32_t k : pairs()) {
+    BodyPair& pair = state_->pairs[k];
+    push_one(motion_of(pair.second), pair.on_second, pair.impulse_on_second, pair.since_rebound);
+  }
+  const double lost = before - moving_j();
+  lost_j_ += lost;
+  dissipated_j_ += lost;
   const double impulse = seconds * force;
   impulse_ns_ += impulse;
   late_ns_ += impulse;
@@ -217,35 +247,38 @@ void ContactRun::push() {
   if (impulse > nothing * impulse_ns_) quiet_m_ = 0.0;
 }
 
-ContactRun::AtForce ContactRun::at_force(const Totals& totals) const {
-  const PlanarForce& on = state_.forces[0];
-  const double force = std::hypot(on.x, on.y);
-  if (!(totals.weight > 0.0) || !(force > 0.0)) return {};
-  const double x = totals.point_x / totals.weight;
-  const double y = totals.point_y / totals.weight;
-  const PlanarBody& p = state_.bodies[0].motion;
-  const PlanarBody& q = state_.bodies[1].motion;
+ContactRun::AtForce ContactRun::at_force() const {
+  const double force = std::hypot(on_first_.x, on_first_.y);
+  if (!(totals_.weight > 0.0) || !(force > 0.0)) return {};
+  const double x = totals_.point_x / totals_.weight;
+  const double y = totals_.point_y / totals_.weight;
+  const PlanarBody& p = motion_of(first_);
+  const PlanarBody& q = motion_of(second());
   const double vx = p.vx - p.spin * (y - p.y) - (q.vx - q.spin * (y - q.y));
   const double vy = p.vy + p.spin * (x - p.x) - (q.vy + q.spin * (x - q.x));
-  return {-(vx * on.x + vy * on.y) / force, std::hypot(vx, vy)};
+  return {-(vx * on_first_.x + vy * on_first_.y) / force, std::hypot(vx, vy)};
 }
 
 /// Greatest compression: what is left of the closing speed is taken out along the impulse until
 /// then, and the restitution's share of that impulse is given back, once; less where the contact
 /// slides, where it has all but ended, and where it would give back more energy than e².
-void ContactRun::rebound(const Totals& totals, double passing_mps) {
+void ContactRun::rebound(double passing_mps) {
   const double sticks =
       std::clamp(1.0 - passing_mps / (slipping_share * most_passing_mps_), 0.0, 1.0);
   const double e =
       std::min(most_restitution, restitution_at(most_closing_mps_) * variant_.restitution *
-                                     (totals.fresh / totals.pressing) *
-                                     std::min(1.0, totals.pressing / most_pressing_) * sticks);
-  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
-    const PlanarBody& body = state_.bodies[k].motion;
-    PlanarForce& i = state_.impulses[k];
-    i.moment -= body.x * i.y - body.y * i.x;
+                                     (totals_.fresh / totals_.pressing) *
+                                     std::min(1.0, totals_.pressing / most_pressing_) * sticks);
+  EnergyChange change;
+  const auto prepare = [&](const PlanarBody& body, PlanarForce& since) {
+    since.moment = about_origin(body, since, -1.0);
+    change.add(body, since);
+  };
+  prepare(motion_of(first_), since_rebound_);
+  for (const std::uint32_t k : pairs()) {
+    prepare(motion_of(state_->pairs[k].second), state_->pairs[k].since_rebound);
   }
-  auto [slope, bend] = energy_along(state_.impulses);
+  auto [slope, bend] = change;
   if (!(bend > 0.0)) return;
   constexpr double most_left = 0.3;
   const double rest = sticks * std::clamp(-slope / bend, 0.0, most_left);
@@ -259,25 +292,53 @@ void ContactRun::rebound(const Totals& totals, double passing_mps) {
   }
   share = rest + std::clamp(share, 0.0, e) * (1.0 + rest);
   const double before = moving_j();
-  for (std::size_t k = 0; k < state_.bodies.size(); ++k) {
-    const PlanarForce& i = state_.impulses[k];
-    state_.bodies[k].motion.push(share * i.x, share * i.y, share * i.moment);
+  push_by(motion_of(first_), since_rebound_, share, impulse_on_first_);
+  since_rebound_ = {};
+  for (const std::uint32_t k : pairs()) {
+    BodyPair& pair = state_->pairs[k];
+    push_by(motion_of(pair.second), pair.since_rebound, share, pair.impulse_on_second);
+    pair.since_rebound = {};
   }
-  const double gained = moving_j() - before;
-  if (gained > 0.0) restored_j_ += gained;
+  dissipated_j_ += before - moving_j();
   restitution_ = std::max(restitution_, e);
-  std::fill(state_.impulses.begin(), state_.impulses.end(), PlanarForce{});
   lost_j_ = 0.0;
   most_pressing_ = 0.0;
   most_closing_mps_ = 0.0;
   most_passing_mps_ = 0.0;
 }
 
-void ContactRun::move(double seconds) {
-  for (PressedBody& body : state_.bodies) body.motion.move(seconds);
+void ContactRun::press() {
+  constexpr double least_speed_mps = 0.5;
+  // Material of the two near each other, which may lie as far from one centre of mass as from the
+  // other: no faster than this.
+  const PlanarBody& p = motion_of(first_);
+  const PlanarBody& q = motion_of(second());
+  moved_m_ = step_s_ * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
+  acceleration_mps2_ = 0.0;
+  if (totals_.approaching) quiet_m_ = 0.0;
+  quiet_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
+  late_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
+  if (presses()) {
+    acts_ = true;
+    const double closing = totals_.closing / totals_.pressing;
+    const double passing = totals_.passing / totals_.pressing;
+    most_pressing_ = std::max(most_pressing_, totals_.pressing);
+    most_closing_mps_ = std::max(most_closing_mps_, closing);
+    most_passing_mps_ = std::max(most_passing_mps_, passing);
+    fastest_passing_mps_ = std::max(fastest_passing_mps_, passing);
+    closing_mps_ = std::max(closing_mps_, closing);
+    point_x_ += step_s_ * totals_.point_x;
+    point_y_ += step_s_ * totals_.point_y;
+    point_weight_ += step_s_ * totals_.weight;
+    push();
+    const AtForce now = at_force();
+    last_passing_mps_ = now.passing_mps;
+    if (now.closing_mps < at_rest * most_closing_mps_ && lost_j_ > 0.0) rebound(now.passing_mps);
+  }
+  speed_mps_ = speed_at_rims();
 }
 
-void ContactRun::step() {
+void ContactRun::end_step() {
   // Ends: bodies that have travelled this far without force have parted; a force that gave less
   // than this share of the impulse in such a time and travel has all but ended, once a share of
   // the momentum at stake is taken (a faint clip may come before the crash); bodies that never
@@ -288,53 +349,12 @@ void ContactRun::step() {
   constexpr double faded_share = 0.03;
   constexpr double taken_share = 0.3;
   constexpr double missed_m = 0.5;
-  constexpr double least_speed_mps = 0.5;
-  const double last_s = step_s_;
-  step_s_ = std::clamp(options_.travel_m / std::max(speed_mps_, 1e-3), options_.shortest_s,
-                       options_.longest_s);
-  if (acceleration_mps2_ > 0.0) {
-    step_s_ = std::max(0.25 * options_.shortest_s,
-                       std::min(step_s_, options_.speed_change * speed_mps_ / acceleration_mps2_));
-  }
-  since_s_ = 0.5 * (last_s + step_s_);
-  move(0.5 * step_s_);
-  const Totals totals = feel();
-  // Material of the two near each other, which may lie as far from one centre of mass as from the
-  // other: no faster than this.
-  const PlanarBody& p = state_.bodies[0].motion;
-  const PlanarBody& q = state_.bodies[1].motion;
-  moved_m_ = step_s_ * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
-  acceleration_mps2_ = 0.0;
-  if (totals.approaching) quiet_m_ = 0.0;
-  quiet_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
-  late_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
-  if (totals.pressing > 0.0) {
-    acts_ = true;
-    const double closing = totals.closing / totals.pressing;
-    const double passing = totals.passing / totals.pressing;
-    most_pressing_ = std::max(most_pressing_, totals.pressing);
-    most_closing_mps_ = std::max(most_closing_mps_, closing);
-    most_passing_mps_ = std::max(most_passing_mps_, passing);
-    fastest_passing_mps_ = std::max(fastest_passing_mps_, passing);
-    closing_mps_ = std::max(closing_mps_, closing);
-    point_x_ += step_s_ * totals.point_x;
-    point_y_ += step_s_ * totals.point_y;
-    point_weight_ += step_s_ * totals.weight;
-    push();
-    const AtForce now = at_force(totals);
-    last_passing_mps_ = now.passing_mps;
-    if (now.closing_mps < at_rest * most_closing_mps_ && lost_j_ > 0.0) {
-      rebound(totals, now.passing_mps);
-    }
-  }
-  speed_mps_ = speed_at_rims();
-  move(0.5 * step_s_);
   time_s_ += step_s_;
   ++steps_;
-  if (totals.pressing > 0.0) {
+  if (presses()) {
     duration_s_ = time_s_;
-    end_first_ = state_.bodies[0].motion;
-    end_second_ = state_.bodies[1].motion;
+    end_first_ = motion_of(first_);
+    end_second_ = motion_of(second());
     record_.add(time_s_, end_first_, end_second_);
   }
   over_ = quiet_m_ > (acts_ ? parted_m : missed_m) || time_s_ > longest_contact_s;
@@ -345,11 +365,6 @@ void ContactRun::step() {
     late_from_s_ = time_s_;
     late_m_ = 0.0;
   }
-}
-
-bool ContactRun::advance(int steps) {
-  for (int i = 0; i < steps && !over_; ++i) step();
-  return !over_;
 }
 
 }  // namespace crashrank::detail

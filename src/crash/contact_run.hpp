@@ -7,45 +7,97 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace crashrank {
+namespace detail {
+
+/// What is remembered of two bodies' outlines in each other, and what they do to each other.
+struct BodyPair {
+  std::uint32_t second = 0;  ///< index of the other body; that of the first is the contact's
+  NearPieces of_first;       ///< pieces of the first body in the second
+  NearPieces of_second;      ///< and of the second in the first
+  PassRecord in_first;       ///< of the second's pieces
+  PassRecord in_second;
+  PlanarForce on_second;          ///< in this step, about its centre of mass
+  PlanarForce since_rebound;      ///< impulse on the second, about the origin
+  PlanarForce impulse_on_second;  ///< in the whole contact, about its centre of mass
+  bool pressed = false;           ///< it bore a force
+
+  /// Forgets everything but its room.
+  void begin(std::uint32_t other);
+};
+
+}  // namespace detail
 
 /// Memory of simulations.
 struct ContactWorkspace::State {
-  std::vector<detail::PressedBody> bodies;    ///< the first, then those it meets
-  std::vector<detail::NearPieces> near;       ///< of each other in the first; then of the first
-  std::vector<detail::PassRecord> records;    ///< in the order of `near`
-  std::vector<detail::PlanarForce> forces;    ///< on each body, of a step
-  std::vector<detail::PlanarForce> impulses;  ///< on each body since the last rebound
-  std::vector<char> pressed;                  ///< by body: it bore a force
+  std::vector<detail::PressedBody> bodies;
+  std::vector<detail::BodyPair> pairs;  ///< the first `pairs_in_use`; the others are room
+  std::size_t pairs_in_use = 0;
+
+  /// Forgets bodies and pairs.
+  void begin();
+  /// Adds a body as it moves now, coordinates from `origin_m`.
+  void add_body(const ContactBody& body, const Eigen::Vector3d& origin_m,
+                const ContactVariant& variant);
+  /// A pair with nothing remembered and room for the outlines of both bodies; its index.
+  std::uint32_t take_pair(std::size_t first, std::size_t second);
 };
 
 namespace detail {
 
-/// No simulation of a contact goes on for longer than this and a step, s.
+/// No contact goes on for longer than this and a step, s.
 inline constexpr double longest_contact_s = 1.5;
 
-/// One contact, simulated some steps at a time.
+/// A contact of a body with another, or with several that nothing moves, while it goes on. Who owns
+/// the bodies moves them: by half a step before `feel` and by the other half after `press`.
 class ContactRun {
 public:
-  /// `workspace` serves one run at a time; vehicles and workspace outlive the run. `fixed` as in
-  /// `simulate_contact`.
-  ContactRun(const ContactBody& a, const ContactBody& b, View<const ContactBody> fixed,
-             const Eigen::Vector3d& point_m, const ContactVariant& variant,
-             const ContactOptions& options, ContactWorkspace& workspace);
+  /// Most bodies that press on the first at the same time.
+  static constexpr std::size_t most_others = 65;
 
-  /// Takes at most so many steps; false once the contact is over.
-  bool advance(int steps);
-  /// The outcome as far as the contact has come.
-  ContactOutcome outcome() const;
+  /// Begins with what moves now; `first` and `second` in the order of `goes_second`, indices into
+  /// the workspace's bodies, `pair` what is remembered of them. `given` are the two with their poses
+  /// as they are now. Workspace and vehicles outlive the run.
+  void begin(ContactWorkspace::State& state, std::size_t first, std::uint32_t pair,
+             const ContactBody& given_first, const ContactBody& given_second,
+             const Eigen::Vector3d& origin_m, const ContactVariant& variant,
+             const ContactOptions& options);
+  /// A further body that nothing moves, beside a second that nothing moves. False: there is no room.
+  bool add(std::uint32_t pair);
 
-  // Bounds that hold whatever follows. They rest on what every step keeps: momentum, no gain of
-  // energy but by one rebound, which restores at most `most_restored` of what was lost before it.
+  /// The step that the contact asks for, s.
+  double next_step_s() const;
+  /// The forces at the middle of a step.
+  void feel(double step_s);
+  /// Whether they press.
+  bool presses() const noexcept { return totals_.pressing > 0.0; }
+  /// Changes the bodies' velocities by them, and by the rebound where it is due.
+  void press();
+  /// Once the bodies have moved to the end of the step.
+  void end_step();
+  bool over() const noexcept { return over_; }
 
-  /// Impulse on A so far, world axes, N·s.
+  std::size_t first() const noexcept { return first_; }
+  /// Index of the body that it began with.
+  std::size_t second() const noexcept { return state_->pairs[pairs_[0]].second; }
+  View<const std::uint32_t> pairs() const noexcept { return {pairs_.data(), pair_count_}; }
+  bool acts() const noexcept { return acts_; }
+  /// Since its begin, s: now, and when a force last acted.
+  double time_s() const noexcept { return time_s_; }
+  double duration_s() const noexcept { return duration_s_; }
+  /// The outcome as far as the contact has come; `swapped`: the first is B.
+  ContactOutcome outcome(bool swapped) const;
+
+  // Bounds that hold whatever follows, for two bodies that nothing else pushes. They rest on what
+  // every step keeps: momentum, no gain of energy but by one rebound, which restores at most
+  // `most_restored` of what was lost before it.
+
+  /// Impulse on the first so far, world axes, N·s.
   Eigen::Vector3d impulse_ns() const;
   /// No more impulse can follow than this, N·s.
   double most_left_ns() const;
@@ -57,7 +109,7 @@ public:
   double rounding_ns() const;
   double rounding_j() const { return 1e-12 * energy_before_j_; }
   /// Kinetic energy lost so far, J.
-  double dissipated_j() const;
+  double dissipated_j() const { return std::max(0.0, dissipated_j_); }
   /// The whole loss is no smaller than this, J,
   double least_whole_j() const;
   /// and no larger than this.
@@ -80,42 +132,49 @@ private:
   struct EnergyChange {
     double slope = 0.0;
     double bend = 0.0;
+    void add(const PlanarBody& body, const PlanarForce& f);
   };
   /// Relative velocity where the force of a step acts.
   struct AtForce {
     double closing_mps = 0.0;  ///< against the force, positive while the bodies approach
     double passing_mps = 0.0;  ///< its length
   };
-  void step();
-  Totals feel();
-  EnergyChange energy_along(const std::vector<PlanarForce>& on) const;
+  const PlanarBody& motion_of(std::size_t body) const { return state_->bodies[body].motion; }
+  PlanarBody& motion_of(std::size_t body) { return state_->bodies[body].motion; }
+  void feel_pair(BodyPair& pair, std::size_t place, PassSettings& settings);
+  void add_sums(const PassSums& sums, bool own_is_first);
   void push();
-  AtForce at_force(const Totals& totals) const;
-  void rebound(const Totals& totals, double passing_mps);
-  void move(double seconds);
+  AtForce at_force() const;
+  void rebound(double passing_mps);
   double moving_j() const;
   double speed_at_rims() const;
   double relative_speed() const;
   double most_speed_mps() const;
-  BodyContact describe(std::size_t body, const ContactBody& given, bool is_first) const;
+  BodyContact describe(bool is_first) const;
 
+  ContactWorkspace::State* state_ = nullptr;
   ContactOptions options_;
   ContactVariant variant_;
   ContactBody given_first_;
   ContactBody given_second_;
-  bool swapped_ = false;  ///< the first is B
-  Eigen::Vector3d origin_m_;
-  ContactWorkspace::State& state_;
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
+  std::size_t first_ = 0;
+  std::size_t pair_count_ = 0;
+  std::array<std::uint32_t, most_others> pairs_{};
+  std::array<const PressedBody*, most_others> others_{};
   PlanarBody start_first_;
   PlanarBody start_second_;
   PlanarBody end_first_;  ///< when the force last acted
   PlanarBody end_second_;
   MotionRecord record_;
-  double friction_ = 0.3;
   double rim_m_ = 0.0;  ///< no outline is further from its body's centre of mass
 
   bool over_ = false;
   bool acts_ = false;
+  Totals totals_;                ///< of this step
+  PlanarForce on_first_;         ///< in this step, about its centre of mass
+  PlanarForce since_rebound_;    ///< impulse on the first, about the origin
+  PlanarForce impulse_on_first_;  ///< in the whole contact, about its centre of mass
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;
@@ -127,8 +186,8 @@ private:
   double speed_before_mps_ = 0.0;
   double momentum_before_ns_ = 0.0;  ///< of the bodies against each other
   double speeds_before_mps_ = 0.0;
-  double lost_j_ = 0.0;      ///< since the last rebound
-  double restored_j_ = 0.0;  ///< by rebounds
+  double dissipated_j_ = 0.0;
+  double lost_j_ = 0.0;  ///< since the last rebound
   double most_pressing_ = 0.0;
   double most_closing_mps_ = 0.0;
   double most_passing_mps_ = 0.0;
@@ -154,7 +213,7 @@ private:
 };
 
 /// Whether there is anything to simulate: a body that moves, and one that gives way.
-bool can_press(const ContactBody& a, const ContactBody& b);
+bool can_press(const Vehicle& a, const Vehicle& b);
 
 }  // namespace detail
 }  // namespace crashrank

@@ -73,7 +73,7 @@ bool is_hidden(const PressedBody& owner, const OutlinePiece& piece, std::size_t 
   const double y = p.y + p.sine * local_x + p.cosine * local_y;
   for (std::size_t k = 0; k < settings.neighbours.size(); ++k) {
     if (k == settings.self) continue;
-    const PressedBody& other = settings.neighbours[k];
+    const PressedBody& other = *settings.neighbours[k];
     const PlanarBody& q = other.motion;
     const double at_x = other.vehicle->center_m.x() + q.cosine * (x - q.x) + q.sine * (y - q.y);
     const double at_y = other.vehicle->center_m.y() - q.sine * (x - q.x) + q.cosine * (y - q.y);

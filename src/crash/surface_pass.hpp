@@ -52,7 +52,7 @@ struct PassSettings {
   double step_s = 0.001;
   double since_s = 0.001;  ///< from the last pass until this one
   /// Other bodies that nothing moves: pieces inside one of them do not press.
-  View<const PressedBody> neighbours;
+  View<const PressedBody* const> neighbours;
   std::size_t self = 0;  ///< the pressing body's place among them
 };
 

@@ -146,8 +146,9 @@ EgoAfterContact after_contact(const CrashSetup& crash, const ContactOutcome& out
 
 void add_pressed(const Scene& scene, const ContactWorkspace::State& state, const FixedGroup& group,
                  std::vector<std::size_t>& met) {
-  for (std::size_t k = 0; k < group.actors.size() && k + 2 < state.pressed.size(); ++k) {
-    if (state.pressed[k + 2] != 0) add_met(scene, group.actors[k], met);
+  // The first pair is that of the contact itself.
+  for (std::size_t k = 0; k < group.actors.size() && k + 1 < state.pairs_in_use; ++k) {
+    if (state.pairs[k + 1].pressed) add_met(scene, group.actors[k], met);
   }
 }
 

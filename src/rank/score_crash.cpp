@@ -1,6 +1,6 @@
 #include "rank/score_crash.hpp"
 
-#include "crash/contact_run.hpp"
+#include "crash/lone_contact.hpp"
 #include "rank/crash_setup.hpp"
 
 #include <algorithm>
@@ -19,19 +19,19 @@ CrashScore score_crash(const Scene& scene, const CrashQuery& q, const Watch& wat
   const CrashSetup crash =
       set_up_crash(scene, q.ego, q.contact, {met.data(), met.size()}, scratch.group);
   score.score = q.tally.bounds(scene, pending_at_contact(crash, q.contact), q.later);
-  ContactRun run(crash.a, crash.b, crash.fixed, q.contact.point_m, variant_of(scene.plain), {},
-                 scratch.workspace);
+  LoneContact run(crash.a, crash.b, crash.fixed, q.contact.point_m, variant_of(scene.plain), {},
+                  scratch.workspace);
   while (run.advance(steps_at_a_time)) {
-    const Range now = q.tally.bounds(scene, pending_in_run(crash, q.contact, run), q.later);
+    const Range now = q.tally.bounds(scene, pending_in_run(crash, q.contact, run.run()), q.later);
     score.score.least = std::max(score.score.least, now.least);
     score.score.most = std::min(score.score.most, now.most);
     const bool above = score.score.least > q.give_up_above;
     if (!above && !watch.expired()) continue;
     score.end = above ? CrashScore::End::given_up : CrashScore::End::stopped;
-    score.work = run.work();
+    score.work = run.run().work();
     return score;
   }
-  score.work = run.work();
+  score.work = run.run().work();
   const ContactOutcome outcome = run.outcome();
   add_pressed(scene, scratch.workspace.state(), scratch.group, met);
   score.effect = effect_of(q.contact, crash, outcome);
