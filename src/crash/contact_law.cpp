@@ -28,7 +28,7 @@ std::uint32_t ContactWorkspace::State::take_pair(std::size_t first, std::size_t 
   detail::BodyPair& pair = pairs[pairs_in_use];
   pair.of_first.resize(bodies[first].vehicle->profile->pieces.size());
   pair.of_second.resize(bodies[second].vehicle->profile->pieces.size());
-  pair.begin(static_cast<std::uint32_t>(second));
+  pair.begin(first, second);
   return static_cast<std::uint32_t>(pairs_in_use++);
 }
 

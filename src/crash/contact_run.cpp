@@ -34,10 +34,19 @@ bool can_press(const Vehicle& a, const Vehicle& b) {
   return (a.movable() || b.movable()) && (!a.strength.rigid || !b.strength.rigid);
 }
 
-void BodyPair::begin(std::uint32_t other) {
-  second = other;
+void BodyPair::begin(std::size_t a, std::size_t b) {
+  first = static_cast<std::uint32_t>(a);
+  second = static_cast<std::uint32_t>(b);
   of_first.begin();
   of_second.begin();
+  meet_again(left_at_step = 0);
+}
+
+void BodyPair::meet_again(std::uint64_t step) {
+  if (step > left_at_step + 1) {
+    of_first.resume();
+    of_second.resume();
+  }
   in_first = {};
   in_second = {};
   on_second = {};
@@ -156,6 +165,18 @@ void ContactRun::feel_pair(BodyPair& pair, std::size_t place, PassSettings& sett
   on_first_.moment += on_first.moment - (p.x * on_first.y - p.y * on_first.x);
   pair.on_second = {-on_first.x, -on_first.y,
                     -(on_first.moment - (q.x * on_first.y - q.y * on_first.x))};
+}
+
+std::size_t ContactRun::most_pressed() const {
+  std::size_t most = second();
+  double greatest = 0.0;
+  for (const std::uint32_t k : pairs()) {
+    const PlanarForce& impulse = state_->pairs[k].impulse_on_second;
+    const double size = std::hypot(impulse.x, impulse.y);
+    if (size > greatest) most = state_->pairs[k].second;
+    greatest = std::max(greatest, size);
+  }
+  return most;
 }
 
 double ContactRun::next_step_s() const {

@@ -17,7 +17,8 @@ namespace detail {
 
 /// What is remembered of two bodies' outlines in each other, and what they do to each other.
 struct BodyPair {
-  std::uint32_t second = 0;  ///< index of the other body; that of the first is the contact's
+  std::uint32_t first = 0;   ///< index of a body
+  std::uint32_t second = 0;  ///< and of the other
   NearPieces of_first;       ///< pieces of the first body in the second
   NearPieces of_second;      ///< and of the second in the first
   PassRecord in_first;       ///< of the second's pieces
@@ -26,9 +27,12 @@ struct BodyPair {
   PlanarForce since_rebound;      ///< impulse on the second, about the origin
   PlanarForce impulse_on_second;  ///< in the whole contact, about its centre of mass
   bool pressed = false;           ///< it bore a force
+  std::uint64_t left_at_step = 0;  ///< of the scene, when their last contact was over
 
   /// Forgets everything but its room.
-  void begin(std::uint32_t other);
+  void begin(std::size_t a, std::size_t b);
+  /// A further contact begins in a scene's step: what was crushed stays crushed.
+  void meet_again(std::uint64_t step);
 };
 
 }  // namespace detail
@@ -85,6 +89,11 @@ public:
   std::size_t first() const noexcept { return first_; }
   /// Index of the body that it began with.
   std::size_t second() const noexcept { return state_->pairs[pairs_[0]].second; }
+  /// Index of the body besides the first that took most impulse.
+  std::size_t most_pressed() const;
+  /// Both as they were when it began.
+  const ContactBody& given_first() const noexcept { return given_first_; }
+  const ContactBody& given_second() const noexcept { return given_second_; }
   View<const std::uint32_t> pairs() const noexcept { return {pairs_.data(), pair_count_}; }
   bool acts() const noexcept { return acts_; }
   /// Since its begin, s: now, and when a force last acted.

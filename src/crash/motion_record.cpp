@@ -2,8 +2,26 @@
 
 namespace crashrank::detail {
 
-MotionRecord::Place MotionRecord::place_of(const PlanarBody& body) {
-  return {body.x, body.y, body.cosine, body.sine};
+Pose moved_pose(const Pose& given, const Eigen::Vector3d& center, const PlanarPlace& start,
+                const PlanarPlace& now) {
+  Pose pose = given;
+  pose.translation.x() += now.x - start.x;
+  pose.translation.y() += now.y - start.y;
+  if (now.cosine == start.cosine && now.sine == start.sine) return pose;
+  // The origin turns about the centre of mass, as far as the heading has turned since the start.
+  pose.translation.x() +=
+      (start.cosine - now.cosine) * center.x() - (start.sine - now.sine) * center.y();
+  pose.translation.y() +=
+      (start.sine - now.sine) * center.x() + (start.cosine - now.cosine) * center.y();
+  const double cosine = now.cosine * start.cosine + now.sine * start.sine;
+  const double sine = now.sine * start.cosine - now.cosine * start.sine;
+  for (int column = 0; column < 3; ++column) {
+    const double x = given.rotation(0, column);
+    const double y = given.rotation(1, column);
+    pose.rotation(0, column) = cosine * x - sine * y;
+    pose.rotation(1, column) = sine * x + cosine * y;
+  }
+  return pose;
 }
 
 void MotionRecord::begin(const PlanarBody& first, const PlanarBody& second) {
@@ -28,37 +46,19 @@ void MotionRecord::add(double time_s, const PlanarBody& first, const PlanarBody&
   ++steps_;
 }
 
-Pose MotionRecord::pose_at(const ContactBody& given, const Place& start, const Place& now) {
-  Pose pose = given.pose;
-  pose.translation.x() += now.x - start.x;
-  pose.translation.y() += now.y - start.y;
-  if (now.cosine == start.cosine && now.sine == start.sine) return pose;
-  // The origin turns about the centre of mass, as far as the heading has turned since the start.
-  const Eigen::Vector3d& center = given.vehicle->center_m;
-  pose.translation.x() +=
-      (start.cosine - now.cosine) * center.x() - (start.sine - now.sine) * center.y();
-  pose.translation.y() +=
-      (start.sine - now.sine) * center.x() + (start.cosine - now.cosine) * center.y();
-  const double cosine = now.cosine * start.cosine + now.sine * start.sine;
-  const double sine = now.sine * start.cosine - now.cosine * start.sine;
-  for (int column = 0; column < 3; ++column) {
-    const double x = given.pose.rotation(0, column);
-    const double y = given.pose.rotation(1, column);
-    pose.rotation(0, column) = cosine * x - sine * y;
-    pose.rotation(1, column) = sine * x + cosine * y;
-  }
-  return pose;
-}
-
 ContactMotion MotionRecord::motion(const ContactBody& first, const ContactBody& second,
                                    bool swapped) const {
   ContactMotion motion;
   const Entry& start = entries_[0];
+  const auto pose_of = [](const ContactBody& given, const PlanarPlace& from,
+                          const PlanarPlace& to) {
+    return moved_pose(given.pose, given.vehicle->center_m, from, to);
+  };
   const auto add_poses = [&](const Entry& entry) {
     ContactPoses& poses = motion.poses[motion.count++];
     poses.time_s = entry.time_s;
-    (swapped ? poses.b : poses.a) = pose_at(first, start.first, entry.first);
-    (swapped ? poses.a : poses.b) = pose_at(second, start.second, entry.second);
+    (swapped ? poses.b : poses.a) = pose_of(first, start.first, entry.first);
+    (swapped ? poses.a : poses.b) = pose_of(second, start.second, entry.second);
   };
   for (std::size_t i = 0; i < count_; ++i) add_poses(entries_[i]);
   if (last_.time_s > entries_[count_ - 1].time_s) add_poses(last_);

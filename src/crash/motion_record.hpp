@@ -21,21 +21,11 @@ public:
   ContactMotion motion(const ContactBody& first, const ContactBody& second, bool swapped) const;
 
 private:
-  /// Centre of mass and heading.
-  struct Place {
-    double x = 0.0;
-    double y = 0.0;
-    double cosine = 1.0;
-    double sine = 0.0;
-  };
   struct Entry {
     double time_s = 0.0;
-    Place first;
-    Place second;
+    PlanarPlace first;
+    PlanarPlace second;
   };
-  static Place place_of(const PlanarBody& body);
-  static Pose pose_at(const ContactBody& given, const Place& start, const Place& now);
-
   std::array<Entry, ContactMotion::most - 1>
       entries_;  ///< first contact, then every stride-th step
   Entry last_;

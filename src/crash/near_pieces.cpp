@@ -24,9 +24,19 @@ void NearPieces::begin() {
     list = 0;
   }
   list += 2;
+  begun = resumed = list;
   count = 0;
   pieces = 0;
   valid_for_m = -1e9;
+}
+
+void NearPieces::resume() {
+  resumed = list;
+  ++list;
+  count = 0;
+  pieces = 0;
+  // The next list follows at once, but not as the first of two bodies that begin inside each other.
+  valid_for_m = 0.0;
 }
 
 }  // namespace crashrank::detail

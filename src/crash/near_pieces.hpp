@@ -25,12 +25,16 @@ struct NearPieces {
   std::size_t count = 0;              ///< blocks in the present list
   std::size_t pieces = 0;             ///< in them
   std::uint32_t list = 0;             ///< number of the present list
+  std::uint32_t begun = 0;            ///< lists since this number are of the same two bodies
+  std::uint32_t resumed = 0;          ///< and those until this one of an earlier contact
   double valid_for_m = -1e9;          ///< relative travel until the list has to be made anew
 
   /// Room for the blocks of so many pieces.
   void resize(std::size_t most_pieces);
   /// Forgets everything. O(1).
   void begin();
+  /// The two meet again: what pieces had crushed by then stays crushed. O(1).
+  void resume();
   /// No list has been made since `begin`.
   bool begins() const noexcept { return valid_for_m < -1e6; }
 };

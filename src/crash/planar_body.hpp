@@ -47,6 +47,22 @@ struct PlanarBody {
   }
 };
 
+/// Centre of mass and heading of a planar body.
+struct PlanarPlace {
+  double x = 0.0;
+  double y = 0.0;
+  double cosine = 1.0;
+  double sine = 0.0;
+};
+
+inline PlanarPlace place_of(const PlanarBody& body) {
+  return {body.x, body.y, body.cosine, body.sine};
+}
+
+/// The pose of a body's origin `now`, when it was `given` at `start`; `center_m` of mass, body axes.
+Pose moved_pose(const Pose& given, const Eigen::Vector3d& center_m, const PlanarPlace& start,
+                const PlanarPlace& now);
+
 /// Force on a body and its moment about the point of first contact, world axes.
 struct PlanarForce {
   double x = 0.0;       ///< N

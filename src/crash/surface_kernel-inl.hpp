@@ -42,10 +42,13 @@ HWY_INLINE CarriedPieces carry_pieces(const Carrier& to, F8 x, F8 y, F8 normal_x
   return at;
 }
 
-/// Forgets what is known of a block's pieces; those that lie too deep inside never press.
+/// Begins to follow a block's pieces; those that lie too deep inside never press. Of what they
+/// crushed in an earlier contact of the two, `known`, they press no deeper part again: as far as
+/// they had advanced along their normals, and no further than they had travelled inside.
 inline void begin_block(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
-                        float allowed_m, PieceStates& states) {
+                        float allowed_m, bool known, PieceStates& states) {
   const Silhouettes& target = q.pressed->vehicle->silhouettes;
+  const PieceStates earlier = states;
   states = {};
   for (std::size_t h = 0; h < block_pieces; h += 8) {
     const F8 x = load(rows.x.data() + h);
@@ -54,6 +57,15 @@ inline void begin_block(const PressQuery& q, const PieceBlock& block, const Piec
     const F8 at_y = all(q.to.s) * x + all(q.to.c) * y + all(q.to.y);
     const F8 least = depths_at(target, block.band, at_x, at_y).least();
     store(select(less(all(allowed_m), least), all(never), all(0.0F)), states.s.data() + h);
+    if (!known) continue;
+    const F8 crushed =
+        minimum(load(earlier.way.data() + h), load(earlier.furthest.data() + h));
+    const M8 any = less(all(0.0F), crushed);
+    // From where it is now: the way to the surface first.
+    store(select(any, crushed + positive(-least), all(0.0F)), states.furthest.data() + h);
+    store(select(any, all(0.0F), load(states.s.data() + h)), states.s.data() + h);
+    store(load(earlier.way.data() + h), states.way.data() + h);
+    store(load(earlier.ahead.data() + h), states.ahead.data() + h);
   }
   std::fill(states.s.begin() + block.count, states.s.end(), never);
   if (q.settings->neighbours.size() < 2) return;
@@ -98,7 +110,8 @@ inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
     }
     // Not in the list before this one: nothing is known of the way it came.
     if (near.listed[i] + 1 != near.list) {
-      begin_block(q, block, own.rows[i], allowed_m, near.states[i]);
+      const bool known = near.listed[i] > near.begun && near.listed[i] <= near.resumed;
+      begin_block(q, block, own.rows[i], allowed_m, known, near.states[i]);
     }
     near.listed[i] = near.list;
     near.blocks[near.count++] = static_cast<std::uint32_t>(i);

@@ -1,0 +1,158 @@
+#pragma once
+
+#include "crash/contact_run.hpp"
+#include "crash/tyres.hpp"
+
+#include "crashrank/base/view.hpp"
+#include "crashrank/crash/motion.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// A body of a scene, as it is until something in the chain touches it.
+struct SceneBody {
+  const Vehicle* vehicle = nullptr;
+  const Motion* plan = nullptr;      ///< where it is by time; what nothing moves stays
+  const Footing* footing = nullptr;  ///< null: the road does nothing to it
+  double steering_rad = 0.0;         ///< of its front wheels once it is hit, left positive
+  double brake = 0.02;               ///< share of grip with which it brakes then, [0, 1]
+  /// Added to the plan's positions, m.
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+};
+
+struct SceneOptions {
+  ContactVariant variant;
+  ContactOptions contact;
+  AfterContact after = AfterContact::brakes;  ///< what the wheels of all that were hit do
+  double grip = 0.7;                          ///< of tyres on the road
+  double sliding_grip = 0.5;                  ///< of what has no wheels that turn
+  double after_last_contact_s = 3.0;          ///< the scene ends so long after the last force
+  double longest_s = 30.0;                    ///< and so long after its start at the latest
+};
+
+/// A contact between two bodies of a scene, from its first touch to the end of its force.
+struct SceneContact {
+  std::uint32_t a = 0;   ///< index of the lower body
+  std::uint32_t b = 0;   ///< and of the other; of several that nothing moves the one pressed most
+  double begin_s = 0.0;  ///< on the plans' clock
+  ContactBody given_a;   ///< as it began
+  ContactBody given_b;
+  ContactOutcome outcome;
+};
+
+/// Everything that follows from the chain's first body: it and what it touches, what those touch
+/// and so on are rigid bodies in the plane that press on each other and stand on the road; all
+/// others keep their plans and pass through each other.
+///
+/// Momentum is conserved but for the road's forces, energy is never gained. What is crushed stays
+/// crushed: a pair of bodies that meets again presses where it has not been. The same bits for the
+/// same input; the order of contacts that act on one body at a time changes only rounding, but in
+/// the steps in which one of them is stiff enough to take all of the energy along it.
+class SceneRun {
+public:
+  static constexpr std::size_t most_contacts = 64;  ///< told; further ones act untold
+  static constexpr std::size_t most_pairs = 64;     ///< of bodies; further ones do not act
+  static constexpr std::size_t most_at_once = 24;   ///< contacts; further ones wait
+  static constexpr std::size_t most_near = 32;      ///< bodies within a few metres of one
+
+  /// Room for scenes of so many bodies with so many pieces of outline each.
+  void prepare(std::size_t bodies, std::size_t pieces);
+
+  /// Begins at a time with the chain's first body. Bodies' vehicles, plans and footings outlive the
+  /// run. Allocates where more room is needed than was prepared.
+  void begin(View<const SceneBody> bodies, std::size_t first, double start_s,
+             const Eigen::Vector3d& origin_m, const SceneOptions& options);
+  /// Takes at most so many steps; false once the scene is over.
+  bool advance(int steps);
+
+  /// Contacts with a force that have ended, by the end of their force.
+  View<const SceneContact> contacts() const noexcept { return {contacts_.data(), contacts_.size()}; }
+  /// Contacts that go on.
+  std::size_t at_once() const noexcept { return live_.size(); }
+  const ContactRun& live(std::size_t k) const { return runs_[live_[k]]; }
+  double now_s() const noexcept { return now_s_; }
+  const PlanarBody& body(std::size_t i) const { return memory_.bodies[i].motion; }
+  /// Whether something in the chain has touched it.
+  bool touched(std::size_t i) const { return members_[i].state >= State::free; }
+  /// Pose of its origin now.
+  Pose pose(std::size_t i) const { return given(i).pose; }
+  /// Some bodies were too many to be followed: see the limits.
+  bool crowded() const noexcept { return crowded_; }
+  std::uint64_t steps() const noexcept { return steps_; }
+  /// Pieces moved in contacts.
+  std::uint64_t work() const noexcept;
+
+private:
+  enum class State : std::uint8_t { fixed, planned, free, rests };
+  struct Member {
+    State state = State::fixed;
+    bool in_chain = false;
+    bool pressed = false;      ///< in this step
+    std::uint8_t damaged = 0;  ///< wheels, see `wheels_after`
+    Pose pose;                 ///< when it was touched, or where it is fixed
+    PlanarBody start;          ///< then
+    double rim_m = 0.0;
+    double box_x = 0.0;  ///< middle of the outlines' box from the centre of mass, body axes, m
+    double box_y = 0.0;
+    double half_x = 0.0;
+    double half_y = 0.0;
+    Wheels wheels;
+    double placed_s = 0.0;    ///< planned: when it was last placed
+    double slack_m = -1.0;    ///< travel until its list of near bodies has to be made anew
+    std::size_t near = 0;     ///< bodies in that list
+  };
+
+  PlanarBody& motion_of(std::size_t i) { return memory_.bodies[i].motion; }
+  bool moves(std::size_t i) const {
+    return members_[i].state == State::free || members_[i].state == State::planned;
+  }
+  ContactBody given(std::size_t i) const;
+  void place(std::size_t i);
+  void join_chain(std::size_t i);
+  void touch(std::size_t i);
+  void set_wheels(std::size_t i);
+  double gap_m(std::size_t i, std::size_t j) const;
+  double closing_bound(std::size_t i, std::size_t j) const;
+  bool lists(std::size_t i, std::size_t j) const;
+  void list_near();
+  void list_near(std::size_t i);
+  template <typename Each> void each_near_pair(Each each);
+  double next_step_s();
+  void open_contacts();
+  void open(std::size_t i, std::size_t j);
+  ContactRun* live_with(std::size_t i, std::size_t j);
+  std::uint32_t pair_of(std::size_t i, std::size_t j, bool& in_memory);
+  void close(ContactRun& run);
+  void lock_damaged_wheels(std::size_t i, const Box& damaged);
+  void settle();
+  void step();
+
+  View<const SceneBody> bodies_;
+  SceneOptions options_;
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
+  ContactWorkspace::State memory_;
+  std::vector<Member> members_;
+  std::vector<std::uint32_t> chain_;
+  std::vector<std::uint32_t> near_;  ///< `most_near` for each body
+  std::vector<ContactRun> runs_;
+  std::vector<double> begun_s_;       ///< by run
+  std::vector<std::uint32_t> live_;   ///< runs that go on
+  std::vector<std::uint32_t> spare_;  ///< runs that do not
+  std::vector<SceneContact> contacts_;
+  double start_s_ = 0.0;
+  double now_s_ = 0.0;
+  double last_force_s_ = 0.0;
+  double fastest_plan_mps_ = 0.0;  ///< of any point of a planned body
+  double fastest_mps_ = 0.0;       ///< and of those that were touched
+  bool over_ = true;
+  bool crowded_ = false;
+  std::uint64_t steps_ = 0;
+  std::uint64_t ended_work_ = 0;
+};
+
+}  // namespace crashrank::detail

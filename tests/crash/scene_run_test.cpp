@@ -1,0 +1,254 @@
+#include "crash/scene_run.hpp"
+
+#include "crash/contact_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using detail::Footing;
+using detail::SceneBody;
+using detail::SceneContact;
+using detail::SceneOptions;
+using detail::SceneRun;
+using Eigen::Vector3d;
+using test::company;
+using test::ContactDraw;
+using test::ContactScene;
+using test::flat_pose;
+using test::for_random_contacts;
+using test::percentile;
+using test::Random;
+
+/// Bodies of a scene with what they refer to.
+struct Stage {
+  std::vector<Motion> plans;
+  std::vector<Footing> footings;
+  std::vector<const Vehicle*> vehicles;
+  std::vector<SceneBody> bodies;
+
+  void add(const Vehicle& vehicle, const Motion& plan) {
+    vehicles.push_back(&vehicle);
+    plans.push_back(plan);
+  }
+  void add(const Vehicle& vehicle, const Pose& pose, double speed_mps) {
+    const Vector3d velocity = speed_mps * pose.rotation.col(0);
+    add(vehicle, Motion(FreeMotion{pose, {velocity, Vector3d::Zero()}}));
+  }
+  void add(const ContactBody& body) {
+    add(*body.vehicle, Motion(FreeMotion{body.pose, body.velocity}));
+  }
+  /// On a road, or on ice without any.
+  View<const SceneBody> ready(bool road, double brake = 0.7) {
+    bodies.clear();
+    footings.clear();
+    for (const Vehicle* v : vehicles) footings.push_back(detail::footing_of(*v));
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      SceneBody body;
+      body.vehicle = vehicles[i];
+      body.plan = &plans[i];
+      body.footing = road ? &footings[i] : nullptr;
+      body.brake = brake;
+      bodies.push_back(body);
+    }
+    return {bodies.data(), bodies.size()};
+  }
+};
+
+void run_to_end(SceneRun& run) {
+  while (run.advance(1000)) {}
+}
+
+const Vehicle& named(const char* name) {
+  for (std::size_t i = 0; i < company().size(); ++i) {
+    if (company().any(i).name == name) return company().any(i).vehicle;
+  }
+  throw std::runtime_error(name);
+}
+
+TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
+  std::vector<double> changes;
+  SceneRun run;
+  ContactWorkspace workspace;
+  for_random_contacts(
+      401, 400, [&](int, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
+        ContactScene scene;
+        // Without yaw: a plan's origin keeps its velocity, a free body's centre of mass.
+        if (!test::make_contact(draw, company().movable[a].vehicle, company().any(b).vehicle,
+                                closing, 0.001, scene)) {
+          return;
+        }
+        const ContactOutcome alone =
+            simulate_contact(scene.a, scene.b, {}, scene.point_m, {}, workspace);
+        Stage stage;
+        stage.add(scene.a);
+        stage.add(scene.b);
+        run.begin(stage.ready(false), 0, 0.0, scene.point_m, {});
+        run_to_end(run);
+        ASSERT_EQ(run.contacts().size() > 0, alone.acts);
+        if (!alone.acts) return;
+        const SceneContact& first = run.contacts()[0];
+        EXPECT_EQ(first.a, 0U);
+        EXPECT_EQ(first.b, 1U);
+        changes.push_back(test::change(first.outcome, alone, closing));
+        EXPECT_NEAR(first.outcome.duration_s, alone.duration_s, 0.1);
+      });
+  test::print_changes("scene against contact alone", changes);
+  ASSERT_GT(changes.size(), 200U);
+  EXPECT_LT(percentile(changes, 0.9), 1e-6);
+}
+
+/// Bodies thrown at each other from all around, at least two of them movable.
+Stage pile(Random& random, std::size_t count, bool fixed_too) {
+  Stage stage;
+  const auto movable = static_cast<std::uint32_t>(company().movable.size());
+  const auto all = static_cast<std::uint32_t>(company().size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const double round = 2.0 * detail::pi * static_cast<double>(i) / static_cast<double>(count);
+    const double away = random.uniform(9, 14);
+    const Pose pose = flat_pose(away * std::cos(round), away * std::sin(round),
+                                round + detail::pi + random.uniform(-0.25, 0.25));
+    const std::size_t what = i > 1 && fixed_too ? random.below(all) : random.below(movable);
+    const bool moves = what < movable;
+    stage.add(company().any(what).vehicle, pose, moves ? random.uniform(3, 30) : 0.0);
+  }
+  return stage;
+}
+
+struct Totals {
+  Vector3d momentum = Vector3d::Zero();
+  double moment = 0.0;
+  double energy = 0.0;
+  double scale = 0.0;
+  double moment_scale = 0.0;
+};
+
+Totals totals_of(const SceneRun& run, std::size_t count) {
+  Totals sum;
+  for (std::size_t i = 0; i < count; ++i) {
+    const detail::PlanarBody& b = run.body(i);
+    if (b.inverse_mass == 0.0) continue;
+    const double mass = 1.0 / b.inverse_mass;
+    sum.momentum += mass * Vector3d(b.vx, b.vy, 0);
+    sum.moment += mass * (b.x * b.vy - b.y * b.vx) + b.spin / b.inverse_inertia;
+    sum.energy += b.energy();
+    sum.scale += mass * std::hypot(b.vx, b.vy);
+    sum.moment_scale += mass * std::hypot(b.x, b.y) * std::hypot(b.vx, b.vy) +
+                        std::abs(b.spin) / b.inverse_inertia;
+  }
+  return sum;
+}
+
+TEST(SceneRun, PilesOnIceConserveMomentumAndNeverGainEnergy) {
+  constexpr std::uint64_t seed = 402;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  SceneRun run;
+  double momentum = 0.0;
+  double moment = 0.0;
+  double gained = 0.0;
+  std::size_t contacts = 0;
+  std::size_t bodies = 0;
+  for (int i = 0; i < 60; ++i) {
+    Stage stage = pile(random, 3 + random.below(8), false);
+    const std::size_t count = stage.plans.size();
+    run.begin(stage.ready(false), 0, 0.0, Vector3d::Zero(), {});
+    const Totals before = totals_of(run, count);
+    // A rebound gives back part of what was lost before it.
+    bool going = true;
+    while (going) {
+      going = run.advance(1);
+      gained = std::max(gained, (totals_of(run, count).energy - before.energy) / before.energy);
+    }
+    // What is still on its plan drives straight on: its moment is that of where it was last seen.
+    const Totals after = totals_of(run, count);
+    momentum = std::max(momentum, (after.momentum - before.momentum).norm() / before.scale);
+    contacts += run.contacts().size();
+    for (std::size_t k = 0; k < count; ++k) bodies += run.touched(k) ? 1U : 0U;
+    moment = std::max(moment, std::abs(after.moment - before.moment) / before.moment_scale);
+  }
+  std::printf("%zu contacts, %zu bodies touched; momentum off by %.3g, moment by %.3g, energy gained %.3g\n",
+              contacts, bodies, momentum, moment, gained);
+  EXPECT_GT(contacts, 100U);
+  EXPECT_LT(momentum, 1e-12);
+  EXPECT_LT(moment, 1e-11);
+  EXPECT_LT(gained, 1e-12);
+}
+
+TEST(SceneRun, ACarIsPushedIntoThePersonBehindIt) {
+  const Vehicle& hatch = named("hatch");
+  const Vehicle& sedan = named("sedan");
+  const Vehicle& person = named("pedestrian");
+  Stage stage;
+  stage.add(hatch, flat_pose(-10, 0, 0), 20.0);
+  stage.add(sedan, flat_pose(0, 0, 0), 0.0);
+  stage.add(person, flat_pose(8, 0, 0), 0.0);
+  SceneRun run;
+  run.begin(stage.ready(true), 0, 0.0, Vector3d::Zero(), {});
+  run_to_end(run);
+  bool struck = false;
+  bool pushed = false;
+  for (const SceneContact& c : run.contacts()) {
+    std::printf("%u %u at %.3f s, delta-v %.2f and %.2f m/s\n", c.a, c.b, c.begin_s,
+                c.outcome.a.delta_v_mps.norm(), c.outcome.b.delta_v_mps.norm());
+    struck = struck || (c.a == 0 && c.b == 1);
+    pushed = pushed || (struck && c.a == 1 && c.b == 2);
+  }
+  EXPECT_TRUE(struck);
+  EXPECT_TRUE(pushed);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(std::hypot(run.body(i).vx, run.body(i).vy), 0.05);
+}
+
+TEST(SceneRun, OnlyTheChainOfTheFirstBodyActs) {
+  const Vehicle& hatch = named("hatch");
+  Stage stage;
+  // Two others drive into each other; the first body is elsewhere.
+  stage.add(hatch, flat_pose(0, 50, 0), 10.0);
+  stage.add(hatch, flat_pose(-10, 0, 0), 10.0);
+  stage.add(hatch, flat_pose(10, 0, detail::pi), 10.0);
+  SceneRun run;
+  run.begin(stage.ready(true), 0, 0.0, Vector3d::Zero(), {});
+  run_to_end(run);
+  EXPECT_EQ(run.contacts().size(), 0U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(run.touched(i));
+}
+
+TEST(SceneRun, MirrorsTo) {
+  constexpr std::uint64_t seed = 403;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  SceneRun run;
+  std::vector<double> off;
+  for (int i = 0; i < 40; ++i) {
+    const double y = random.uniform(-1.5, 1.5);
+    const double yaw = random.uniform(-0.5, 0.5);
+    const double speed = random.uniform(5, 30);
+    std::vector<Vector3d> ends;
+    for (const double side : {1.0, -1.0}) {
+      const test::Company& cast = side > 0 ? company() : test::mirrored_company();
+      Stage stage;
+      stage.add(cast.movable[1].vehicle, flat_pose(-7, side * y, side * yaw), speed);
+      stage.add(cast.movable[0].vehicle, flat_pose(0, 0, side * 2.0), 8.0);
+      stage.add(cast.movable[1].vehicle, flat_pose(6, side * 2.0, side * 0.7), 0.0);
+      run.begin(stage.ready(true), 0, 0.0, Vector3d::Zero(), {});
+      run_to_end(run);
+      for (std::size_t k = 0; k < 3; ++k) ends.emplace_back(run.body(k).x, side * run.body(k).y, 0);
+    }
+    for (std::size_t k = 0; k < 3; ++k) off.push_back((ends[k] - ends[k + 3]).norm());
+  }
+  std::printf("resting places of mirrored scenes, m: p50 %.3g, p90 %.3g, most %.3g\n",
+              percentile(off, 0.5), percentile(off, 0.9), percentile(off, 1.0));
+  EXPECT_LT(percentile(off, 0.5), 0.02);
+}
+
+}  // namespace
+}  // namespace crashrank
