@@ -9,19 +9,23 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace crashrank {
 namespace {
 
-/// Things of one kind: how many there are, and words about the first.
+/// Things of one kind: how many there are, and words about the first few.
 struct Counted {
+  static constexpr std::size_t described = 3;
   std::size_t count = 0;
   std::string first;
 
-  void add(std::string words) {
-    if (count++ == 0) first = std::move(words);
+  void add(const std::string& words) {
+    if (count < described) first += (count == 0 ? "" : "; ") + words;
+    ++count;
+  }
+  std::string examples() const {
+    return count <= described ? first : fmt::format("{}; and {} more", first, count - described);
   }
   std::string many(const char* one, const char* more) const {
     return count == 1 ? fmt::format("1 {}", one) : fmt::format("{} {}", count, more);
@@ -86,19 +90,20 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     }
   }
   if (slips.count > 0) {
-    doubts.push_back(fmt::format(
-        "{} beyond the tyres' grip ({:g}), so that the car cannot follow: {}",
-        slips.many("listed manoeuvre lies", "listed manoeuvres lie"), scenario.grip, slips.first));
+    doubts.push_back(
+        fmt::format("{} beyond the tyres' grip ({:g}), so that the car cannot follow: {}",
+                    slips.many("listed manoeuvre lies", "listed manoeuvres lie"), scenario.grip,
+                    slips.examples()));
   }
   if (ends.count > 0) {
     doubts.push_back(fmt::format(
         "{} before the horizon ({:g} s) while moving, and stands still from then on: {}",
-        ends.many("listed plan ends", "listed plans end"), scenario.horizon_s, ends.first));
+        ends.many("listed plan ends", "listed plans end"), scenario.horizon_s, ends.examples()));
   }
   if (jumps.count > 0) {
     doubts.push_back(fmt::format("{} at another speed than the ego's {:.1f} m/s: {}",
                                  jumps.many("listed plan begins", "listed plans begin"), speed,
-                                 jumps.first));
+                                 jumps.examples()));
   }
 }
 
@@ -115,7 +120,7 @@ void doubt_actors(const Scenario& scenario, std::vector<std::string>& doubts) {
   if (ends.count == 0) return;
   doubts.push_back(fmt::format(
       "the poses of {} before the horizon ({:g} s) while moving, and stand still from then on: {}",
-      ends.many("actor end", "actors end"), scenario.horizon_s, ends.first));
+      ends.many("actor end", "actors end"), scenario.horizon_s, ends.examples()));
 }
 
 void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {

@@ -310,6 +310,16 @@ TEST(Rank, ManoeuvresBeyondTheGripAreTold) {
             std::string::npos)
       << beyond.err;
   EXPECT_NE(beyond.err.find("'swerve', in place "), std::string::npos) << beyond.err;
+
+  Json two = Json::parse(place.read("s.json"));
+  for (const char* name : {"hard left", "hard right"}) {
+    two["candidates"]["listed"].push_back({{"name", name}, {"steering_deg", 30}});
+  }
+  place.write("s.json", two.dump());
+  const Outcome three = place.crashrank({"rank", "s.json", "--json"});
+  for (const char* part : {"3 listed manoeuvres lie", "'swerve'", "'hard left'", "'hard right'"}) {
+    EXPECT_NE(three.err.find(part), std::string::npos) << three.err;
+  }
 }
 
 }  // namespace

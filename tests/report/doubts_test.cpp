@@ -70,6 +70,31 @@ TEST(Doubts, TheGripCountsUpToTheFirstContact) {
       << told.doubts()[0];
 }
 
+TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
+  Sound told;
+  told.scenario.grip = 0.8;
+  const CandidateResult miss = told.result.ranking[0];
+  told.result.ranking.clear();
+  for (std::size_t i = 0; i < 5; ++i) {
+    Candidate candidate;
+    candidate.name = "turn " + std::to_string(i);
+    candidate.acceleration_mps2 = i == 1 ? 0.0 : -9.80665 * (1.0 + 0.2 * static_cast<double>(i));
+    told.result.candidates.push_back(candidate);
+    told.result.ranking.push_back(miss);
+    told.result.ranking.back().candidate = told.result.candidates.size() - 1;
+    told.result.ranking.back().place = i + 1;
+  }
+  const std::string grip =
+      " beyond the tyres' grip (0.8), so that the car cannot follow: 'turn 0', in place 1, takes "
+      "1.25 times what there is; 'turn 2', in place 3, takes 1.75 times what there is; 'turn 3', "
+      "in place 4, takes 2.00 times what there is";
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0], "4 listed manoeuvres lie" + grip + "; and 1 more");
+  told.result.ranking.pop_back();
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0], "3 listed manoeuvres lie" + grip);
+}
+
 TEST(Doubts, PlansThatEndWhileMovingOrBeginAtAnotherSpeedAreTold) {
   Sound told;
   Candidate& misses = told.result.candidates[0];
