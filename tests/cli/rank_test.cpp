@@ -236,6 +236,40 @@ TEST(Rank, EveryBadScenarioIsExitThreeAndOneLineThatNamesIt) {
   EXPECT_EQ(place.crashrank({"rank", "."}).code, 3);
 }
 
+TEST(Rank, AnImpossibleMassCentreOrInertiaIsNamedByFileAndKey) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const auto refused = [&](const Json& ego, const std::string& told) {
+    Json scenario = Json::parse(place.read("scenario.json"));
+    scenario["models"]["ego"].update(ego);
+    place.write("s.json", scenario.dump());
+    for (const char* how : {"--json", "--first-place"}) {
+      const Outcome run = place.crashrank({"rank", "s.json", how});
+      EXPECT_EQ(run.code, 3);
+      EXPECT_EQ(run.err.rfind("crashrank: " + told, 0), 0U) << run.err;
+      EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+    }
+  };
+  refused({{"yaw_inertia_kgm2", 1}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"yaw_inertia_kgm2", 1e6}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"yaw_inertia_kgm2", 0}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"mass_kg", 1.0}, {"yaw_inertia_kgm2", 2400}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"center_of_mass_m", {3.5, 0, 0.5}}}, "s.json: models.ego.center_of_mass_m: ");
+  refused({{"center_of_mass_m", {1e9, 0, 0.5}}}, "s.json: models.ego.center_of_mass_m[0]: ");
+  for (const Json& mass : {Json(0), Json(-5), Json(1e9), Json("heavy")}) {
+    refused({{"mass_kg", mass}}, "s.json: models.ego.mass_kg: ");
+  }
+  refused({{"kind", "pole"}, {"mass_kg", nullptr}}, "s.json: models.ego.mass_kg: ");
+
+  // What the model file alone states is the model file's.
+  ASSERT_EQ(place
+                .crashrank({"compile", "ego.obj", "-o", "ego.crm", "--mass-kg", "1500",
+                            "--yaw-inertia-kgm2", "2400"})
+                .code,
+            0);
+  refused({{"mesh", "ego.crm"}, {"mass_kg", 10}}, place.path("ego.crm") + ": yaw inertia: ");
+}
+
 TEST(Rank, APageOnStandardOutputStandsAlone) {
   const Workplace place;
   cli_test::write_box_scenario(place);
