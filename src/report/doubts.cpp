@@ -1,6 +1,7 @@
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "report/ranking_words.hpp"
 
 #include <fmt/format.h>
 
@@ -61,6 +62,32 @@ void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
       "{} somebody at more than {:g} m/s, faster than the crash model was checked for; rank by "
       "closing-energy",
       fast.many("candidate meets", "candidates meet"), fastest_contact_mps));
+}
+
+void doubt_starts(const Scenario& scenario, const RankResult& result,
+                  std::vector<std::string>& doubts) {
+  std::size_t candidates = 0;
+  std::vector<std::size_t> actors;
+  for (const CandidateResult& ranked : result.ranking) {
+    bool overlaps = false;
+    for (const Contact& contact : ranked.contacts) {
+      if (!detail::begins_in_contact(contact)) continue;
+      overlaps = true;
+      if (std::find(actors.begin(), actors.end(), contact.actor) == actors.end()) {
+        actors.push_back(contact.actor);
+      }
+    }
+    candidates += overlaps ? 1 : 0;
+  }
+  if (candidates == 0) return;
+  Counted others;
+  for (const std::size_t actor : actors) {
+    others.add(fmt::format("'{}'", scenario.actors[actor].name));
+  }
+  doubts.push_back(fmt::format(
+      "the ego overlaps {} at the start ({} of {} candidates): {}; begin the scenario before the "
+      "contact",
+      others.examples(), candidates, result.ranking.size(), detail::overlap_meaning));
 }
 
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
@@ -139,6 +166,7 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
 std::vector<std::string> ranking_doubts(const Scenario& scenario, const RankResult& result) {
   std::vector<std::string> doubts;
   doubt_speeds(result, doubts);
+  doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_actors(scenario, doubts);
   doubt_keys(scenario, doubts);

@@ -322,6 +322,30 @@ TEST(Rank, AManoeuvreThatBeginsElsewhereIsRefusedAndOneTooFastIsTold) {
             std::string::npos);
 }
 
+TEST(Rank, BodiesThatOverlapAtTheStartAreMarkedAndWarnedOf) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  Json scenario = Json::parse(place.read("scenario.json"));
+  for (const auto& [x_m, overlaps] : {std::pair(2.5, true), std::pair(3.5, false)}) {
+    scenario["actors"][0]["pose"]["x_m"] = x_m;
+    place.write("s.json", scenario.dump());
+    const Outcome run = place.crashrank({"rank", "s.json", "--report", "r.html"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    const auto says = [](const std::string& text, const char* part) {
+      return text.find(part) != std::string::npos;
+    };
+    EXPECT_EQ(says(run.out, "stone (overlaps at start)"), overlaps) << run.out;
+    EXPECT_EQ(says(run.out, "overlaps at start: what is deep inside"), overlaps) << run.out;
+    EXPECT_EQ(says(run.err, "warning: s.json: the ego overlaps 'stone' at the start (3 of 3"),
+              overlaps)
+        << run.err;
+    const std::string page = place.read("r.html");
+    EXPECT_EQ(says(page, "Doubtful: the ego overlaps"), overlaps);
+    EXPECT_EQ(says(page, "stone (overlaps at start)"), overlaps);
+    EXPECT_EQ(says(page, "overlaps stone at the start"), overlaps);
+  }
+}
+
 TEST(Rank, ManoeuvresBeyondTheGripAreTold) {
   const Workplace place;
   cli_test::write_box_scenario(place);

@@ -40,6 +40,33 @@ TEST(Doubts, ContactsFasterThanTheCrashModelAreTold) {
   EXPECT_TRUE(told.doubts().empty());
 }
 
+TEST(Doubts, BodiesThatOverlapAtTheStartAreNamedOnceInEveryAnswer) {
+  for (const ImpactState state : {ImpactState::overlapping, ImpactState::contained}) {
+    Sound told;
+    const std::string mark = "(overlaps at start)";
+    EXPECT_EQ(ranking_text(told.scenario, told.models, told.result).find("overlap"),
+              std::string::npos);
+    told.result.ranking[1].contacts[0].state = state;
+    told.result.ranking[2].contacts = told.result.ranking[1].contacts;
+    ASSERT_EQ(told.doubts().size(), 1U);
+    EXPECT_EQ(
+        told.doubts()[0].rfind("the ego overlaps 'wall' at the start (2 of 3 candidates): ", 0), 0U)
+        << told.doubts()[0];
+    const std::string text = ranking_text(told.scenario, told.models, told.result);
+    for (const std::string& part : {"wall " + mark, std::string("overlaps at start: ")}) {
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+    const std::string page = html_report(told.scenario, told.models, told.result);
+    for (const std::string& part :
+         {std::string("Doubtful: the ego overlaps"), "wall " + mark + ", second",
+          std::string("overlaps wall at the start")}) {
+      EXPECT_NE(page.find(part), std::string::npos) << part;
+    }
+    told.result.ranking[1].contacts[1].state = state;
+    EXPECT_EQ(told.doubts()[0].rfind("the ego overlaps 'wall'; 'second' at", 0), 0U);
+  }
+}
+
 TEST(Doubts, KeysWithoutEffectAreNamed) {
   Sound told;
   told.scenario.keys_without_effect = {"crush"};
