@@ -107,11 +107,46 @@ Status state_mass(const Options& options, const Box& bounds, StatedMass& stated)
   return status;
 }
 
+/// What a model file that is compiled again states and the options do not replace.
+StatedMass find_kept(const Options& options, StatedMass stated) {
+  if (options.mass_kg) stated.mass_kg.reset();
+  if (!options.center_of_mass_m.empty()) stated.center_of_mass_m.reset();
+  if (options.yaw_inertia_kgm2) stated.yaw_inertia_kgm2.reset();
+  return stated;
+}
+
+Json to_json(const StatedMass& kept) {
+  Json document = Json::object();
+  if (kept.mass_kg) document["mass_kg"] = *kept.mass_kg;
+  if (const auto& center = kept.center_of_mass_m) {
+    document["center_of_mass_m"] = {center->x(), center->y(), center->z()};
+  }
+  if (kept.yaw_inertia_kgm2) document["yaw_inertia_kgm2"] = *kept.yaw_inertia_kgm2;
+  return document;
+}
+
+/// One line with the options that would replace it; empty where nothing was kept.
+std::string to_text(const StatedMass& kept) {
+  std::string values;
+  if (kept.mass_kg) values += fmt::format(", {:.6g} kg (--mass-kg)", *kept.mass_kg);
+  if (const auto& center = kept.center_of_mass_m) {
+    values += fmt::format(", centre of mass at ({:.6g}, {:.6g}, {:.6g}) m (--center-of-mass-m)",
+                          center->x(), center->y(), center->z());
+  }
+  if (kept.yaw_inertia_kgm2) {
+    values +=
+        fmt::format(", yaw inertia {:.6g} kg m2 (--yaw-inertia-kgm2)", *kept.yaw_inertia_kgm2);
+  }
+  if (values.empty()) return {};
+  return "  kept from the input, as no option replaces it: " + values.substr(2) + "\n";
+}
+
 int run(const Options& options) {
   if (const Status sound = check_options(options); !sound) return fail(sound.error());
   Result<LoadedBody> body = load_body(options.mesh_file, options.mesh, options.tree, true);
   if (!body) return fail(body.error());
   StoredModel& stored = body->stored;
+  const StatedMass kept = find_kept(options, stored.stated);
   stored.mass = shell_properties(stored.model.mesh);
   if (const Status sound = state_mass(options, stored.model.mesh.bounds(), stored.stated); !sound) {
     return fail(sound.error());
@@ -134,11 +169,13 @@ int run(const Options& options) {
                 {"version", facts.version},
                 {"bytes", facts.bytes},
                 {"checksum", checksum},
-                {"triangles", triangles}});
+                {"triangles", triangles},
+                {"kept", to_json(kept)}});
   } else {
     print(fmt::format("{}: {} triangles, {} bytes, version {}, checksum {}\n",
                       escape_terminal(options.output), triangles, facts.bytes, facts.version,
-                      checksum));
+                      checksum) +
+          to_text(kept));
   }
   return exit_done;
 }
@@ -163,7 +200,8 @@ void add_compile(CLI::App& app, Action& action) {
   options->mesh.add_to(*command);
   options->tree.add_to(*command);
   command->footer(
-      "A model file stands wherever a mesh does, and needs no importer.\n\n"
+      "A model file stands wherever a mesh does, and needs no importer. One that is compiled again "
+      "keeps what it\nstates of the mass, unless an option replaces it.\n\n"
       "Example:\n  crashrank compile car.obj --scale 0.001 -o car.crm");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -168,14 +168,24 @@ TEST(Compile, StatedMassStandsInTheFileAndIsKept) {
   EXPECT_NE(text.find("yaw inertia 2100.5 kg m2"), std::string::npos) << text;
 
   // Compiled again: what is not stated anew stays. A height that is left out is the box's middle.
-  ASSERT_EQ(
-      place.crashrank({"compile", "a.crm", "-o", "b.crm", "--center-of-mass-m", "-0.5,0"}).code, 0);
+  const std::vector<std::string> anew{"compile", "a.crm",   "-o",    "b.crm", "--center-of-mass-m",
+                                      "-0.5,0",  "--force", "--json"};
+  const Outcome told = place.crashrank(anew);
+  ASSERT_EQ(told.code, 0) << told.err;
+  EXPECT_EQ(told.json().at("kept"), (Json{{"mass_kg", 1450.0}, {"yaw_inertia_kgm2", 2100.5}}));
+  const std::string words = place.crashrank({anew.begin(), anew.end() - 1}).out;
+  for (const char* part : {"kept from the input", "1450 kg (--mass-kg)",
+                           "yaw inertia 2100.5 kg m2 (--yaw-inertia-kgm2)"}) {
+    EXPECT_NE(words.find(part), std::string::npos) << words;
+  }
+  EXPECT_EQ(words.find("centre of mass"), std::string::npos) << words;
   const Json again = model_of("b.crm");
   EXPECT_EQ(again.at("mass_kg"), 1450.0);
   EXPECT_EQ(again.at("yaw_inertia_kgm2"), 2100.5);
   EXPECT_EQ(again.at("center_of_mass_m"), (Json{-0.5, 0.0, 0.85}));
 
-  ASSERT_EQ(place.crashrank({"compile", "a.obj", "-o", "c.crm"}).code, 0);
+  EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "c.crm"}).out.find("kept"),
+            std::string::npos);
   const Json nothing = model_of("c.crm");
   for (const char* key : {"mass_kg", "center_of_mass_m", "yaw_inertia_kgm2"}) {
     EXPECT_TRUE(nothing.at(key).is_null()) << key;
