@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "console.hpp"
+#include "numbers.hpp"
 #include "suggest.hpp"
 
 #include "crashrank/base/library_version.hpp"
@@ -75,7 +76,12 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
   const std::vector<std::string> strangers = named->remaining();
   if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
     text = "not expected:";
-    for (const std::string& stranger : strangers) text += " '" + stranger + "'";
+    bool numbers = false;
+    for (const std::string& stranger : strangers) {
+      text += " '" + stranger + "'";
+      numbers = numbers || !parse_numbers(stranger).value_or(std::vector<double>()).empty();
+    }
+    if (numbers) text += "; numbers of one option stand together with commas, such as 1,2,3";
   }
   for (const std::string& unknown : strangers) {
     const std::string option = unknown.substr(0, unknown.find('='));
