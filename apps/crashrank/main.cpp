@@ -1,8 +1,8 @@
 #include "command.hpp"
 #include "console.hpp"
 #include "numbers.hpp"
-#include "suggest.hpp"
 
+#include "base/nearest_word.hpp"
 #include "crashrank/base/library_version.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Examples:
 
 /// "; did you mean 'rank'?", or nothing where no known word is near.
 std::string meant(const std::string& word, const std::vector<std::string>& known) {
-  const std::string nearest = nearest_word(word, known);
+  const std::string nearest = detail::nearest_word(word, known);
   return nearest.empty() ? std::string() : "; did you mean '" + nearest + "'?";
 }
 
