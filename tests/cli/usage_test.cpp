@@ -98,6 +98,22 @@ TEST(Usage, AMisspeltKeyIsSaidToBeTheNearestOneThatIsThere) {
   }
 }
 
+TEST(Usage, AMeshOutsideTheScenariosFolderIsAllowedByTheOptionThatTheErrorNames) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  place.shell(
+      "mkdir inner && sed 's#ego.obj#../ego.obj#' scenario.json > inner/s.json && "
+      "cp block.obj inner/");
+  const Outcome refused = place.crashrank({"rank", "inner/s.json"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("inner/s.json: models.ego.mesh: "), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("or allow the mesh's folder with --allow FOLDER\n"), std::string::npos)
+      << refused.err;
+  const Outcome piped = place.shell("cd inner && " CRASHRANK_PROGRAM " rank - < s.json");
+  EXPECT_NE(piped.err.find("--allow FOLDER"), std::string::npos) << piped.err;
+  EXPECT_EQ(place.crashrank({"rank", "inner/s.json", "--allow", "."}).code, 0);
+}
+
 TEST(Usage, WhatIsNotExpectedIsToldInItsOrder) {
   const Workplace place;
   const Outcome run = place.crashrank({"rank", "s.json", "--elephant", "grey"});
