@@ -44,6 +44,25 @@ struct Options {
   TreeArguments tree;
 };
 
+/// The two or three coordinates of a centre of mass. Errors: usage.
+Result<std::vector<double>> parse_center(const std::string& text) {
+  const auto refused = [&text](const std::string& found) {
+    return make_error(
+        ErrorCode::usage,
+        "--center-of-mass-m " + text + ": " + found + ", but needs two or three finite numbers",
+        "write x,y or x,y,z in metres, such as 1.5,0 or 1.5,0,0.55");
+  };
+  const std::optional<std::vector<double>> numbers = parse_numbers(text);
+  if (!numbers) return refused("holds something else than numbers");
+  if (numbers->size() < 2 || numbers->size() > 3) {
+    return refused(
+        fmt::format("has {} number{}", numbers->size(), numbers->size() == 1 ? "" : "s"));
+  }
+  const auto finite = [](double x) { return std::isfinite(x); };
+  if (!std::all_of(numbers->begin(), numbers->end(), finite)) return refused("is not finite");
+  return *numbers;
+}
+
 Status check_options(const Options& options) {
   if (is_standard(options.output)) {
     return make_error(ErrorCode::usage, "a model is written to a file, not to standard output",
@@ -64,6 +83,10 @@ Status check_options(const Options& options) {
                                   scenario_limits::yaw_inertia_kgm2),
                       "leave it out where the inertia is not known");
   }
+  if (!options.center_of_mass_m.empty()) {
+    const Result<std::vector<double>> center = parse_center(options.center_of_mass_m);
+    if (!center) return center.error();
+  }
   std::error_code ignored;
   if (std::filesystem::exists(options.output, ignored) &&
       !std::filesystem::is_regular_file(options.output, ignored)) {
@@ -77,34 +100,56 @@ Status check_options(const Options& options) {
   return can_be_written(options.output, model_file, inputs);
 }
 
-/// A height that is not given is the middle of the body's.
-Result<Eigen::Vector3d> parse_center(const std::string& text, const Box& bounds) {
-  const std::optional<std::vector<double>> numbers = parse_numbers(text);
-  const auto finite = [](double x) { return std::isfinite(x); };
-  if (!numbers || numbers->size() < 2 || numbers->size() > 3 ||
-      !std::all_of(numbers->begin(), numbers->end(), finite)) {
-    return make_error(ErrorCode::usage,
-                      "--center-of-mass-m " + text + ": needs two or three finite numbers",
-                      "write x,y or x,y,z in metres");
-  }
-  const double height =
-      numbers->size() == 3 ? numbers->back() : static_cast<double>(bounds.center().z());
-  return Eigen::Vector3d((*numbers)[0], (*numbers)[1], height);
-}
-
 /// What the options state over what a model file that is compiled again does. Errors: usage;
 /// bad_input where the body cannot have it.
 Status state_mass(const Options& options, const Box& bounds, StatedMass& stated) {
   if (options.mass_kg) stated.mass_kg = options.mass_kg;
   if (options.yaw_inertia_kgm2) stated.yaw_inertia_kgm2 = options.yaw_inertia_kgm2;
   if (!options.center_of_mass_m.empty()) {
-    const Result<Eigen::Vector3d> center = parse_center(options.center_of_mass_m, bounds);
+    const Result<std::vector<double>> center = parse_center(options.center_of_mass_m);
     if (!center) return center.error();
-    stated.center_of_mass_m = *center;
+    // A height that is not given is the middle of the body's.
+    const double height =
+        center->size() == 3 ? center->back() : static_cast<double>(bounds.center().z());
+    stated.center_of_mass_m = Eigen::Vector3d((*center)[0], (*center)[1], height);
   }
   Status status = check_stated_mass(stated, bounds);
   if (!status) status.error().file = options.mesh_file;
   return status;
+}
+
+/// What a model file that is compiled again states and the options do not replace.
+StatedMass find_kept(const Options& options, StatedMass stated) {
+  if (options.mass_kg) stated.mass_kg.reset();
+  if (!options.center_of_mass_m.empty()) stated.center_of_mass_m.reset();
+  if (options.yaw_inertia_kgm2) stated.yaw_inertia_kgm2.reset();
+  return stated;
+}
+
+Json to_json(const StatedMass& kept) {
+  Json document = Json::object();
+  if (kept.mass_kg) document["mass_kg"] = *kept.mass_kg;
+  if (const auto& center = kept.center_of_mass_m) {
+    document["center_of_mass_m"] = {center->x(), center->y(), center->z()};
+  }
+  if (kept.yaw_inertia_kgm2) document["yaw_inertia_kgm2"] = *kept.yaw_inertia_kgm2;
+  return document;
+}
+
+/// One line with the options that would replace it; empty where nothing was kept.
+std::string to_text(const StatedMass& kept) {
+  std::string values;
+  if (kept.mass_kg) values += fmt::format(", {:.6g} kg (--mass-kg)", *kept.mass_kg);
+  if (const auto& center = kept.center_of_mass_m) {
+    values += fmt::format(", centre of mass at ({:.6g}, {:.6g}, {:.6g}) m (--center-of-mass-m)",
+                          center->x(), center->y(), center->z());
+  }
+  if (kept.yaw_inertia_kgm2) {
+    values +=
+        fmt::format(", yaw inertia {:.6g} kg m2 (--yaw-inertia-kgm2)", *kept.yaw_inertia_kgm2);
+  }
+  if (values.empty()) return {};
+  return "  kept from the input, as no option replaces it: " + values.substr(2) + "\n";
 }
 
 int run(const Options& options) {
@@ -112,6 +157,7 @@ int run(const Options& options) {
   Result<LoadedBody> body = load_body(options.mesh_file, options.mesh, options.tree, true);
   if (!body) return fail(body.error());
   StoredModel& stored = body->stored;
+  const StatedMass kept = find_kept(options, stored.stated);
   stored.mass = shell_properties(stored.model.mesh);
   if (const Status sound = state_mass(options, stored.model.mesh.bounds(), stored.stated); !sound) {
     return fail(sound.error());
@@ -134,11 +180,13 @@ int run(const Options& options) {
                 {"version", facts.version},
                 {"bytes", facts.bytes},
                 {"checksum", checksum},
-                {"triangles", triangles}});
+                {"triangles", triangles},
+                {"kept", to_json(kept)}});
   } else {
     print(fmt::format("{}: {} triangles, {} bytes, version {}, checksum {}\n",
                       escape_terminal(options.output), triangles, facts.bytes, facts.version,
-                      checksum));
+                      checksum) +
+          to_text(kept));
   }
   return exit_done;
 }
@@ -152,18 +200,23 @@ void add_compile(CLI::App& app, Action& action) {
   command->add_option("MESH", options->mesh_file, "Mesh or model file; - is standard input")
       ->required();
   command->add_option("-o,--output", options->output, "The model file to write")->required();
-  command->add_option("--mass-kg", options->mass_kg,
-                      "Mass of the body; scenarios that give none then use it");
+  command
+      ->add_option("--mass-kg", options->mass_kg,
+                   "Mass of the body; scenarios that give none then use it")
+      ->check(one_number("kg, such as 1450"));
   command->add_option("--center-of-mass-m", options->center_of_mass_m,
                       "Its centre of mass, x,y or x,y,z in body coordinates; likewise");
-  command->add_option("--yaw-inertia-kgm2", options->yaw_inertia_kgm2,
-                      "Its yaw inertia about the centre of mass; likewise");
+  command
+      ->add_option("--yaw-inertia-kgm2", options->yaw_inertia_kgm2,
+                   "Its yaw inertia about the centre of mass; likewise")
+      ->check(one_number("kg m2, such as 2200"));
   command->add_flag("--force", options->force, "Replace a file of that name");
   command->add_flag("--json", options->json, "Answer in JSON");
   options->mesh.add_to(*command);
   options->tree.add_to(*command);
   command->footer(
-      "A model file stands wherever a mesh does, and needs no importer.\n\n"
+      "A model file stands wherever a mesh does, and needs no importer. One that is compiled again "
+      "keeps what it\nstates of the mass, unless an option replaces it.\n\n"
       "Example:\n  crashrank compile car.obj --scale 0.001 -o car.crm");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -1,7 +1,8 @@
 #include "command.hpp"
 #include "console.hpp"
-#include "suggest.hpp"
+#include "numbers.hpp"
 
+#include "base/nearest_word.hpp"
 #include "crashrank/base/library_version.hpp"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ Examples:
 
 /// "; did you mean 'rank'?", or nothing where no known word is near.
 std::string meant(const std::string& word, const std::vector<std::string>& known) {
-  const std::string nearest = nearest_word(word, known);
+  const std::string nearest = detail::nearest_word(word, known);
   return nearest.empty() ? std::string() : "; did you mean '" + nearest + "'?";
 }
 
@@ -75,7 +76,12 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
   const std::vector<std::string> strangers = named->remaining();
   if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
     text = "not expected:";
-    for (const std::string& stranger : strangers) text += " '" + stranger + "'";
+    bool numbers = false;
+    for (const std::string& stranger : strangers) {
+      text += " '" + stranger + "'";
+      numbers = numbers || !parse_numbers(stranger).value_or(std::vector<double>()).empty();
+    }
+    if (numbers) text += "; numbers of one option stand together with commas, such as 1,2,3";
   }
   for (const std::string& unknown : strangers) {
     const std::string option = unknown.substr(0, unknown.find('='));

@@ -48,7 +48,9 @@ std::optional<Axis> parse_axis(std::string text) {
 
 void MeshArguments::add_to(CLI::App& command) {
   const std::string group = "Meshes";
-  command.add_option("--scale", scale, "Metres per file unit (default 1)")->group(group);
+  command.add_option("--scale", scale, "Metres per file unit (default 1)")
+      ->group(group)
+      ->check(one_number("metres per file unit, such as 0.001"));
   command.add_option("--up", up, "The file's axis that points up (default +z)")->group(group);
   command.add_option("--forward", forward, "The file's axis that points forward (default +x)")
       ->group(group);

@@ -32,4 +32,16 @@ std::optional<std::vector<double>> parse_numbers(std::string_view line) {
   }
 }
 
+CLI::Validator one_number(const std::string& wanted) {
+  return {[wanted](const std::string& text) {
+            const std::optional<std::vector<double>> numbers = parse_numbers(text);
+            const bool one = numbers && numbers->size() == 1 &&
+                             text.find_first_of(" \t,\r") == std::string::npos;
+            // An option without a value has an error of its own.
+            return one || text.empty() ? std::string()
+                                       : "'" + text + "' is not a number: give " + wanted;
+          },
+          "", "one number"};
+}
+
 }  // namespace crashrank::cli

@@ -64,6 +64,17 @@ Result<Scenario> read_scenario(const Options& options) {
   return load_scenario(*text, "standard input", paths);
 }
 
+/// A mesh outside its scenario's folder: the library's remedy, with the option for what a caller
+/// can do.
+Error name_allow(Error error) {
+  const std::string call = "allow the mesh's folder when calling";
+  const std::size_t at = error.remedy.find(call);
+  if (at != std::string::npos) {
+    error.remedy.replace(at, call.size(), "allow the mesh's folder with --allow FOLDER");
+  }
+  return error;
+}
+
 /// The scenario's own, the profile over it, the command line over both.
 Result<HarmOptions> read_harm(const Options& options, const Scenario& scenario) {
   HarmOptions harm = scenario.harm;
@@ -166,7 +177,7 @@ int run(const Options& options) {
     return fail(build.error());
   }
   Result<Scenario> scenario = read_scenario(options);
-  if (!scenario) return fail(scenario.error());
+  if (!scenario) return fail(name_allow(scenario.error()));
   const Result<HarmOptions> harm = read_harm(options, *scenario);
   if (!harm) return fail(harm.error());
   how.harm = *harm;

@@ -12,6 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr const char* inertia_place = "yaw inertia";
 constexpr const char* inertia_remedy =
     "state it in kg m2 about the centre of mass, or leave it out";
 
@@ -65,15 +66,13 @@ Status check_all(const StatedMass& stated, const Box& bounds) {
   }
   if (!stated.yaw_inertia_kgm2) return Success{};
   if (!sound(*stated.yaw_inertia_kgm2)) {
-    return unsound("yaw inertia",
+    return unsound(inertia_place,
                    six_digits(*stated.yaw_inertia_kgm2) + " kg m2 is not a finite number above 0",
                    inertia_remedy);
   }
   if (!stated.mass_kg) return Success{};
-  Status status =
-      check_yaw_inertia(*stated.yaw_inertia_kgm2, *stated.mass_kg, bounds.extent().cast<double>());
-  if (!status) status.error().place = "yaw inertia";
-  return status;
+  return check_yaw_inertia(*stated.yaw_inertia_kgm2, *stated.mass_kg,
+                           bounds.extent().cast<double>());
 }
 
 }  // namespace
@@ -84,11 +83,11 @@ Status check_yaw_inertia(double yaw_inertia_kgm2, double mass_kg, const Vector3d
     const double least = 0.01 * mass_kg * block;
     const double most = mass_kg * std::max(3.0 * block, 1e-4);
     if (yaw_inertia_kgm2 >= least && yaw_inertia_kgm2 <= most) return Success{};
-    return make_error(ErrorCode::bad_input,
-                      "a yaw inertia of " + six_digits(yaw_inertia_kgm2) + " kg m2 is not from " +
-                          six_digits(least) + " to " + six_digits(most) + ", which " +
-                          six_digits(mass_kg) + " kg of the body's size can have",
-                      inertia_remedy);
+    return unsound(inertia_place,
+                   "a yaw inertia of " + six_digits(yaw_inertia_kgm2) + " kg m2 is not from " +
+                       six_digits(least) + " to " + six_digits(most) + ", which " +
+                       six_digits(mass_kg) + " kg of the body's size can have",
+                   inertia_remedy);
   });
 }
 

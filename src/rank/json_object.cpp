@@ -1,5 +1,6 @@
 #include "rank/json_object.hpp"
 
+#include "base/nearest_word.hpp"
 #include "base/utf8.hpp"
 
 #include <algorithm>
@@ -91,8 +92,10 @@ JsonObject::JsonObject(const nlohmann::json& value, std::string path, Status& st
     if (is_known) continue;
     std::string list;
     for (const char* key : known) list += (list.empty() ? "" : ", ") + std::string(key);
+    const std::string meant = nearest_word(item.key(), {known.begin(), known.end()});
     refuse_at(status, path_of(printable(item.key(), 64).c_str()), "there is no such key",
-              "the keys here are " + list);
+              (meant.empty() ? "the" : "did you mean '" + meant + "'? The") +
+                  std::string(" keys here are ") + list);
     return;
   }
 }

@@ -2,8 +2,10 @@
 
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/tree/model_file.hpp"
+#include "crashrank/vehicle/body_kind.hpp"
 #include "rank/number_range.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -44,6 +46,21 @@ Status check_limits(const StatedMass& stated, const ScenarioModel& wanted) {
   return Success{};
 }
 
+/// A yaw inertia that only the model file states has to suit the mass that the body will have.
+Status check_inertia(const StatedMass& stated, const ScenarioModel& wanted, const Box& bounds) {
+  if (wanted.yaw_inertia_kgm2 || !stated.yaw_inertia_kgm2) return Success{};
+  if (!wanted.mass_kg && stated.mass_kg) return Success{};  // was checked with the file
+  const Eigen::Vector3d extent_m = bounds.extent().cast<double>();
+  const double mass_kg = wanted.mass_kg.value_or(guess_mass_kg(wanted.kind, extent_m));
+  if (!std::isfinite(mass_kg)) return Success{};
+  Status status = check_yaw_inertia(*stated.yaw_inertia_kgm2, mass_kg, extent_m);
+  if (status) return status;
+  status.error().reason += wanted.mass_kg ? "; the scenario gives that mass but no yaw inertia"
+                                          : "; that mass is guessed from kind and size";
+  status.error().remedy = "give mass_kg and yaw_inertia_kgm2 in the scenario";
+  return status;
+}
+
 Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
   if (!changes_nothing(wanted.transform)) {
     return make_error(ErrorCode::bad_input, "a model file has its frame already",
@@ -54,6 +71,8 @@ Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
   LoadedScenarioModel read;
   read.stated = loaded->stored.stated;
   if (Status status = check_limits(read.stated, wanted); !status) return status.error();
+  const Box bounds = loaded->stored.model.mesh.bounds();
+  if (Status status = check_inertia(read.stated, wanted, bounds); !status) return status.error();
   read.model = std::move(loaded->stored.model);
   return read;
 }

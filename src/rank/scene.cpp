@@ -52,6 +52,21 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
                     !model.mass_kg.has_value()};
 }
 
+/// The error of `describe_vehicle` as callers get it: at the scenario's key where the scenario is
+/// at fault, else at the mesh.
+Error error_of_model(Error error, const ScenarioModel& model) {
+  const std::string path = "models." + model.name;
+  if (error.place == "centre of mass") {
+    error.place = path + ".center_of_mass_m";
+  } else if (error.place == "yaw inertia") {
+    error.place = path + ".yaw_inertia_kgm2";
+  } else {
+    error.file = model.path;
+    error.place = path;
+  }
+  return error;
+}
+
 Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
   VehicleFacts facts;
   facts.kind = model.kind;
@@ -61,12 +76,7 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
   facts.stiffness = model.stiffness;
   facts.surface = model.surface;
   Result<Vehicle> vehicle = describe_vehicle(shape.mesh, facts, shape.profile);
-  if (!vehicle) {
-    Error error = vehicle.error();
-    error.file = model.path;
-    error.place = "models." + model.name;
-    return error;
-  }
+  if (!vehicle) return error_of_model(vehicle.error(), model);
   vehicle->leading_edge_m = leading_edge_m(shape.mesh);
   return vehicle;
 }

@@ -1,6 +1,7 @@
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "report/ranking_words.hpp"
 
 #include <fmt/format.h>
 
@@ -9,19 +10,23 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace crashrank {
 namespace {
 
-/// Things of one kind: how many there are, and words about the first.
+/// Things of one kind: how many there are, and words about the first few.
 struct Counted {
+  static constexpr std::size_t described = 3;
   std::size_t count = 0;
   std::string first;
 
-  void add(std::string words) {
-    if (count++ == 0) first = std::move(words);
+  void add(const std::string& words) {
+    if (count < described) first += (count == 0 ? "" : "; ") + words;
+    ++count;
+  }
+  std::string examples() const {
+    return count <= described ? first : fmt::format("{}; and {} more", first, count - described);
   }
   std::string many(const char* one, const char* more) const {
     return count == 1 ? fmt::format("1 {}", one) : fmt::format("{} {}", count, more);
@@ -59,6 +64,32 @@ void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
       fast.many("candidate meets", "candidates meet"), fastest_contact_mps));
 }
 
+void doubt_starts(const Scenario& scenario, const RankResult& result,
+                  std::vector<std::string>& doubts) {
+  std::size_t candidates = 0;
+  std::vector<std::size_t> actors;
+  for (const CandidateResult& ranked : result.ranking) {
+    bool overlaps = false;
+    for (const Contact& contact : ranked.contacts) {
+      if (!detail::begins_in_contact(contact)) continue;
+      overlaps = true;
+      if (std::find(actors.begin(), actors.end(), contact.actor) == actors.end()) {
+        actors.push_back(contact.actor);
+      }
+    }
+    candidates += overlaps ? 1 : 0;
+  }
+  if (candidates == 0) return;
+  Counted others;
+  for (const std::size_t actor : actors) {
+    others.add(fmt::format("'{}'", scenario.actors[actor].name));
+  }
+  doubts.push_back(fmt::format(
+      "the ego overlaps {} at the start ({} of {} candidates): {}; begin the scenario before the "
+      "contact",
+      others.examples(), candidates, result.ranking.size(), detail::overlap_meaning));
+}
+
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
                       std::vector<std::string>& doubts) {
   constexpr double whole_grip = 1.001;  // the grid takes all of it, up to rounding
@@ -86,19 +117,20 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     }
   }
   if (slips.count > 0) {
-    doubts.push_back(fmt::format(
-        "{} beyond the tyres' grip ({:g}), so that the car cannot follow: {}",
-        slips.many("listed manoeuvre lies", "listed manoeuvres lie"), scenario.grip, slips.first));
+    doubts.push_back(
+        fmt::format("{} beyond the tyres' grip ({:g}), so that the car cannot follow: {}",
+                    slips.many("listed manoeuvre lies", "listed manoeuvres lie"), scenario.grip,
+                    slips.examples()));
   }
   if (ends.count > 0) {
     doubts.push_back(fmt::format(
         "{} before the horizon ({:g} s) while moving, and stands still from then on: {}",
-        ends.many("listed plan ends", "listed plans end"), scenario.horizon_s, ends.first));
+        ends.many("listed plan ends", "listed plans end"), scenario.horizon_s, ends.examples()));
   }
   if (jumps.count > 0) {
     doubts.push_back(fmt::format("{} at another speed than the ego's {:.1f} m/s: {}",
                                  jumps.many("listed plan begins", "listed plans begin"), speed,
-                                 jumps.first));
+                                 jumps.examples()));
   }
 }
 
@@ -115,7 +147,7 @@ void doubt_actors(const Scenario& scenario, std::vector<std::string>& doubts) {
   if (ends.count == 0) return;
   doubts.push_back(fmt::format(
       "the poses of {} before the horizon ({:g} s) while moving, and stand still from then on: {}",
-      ends.many("actor end", "actors end"), scenario.horizon_s, ends.first));
+      ends.many("actor end", "actors end"), scenario.horizon_s, ends.examples()));
 }
 
 void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
@@ -134,6 +166,7 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
 std::vector<std::string> ranking_doubts(const Scenario& scenario, const RankResult& result) {
   std::vector<std::string> doubts;
   doubt_speeds(result, doubts);
+  doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_actors(scenario, doubts);
   doubt_keys(scenario, doubts);

@@ -259,7 +259,7 @@ private:
     std::string hit;
     for (const Contact& contact : ranked.contacts) {
       if (!hit.empty()) hit += ", ";
-      hit += scenario_.actors[contact.actor].name;
+      hit += detail::contact_name(scenario_, contact);
     }
     std::string parts;
     for (std::size_t i = 0; i < std::min<std::size_t>(4, ego.parts.size()); ++i) {

@@ -2,11 +2,13 @@
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/report/table.hpp"
 #include "report/damage_summary.hpp"
+#include "report/ranking_words.hpp"
 #include "report/score_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace crashrank {
 namespace {
@@ -44,7 +46,7 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
     return row;
   }
   const Contact& first = ranked.contacts.front();
-  std::string hit = scenario.actors[first.actor].name;
+  std::string hit = detail::contact_name(scenario, first);
   if (ranked.contacts.size() > 1) hit += fmt::format(" +{}", ranked.contacts.size() - 1);
   const DamageSummary ego = detail::summary_of(ranked.ego, models[scenario.ego.model].mesh);
   const DamageSummary other = detail::summary_of_others(scenario, models, ranked);
@@ -67,6 +69,11 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   }
   row.push_back(shortened(ego.parts));
   return row;
+}
+
+/// Whether the contact that the table names begins with the bodies in each other.
+bool overlaps_first(const CandidateResult& ranked) {
+  return !ranked.contacts.empty() && detail::begins_in_contact(ranked.contacts.front());
 }
 
 }  // namespace
@@ -109,6 +116,10 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
       [](const CandidateResult& ranked) { return ranked.score && !ranked.collides; }));
   for (const std::string& words : detail::not_separable_words(result, shown)) {
     text += escape_terminal(words) + "\n";
+  }
+  if (std::any_of(result.ranking.begin(),
+                  result.ranking.begin() + static_cast<std::ptrdiff_t>(shown), overlaps_first)) {
+    text += fmt::format("overlaps at start: {}\n", detail::overlap_meaning);
   }
   text += fmt::format("\n{} of {} {}touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
                       result.complete ? "" : "are known to ",

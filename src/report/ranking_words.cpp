@@ -73,6 +73,16 @@ std::string tie_words(const CandidateResult& first, const CandidateResult& secon
 
 }  // namespace
 
+const char* const overlap_meaning =
+    "what is deep inside the other body at the start exerts no force but counts as crush, "
+    "intrusion "
+    "and damage, so that severity and score are unreliable";
+
+std::string contact_name(const Scenario& scenario, const Contact& contact) {
+  return scenario.actors[contact.actor].name +
+         (begins_in_contact(contact) ? " (overlaps at start)" : "");
+}
+
 std::string score_words(const CandidateResult& ranked, const std::string& score, Measure measure) {
   const std::string interval = interval_text(ranked);
   return score + " " + measure_unit(measure) + (interval.empty() ? "" : " (" + interval + ")");
@@ -88,9 +98,9 @@ std::string outcome_words(const Scenario& scenario, const CandidateResult& ranke
   std::string text =
       fmt::format("hits {} after {:.2f} s at {:.1f} m/s", scenario.actors[first.actor].name,
                   first.time_of_impact_s, first.closing_speed_mps);
-  if (first.state == ImpactState::contained || first.state == ImpactState::overlapping) {
-    text = fmt::format("is inside {} after {:.2f} s", scenario.actors[first.actor].name,
-                       first.time_of_impact_s);
+  if (begins_in_contact(first)) {
+    text = fmt::format("overlaps {} at the start, closing at {:.1f} m/s",
+                       scenario.actors[first.actor].name, first.closing_speed_mps);
   }
   for (std::size_t i = 1; i < ranked.contacts.size(); ++i) {
     text += (i + 1 == ranked.contacts.size() ? " and " : ", ") +

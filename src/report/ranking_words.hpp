@@ -9,6 +9,18 @@
 
 namespace crashrank::detail {
 
+/// Whether the bodies overlap at time 0: the contact is not simulated from its first touch.
+inline bool begins_in_contact(const Contact& contact) {
+  return contact.state == ImpactState::overlapping || contact.state == ImpactState::contained;
+}
+
+/// The name of the body that is hit, marked where the contact `begins_in_contact`: "sedan (overlaps
+/// at start)".
+std::string contact_name(const Scenario& scenario, const Contact& contact);
+
+/// What the mark of `contact_name` means, one sentence without a full stop.
+extern const char* const overlap_meaning;
+
 /// What a candidate leads to, one sentence of plain text: "hits the lorry after 1.48 s at 23.1
 /// m/s".
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked);

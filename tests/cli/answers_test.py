@@ -119,7 +119,11 @@ class Answers(unittest.TestCase):
         self.check("inspect", "missing.obj", "box.obj", codes=(3,))
 
     def test_compile(self):
-        self.check("compile", "box.obj", "-o", "box.crm", "--mass-kg", "1400")
+        self.check("compile", "box.obj", "-o", "box.crm", "--mass-kg", "1400",
+                   "--center-of-mass-m", "1.5,0", "--yaw-inertia-kgm2", "2500")
+        again = self.check("compile", "box.crm", "-o", "again.crm", "--mass-kg", "1500")
+        self.assertEqual(again["kept"],
+                         {"center_of_mass_m": [1.5, 0, 0.75], "yaw_inertia_kgm2": 2500})
         document = self.check("inspect", "box.crm", "box.obj")
         self.assertIn("model", document["files"][0])
         self.check("collide", "box.crm", "box.obj")

@@ -168,14 +168,24 @@ TEST(Compile, StatedMassStandsInTheFileAndIsKept) {
   EXPECT_NE(text.find("yaw inertia 2100.5 kg m2"), std::string::npos) << text;
 
   // Compiled again: what is not stated anew stays. A height that is left out is the box's middle.
-  ASSERT_EQ(
-      place.crashrank({"compile", "a.crm", "-o", "b.crm", "--center-of-mass-m", "-0.5,0"}).code, 0);
+  const std::vector<std::string> anew{"compile", "a.crm",   "-o",    "b.crm", "--center-of-mass-m",
+                                      "-0.5,0",  "--force", "--json"};
+  const Outcome told = place.crashrank(anew);
+  ASSERT_EQ(told.code, 0) << told.err;
+  EXPECT_EQ(told.json().at("kept"), (Json{{"mass_kg", 1450.0}, {"yaw_inertia_kgm2", 2100.5}}));
+  const std::string words = place.crashrank({anew.begin(), anew.end() - 1}).out;
+  for (const char* part : {"kept from the input", "1450 kg (--mass-kg)",
+                           "yaw inertia 2100.5 kg m2 (--yaw-inertia-kgm2)"}) {
+    EXPECT_NE(words.find(part), std::string::npos) << words;
+  }
+  EXPECT_EQ(words.find("centre of mass"), std::string::npos) << words;
   const Json again = model_of("b.crm");
   EXPECT_EQ(again.at("mass_kg"), 1450.0);
   EXPECT_EQ(again.at("yaw_inertia_kgm2"), 2100.5);
   EXPECT_EQ(again.at("center_of_mass_m"), (Json{-0.5, 0.0, 0.85}));
 
-  ASSERT_EQ(place.crashrank({"compile", "a.obj", "-o", "c.crm"}).code, 0);
+  EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "c.crm"}).out.find("kept"),
+            std::string::npos);
   const Json nothing = model_of("c.crm");
   for (const char* key : {"mass_kg", "center_of_mass_m", "yaw_inertia_kgm2"}) {
     EXPECT_TRUE(nothing.at(key).is_null()) << key;
@@ -245,10 +255,22 @@ TEST(Compile, RefusesWhatMakesNoSense) {
     const char* part;
   };
   for (const Refused& bad : std::vector<Refused>{
-           {"--center-of-mass-m", "1", 2, "needs two or three finite numbers"},
-           {"--center-of-mass-m", "1,0,0.5,2", 2, "needs two or three finite numbers"},
-           {"--center-of-mass-m", "1,zero", 2, "needs two or three finite numbers"},
-           {"--center-of-mass-m", "1,nan", 2, "needs two or three finite numbers"},
+           {"--center-of-mass-m", "1", 2,
+            "--center-of-mass-m 1: has 1 number, but needs two or three finite numbers; write x,y "
+            "or x,y,z in metres, such as 1.5,0"},
+           {"--center-of-mass-m", "1,0,0.5,2", 2,
+            "has 4 numbers, but needs two or three finite numbers"},
+           {"--center-of-mass-m", "1,zero", 2,
+            "holds something else than numbers, but needs two or three finite numbers"},
+           {"--center-of-mass-m", "1,nan", 2,
+            "is not finite, but needs two or three finite numbers"},
+           {"--center-of-mass-m", "5 0", 3, "(5, 0, 0.85) m is not"},
+           {"--yaw-inertia-kgm2", "abc", 2,
+            "--yaw-inertia-kgm2: 'abc' is not a number: give kg m2, such as 2200"},
+           {"--yaw-inertia-kgm2", "2,200", 2, "'2,200' is not a number"},
+           {"--yaw-inertia-kgm2", "2200 kg", 2, "'2200 kg' is not a number"},
+           {"--scale", "big", 2,
+            "--scale: 'big' is not a number: give metres per file unit, such as 0.001"},
            {"--center-of-mass-m", "3.1,0", 3, "a.obj: centre of mass: (3.1, 0, 0.85) m is not"},
            {"--center-of-mass-m", "1,0,1500", 3, "centre of mass"},
            {"--yaw-inertia-kgm2", "0", 2, "a number above 0"},
@@ -263,6 +285,19 @@ TEST(Compile, RefusesWhatMakesNoSense) {
     EXPECT_NE(run.err.find(bad.part), std::string::npos) << run.err;
     EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
   }
+  const Outcome heavy = place.crashrank({"compile", "a.obj", "-o", "x.crm", "--mass-kg", "1.4t"});
+  EXPECT_EQ(heavy.code, 2);
+  EXPECT_NE(heavy.err.find("--mass-kg: '1.4t' is not a number: give kg, such as 1450"),
+            std::string::npos)
+      << heavy.err;
+  const Outcome spaces =
+      place.crashrank({"compile", "a.obj", "-o", "x.crm", "--center-of-mass-m", "1", "2", "3"});
+  EXPECT_EQ(spaces.code, 2);
+  EXPECT_NE(spaces.err.find("not expected: '2' '3'; numbers of one option stand together with "
+                            "commas, such as 1,2,3"),
+            std::string::npos)
+      << spaces.err;
+  EXPECT_TRUE(cli_test::is_one_message(spaces.err)) << spaces.err;
   const std::string mesh = place.read("a.obj");
   EXPECT_EQ(place.crashrank({"compile", "a.obj", "-o", "./a.obj", "--force"}).code, 2);
   EXPECT_EQ(place.read("a.obj"), mesh);

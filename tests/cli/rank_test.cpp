@@ -236,6 +236,40 @@ TEST(Rank, EveryBadScenarioIsExitThreeAndOneLineThatNamesIt) {
   EXPECT_EQ(place.crashrank({"rank", "."}).code, 3);
 }
 
+TEST(Rank, AnImpossibleMassCentreOrInertiaIsNamedByFileAndKey) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const auto refused = [&](const Json& ego, const std::string& told) {
+    Json scenario = Json::parse(place.read("scenario.json"));
+    scenario["models"]["ego"].update(ego);
+    place.write("s.json", scenario.dump());
+    for (const char* how : {"--json", "--first-place"}) {
+      const Outcome run = place.crashrank({"rank", "s.json", how});
+      EXPECT_EQ(run.code, 3);
+      EXPECT_EQ(run.err.rfind("crashrank: " + told, 0), 0U) << run.err;
+      EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+    }
+  };
+  refused({{"yaw_inertia_kgm2", 1}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"yaw_inertia_kgm2", 1e6}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"yaw_inertia_kgm2", 0}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"mass_kg", 1.0}, {"yaw_inertia_kgm2", 2400}}, "s.json: models.ego.yaw_inertia_kgm2: ");
+  refused({{"center_of_mass_m", {3.5, 0, 0.5}}}, "s.json: models.ego.center_of_mass_m: ");
+  refused({{"center_of_mass_m", {1e9, 0, 0.5}}}, "s.json: models.ego.center_of_mass_m[0]: ");
+  for (const Json& mass : {Json(0), Json(-5), Json(1e9), Json("heavy")}) {
+    refused({{"mass_kg", mass}}, "s.json: models.ego.mass_kg: ");
+  }
+  refused({{"kind", "pole"}, {"mass_kg", nullptr}}, "s.json: models.ego.mass_kg: ");
+
+  // What the model file alone states is the model file's.
+  ASSERT_EQ(place
+                .crashrank({"compile", "ego.obj", "-o", "ego.crm", "--mass-kg", "1500",
+                            "--yaw-inertia-kgm2", "2400"})
+                .code,
+            0);
+  refused({{"mesh", "ego.crm"}, {"mass_kg", 10}}, place.path("ego.crm") + ": yaw inertia: ");
+}
+
 TEST(Rank, APageOnStandardOutputStandsAlone) {
   const Workplace place;
   cli_test::write_box_scenario(place);
@@ -288,6 +322,30 @@ TEST(Rank, AManoeuvreThatBeginsElsewhereIsRefusedAndOneTooFastIsTold) {
             std::string::npos);
 }
 
+TEST(Rank, BodiesThatOverlapAtTheStartAreMarkedAndWarnedOf) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  Json scenario = Json::parse(place.read("scenario.json"));
+  for (const auto& [x_m, overlaps] : {std::pair(2.5, true), std::pair(3.5, false)}) {
+    scenario["actors"][0]["pose"]["x_m"] = x_m;
+    place.write("s.json", scenario.dump());
+    const Outcome run = place.crashrank({"rank", "s.json", "--report", "r.html"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    const auto says = [](const std::string& text, const char* part) {
+      return text.find(part) != std::string::npos;
+    };
+    EXPECT_EQ(says(run.out, "stone (overlaps at start)"), overlaps) << run.out;
+    EXPECT_EQ(says(run.out, "overlaps at start: what is deep inside"), overlaps) << run.out;
+    EXPECT_EQ(says(run.err, "warning: s.json: the ego overlaps 'stone' at the start (3 of 3"),
+              overlaps)
+        << run.err;
+    const std::string page = place.read("r.html");
+    EXPECT_EQ(says(page, "Doubtful: the ego overlaps"), overlaps);
+    EXPECT_EQ(says(page, "stone (overlaps at start)"), overlaps);
+    EXPECT_EQ(says(page, "overlaps stone at the start"), overlaps);
+  }
+}
+
 TEST(Rank, ManoeuvresBeyondTheGripAreTold) {
   const Workplace place;
   cli_test::write_box_scenario(place);
@@ -310,6 +368,16 @@ TEST(Rank, ManoeuvresBeyondTheGripAreTold) {
             std::string::npos)
       << beyond.err;
   EXPECT_NE(beyond.err.find("'swerve', in place "), std::string::npos) << beyond.err;
+
+  Json two = Json::parse(place.read("s.json"));
+  for (const char* name : {"hard left", "hard right"}) {
+    two["candidates"]["listed"].push_back({{"name", name}, {"steering_deg", 30}});
+  }
+  place.write("s.json", two.dump());
+  const Outcome three = place.crashrank({"rank", "s.json", "--json"});
+  for (const char* part : {"3 listed manoeuvres lie", "'swerve'", "'hard left'", "'hard right'"}) {
+    EXPECT_NE(three.err.find(part), std::string::npos) << three.err;
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -44,6 +45,7 @@ TEST(Usage, WhatWasMeantIsSaid) {
        std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"rnak", "s.json"}, "did you mean 'rank'?"},
            {{"colide", "a.obj", "a.obj"}, "did you mean 'collide'?"},
+           {{"compile", "a.obj", "-o", "a.crm", "--mass", "3"}, "did you mean '--mass-kg'?"},
            {{"inspect", "a.obj", "--jsno"}, "did you mean '--json'?"},
            {{"inspect", "a.obj", "--scael=2"}, "did you mean '--scale'?"},
            {{"rank", "s.json", "--mesure", "area"}, "did you mean '--measure'?"}}) {
@@ -58,6 +60,58 @@ TEST(Usage, WhatWasMeantIsSaid) {
     EXPECT_EQ(run.code, 2);
     EXPECT_EQ(run.err.find("did you mean"), std::string::npos) << run.err;
   }
+}
+
+TEST(Usage, AMisspeltKeyIsSaidToBeTheNearestOneThatIsThere) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const std::string good = place.read("scenario.json");
+  const auto error_with = [&](const std::string& key, const std::string& wrong) {
+    std::string text = good;
+    text.replace(text.find("\"" + key + "\""), key.size() + 2, "\"" + wrong + "\"");
+    place.write("s.json", text);
+    const Outcome run = place.crashrank({"rank", "s.json"});
+    EXPECT_EQ(run.code, 3);
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+    EXPECT_NE(run.err.find(wrong + ": there is no such key; "), std::string::npos) << run.err;
+    return run.err;
+  };
+  for (const auto& [key, wrong, meant] :
+       std::vector<std::tuple<std::string, std::string, std::string>>{
+           {"mass_kg", "mass", "mass_kg"},
+           {"mass_kg", "mass_lb", "mass_kg"},
+           {"horizon_s", "horizont_s", "horizon_s"},
+           {"speed_mps", "speed_kmh", "speed_mps"},
+           {"speed_mps", "speed", "speed_mps"},
+           {"kind", "knid", "kind"},
+           {"actors", "Actor", "actors"},
+           {"grip", "girp", "grip"},
+           {"steering_deg", "stering_deg", "steering_deg"}}) {
+    const std::string error = error_with(key, wrong);
+    EXPECT_NE(error.find("did you mean '" + meant + "'? The keys here are "), std::string::npos)
+        << error;
+  }
+  for (const std::string wrong : {"weather", "x", "zz"}) {
+    const std::string error = error_with("grip", wrong);
+    EXPECT_NE(error.find("there is no such key; the keys here are $schema"), std::string::npos)
+        << error;
+  }
+}
+
+TEST(Usage, AMeshOutsideTheScenariosFolderIsAllowedByTheOptionThatTheErrorNames) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  place.shell(
+      "mkdir inner && sed 's#ego.obj#../ego.obj#' scenario.json > inner/s.json && "
+      "cp block.obj inner/");
+  const Outcome refused = place.crashrank({"rank", "inner/s.json"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("inner/s.json: models.ego.mesh: "), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("or allow the mesh's folder with --allow FOLDER\n"), std::string::npos)
+      << refused.err;
+  const Outcome piped = place.shell("cd inner && " CRASHRANK_PROGRAM " rank - < s.json");
+  EXPECT_NE(piped.err.find("--allow FOLDER"), std::string::npos) << piped.err;
+  EXPECT_EQ(place.crashrank({"rank", "inner/s.json", "--allow", "."}).code, 0);
 }
 
 TEST(Usage, WhatIsNotExpectedIsToldInItsOrder) {

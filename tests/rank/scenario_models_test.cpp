@@ -97,6 +97,31 @@ TEST(ScenarioModels, AYawInertiaThatNoScenarioMayGiveIsTheFilesFault) {
   EXPECT_TRUE(load_scenario_model(model).ok());
 }
 
+TEST(ScenarioModels, AYawInertiaThatTheScenariosMassCannotHaveIsTheFilesFault) {
+  const ScratchDir dir;
+  ScenarioModel model = wanted("car", compiled(dir, {1500.0, std::nullopt, 2400.0}));
+  model.mass_kg = 10.0;
+  const Result<LoadedScenarioModel> refused = load_scenario_model(model);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::bad_input);
+  EXPECT_EQ(refused.error().file, model.path);
+  EXPECT_EQ(refused.error().place, "yaw inertia");
+  EXPECT_NE(refused.error().message().find("models.car.mesh"), std::string::npos);
+  model.yaw_inertia_kgm2 = 16.0;
+  EXPECT_TRUE(load_scenario_model(model).ok());
+  model.yaw_inertia_kgm2.reset();
+  model.mass_kg = 1400.0;
+  EXPECT_TRUE(load_scenario_model(model).ok());
+  // Guessed as that of a person.
+  model.path = compiled(dir, {std::nullopt, std::nullopt, 2400.0});
+  model.mass_kg.reset();
+  EXPECT_TRUE(load_scenario_model(model).ok());
+  model.kind = BodyKind::pedestrian;
+  EXPECT_FALSE(load_scenario_model(model).ok());
+  model.kind = BodyKind::pole;
+  EXPECT_TRUE(load_scenario_model(model).ok());
+}
+
 TEST(ScenarioModels, WhatCannotBeReadNamesItsModelAndChangesNothing) {
   const ScratchDir dir;
   const std::string car = compiled(dir, 3000.0);

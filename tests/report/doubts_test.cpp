@@ -40,6 +40,33 @@ TEST(Doubts, ContactsFasterThanTheCrashModelAreTold) {
   EXPECT_TRUE(told.doubts().empty());
 }
 
+TEST(Doubts, BodiesThatOverlapAtTheStartAreNamedOnceInEveryAnswer) {
+  for (const ImpactState state : {ImpactState::overlapping, ImpactState::contained}) {
+    Sound told;
+    const std::string mark = "(overlaps at start)";
+    EXPECT_EQ(ranking_text(told.scenario, told.models, told.result).find("overlap"),
+              std::string::npos);
+    told.result.ranking[1].contacts[0].state = state;
+    told.result.ranking[2].contacts = told.result.ranking[1].contacts;
+    ASSERT_EQ(told.doubts().size(), 1U);
+    EXPECT_EQ(
+        told.doubts()[0].rfind("the ego overlaps 'wall' at the start (2 of 3 candidates): ", 0), 0U)
+        << told.doubts()[0];
+    const std::string text = ranking_text(told.scenario, told.models, told.result);
+    for (const std::string& part : {"wall " + mark, std::string("overlaps at start: ")}) {
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+    const std::string page = html_report(told.scenario, told.models, told.result);
+    for (const std::string& part :
+         {std::string("Doubtful: the ego overlaps"), "wall " + mark + ", second",
+          std::string("overlaps wall at the start")}) {
+      EXPECT_NE(page.find(part), std::string::npos) << part;
+    }
+    told.result.ranking[1].contacts[1].state = state;
+    EXPECT_EQ(told.doubts()[0].rfind("the ego overlaps 'wall'; 'second' at", 0), 0U);
+  }
+}
+
 TEST(Doubts, KeysWithoutEffectAreNamed) {
   Sound told;
   told.scenario.keys_without_effect = {"crush"};
@@ -68,6 +95,31 @@ TEST(Doubts, TheGripCountsUpToTheFirstContact) {
   ASSERT_EQ(told.doubts().size(), 1U);  // hypot(10, 6.25) / 9.80665 = 1.2025
   EXPECT_NE(told.doubts()[0].find("'hit', in place 2, takes 1.01 times"), std::string::npos)
       << told.doubts()[0];
+}
+
+TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
+  Sound told;
+  told.scenario.grip = 0.8;
+  const CandidateResult miss = told.result.ranking[0];
+  told.result.ranking.clear();
+  for (std::size_t i = 0; i < 5; ++i) {
+    Candidate candidate;
+    candidate.name = "turn " + std::to_string(i);
+    candidate.acceleration_mps2 = i == 1 ? 0.0 : -9.80665 * (1.0 + 0.2 * static_cast<double>(i));
+    told.result.candidates.push_back(candidate);
+    told.result.ranking.push_back(miss);
+    told.result.ranking.back().candidate = told.result.candidates.size() - 1;
+    told.result.ranking.back().place = i + 1;
+  }
+  const std::string grip =
+      " beyond the tyres' grip (0.8), so that the car cannot follow: 'turn 0', in place 1, takes "
+      "1.25 times what there is; 'turn 2', in place 3, takes 1.75 times what there is; 'turn 3', "
+      "in place 4, takes 2.00 times what there is";
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0], "4 listed manoeuvres lie" + grip + "; and 1 more");
+  told.result.ranking.pop_back();
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0], "3 listed manoeuvres lie" + grip);
 }
 
 TEST(Doubts, PlansThatEndWhileMovingOrBeginAtAnotherSpeedAreTold) {

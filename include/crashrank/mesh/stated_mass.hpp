@@ -20,7 +20,7 @@ struct StatedMass {
 
 /// Checks that a yaw inertia is at least 1 % of that of an even block over the body's bounds and at
 /// most that of a ring: all mass at the ends of their diagonal. `extent_m` is length, width,
-/// height. Errors: bad_input.
+/// height. Errors: bad_input; the place is "yaw inertia".
 CRASHRANK_API Status check_yaw_inertia(double yaw_inertia_kgm2, double mass_kg,
                                        const Eigen::Vector3d& extent_m);
 

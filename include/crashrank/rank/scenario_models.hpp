@@ -30,7 +30,8 @@ struct LoadedScenarioModel {
 /// `load_model` does. In crashrank::import. Blocks; safe from any thread.
 /// Errors: those of the two, naming file and model; bad_input for a model file that the scenario
 /// wants scaled, turned or moved, or whose mass or yaw inertia is outside `scenario_limits` where
-/// the scenario gives none; usage for a model without a path.
+/// the scenario gives none, or whose yaw inertia the mass that the scenario gives cannot have;
+/// usage for a model without a path.
 CRASHRANK_API Result<LoadedScenarioModel> load_scenario_model(
     const ScenarioModel& wanted, const ScenarioModelOptions& options = {});
 

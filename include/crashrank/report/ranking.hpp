@@ -35,9 +35,9 @@ CRASHRANK_API std::string ranking_text(const Scenario& scenario, View<const Mode
                                        const RankingTextOptions& options = {});
 
 /// What makes places of an answer doubtful though nothing is wrong with it, one sentence each,
-/// names as they are: contacts faster than the crash model reaches, listed manoeuvres beyond the
-/// grip of the tyres, timed poses that end while their body moves or begin at another speed than
-/// the ego's, keys of the scenario that are without effect.
+/// names as they are: contacts faster than the crash model reaches, bodies that overlap at the
+/// start, listed manoeuvres beyond the grip of the tyres, timed poses that end while their body
+/// moves or begin at another speed than the ego's, keys of the scenario that are without effect.
 CRASHRANK_API std::vector<std::string> ranking_doubts(const Scenario& scenario,
                                                       const RankResult& result);
 
