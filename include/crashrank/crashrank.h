@@ -301,7 +301,8 @@ typedef struct crashrank_choice {
   double other_delta_v_mps;    ///< and that of who is hit
   double pdof_deg;             ///< where the force on the ego comes from, clockwise from ahead
   uint64_t damaged_triangles;  ///< of the ego, from all contacts
-  uint64_t contacts;           ///< bodies hit together
+  uint64_t contacts;           ///< of the ego; for those between others see
+                               ///< crashrank_ranking_further_count
 } crashrank_choice;
 
 /// Number of candidates, 0 for NULL.
@@ -310,6 +311,26 @@ CRASHRANK_API size_t crashrank_ranking_size(const crashrank_ranking* ranking);
 CRASHRANK_API crashrank_status crashrank_ranking_get(const crashrank_ranking* ranking, size_t place,
                                                      crashrank_choice* choice,
                                                      crashrank_error* error);
+/// A contact between two bodies neither of which is the ego, one of which was hit before.
+typedef struct crashrank_further_contact {
+  const char* a;             ///< name of the one body; the ranking's
+  const char* b;             ///< and of the other
+  double time_s;             ///< when it begins, from now
+  double closing_speed_mps;  ///< relative speed as it begins, where its force acts
+  double a_delta_v_mps;      ///< change of velocity of a, magnitude
+  double b_delta_v_mps;      ///< and of b
+  double harm;               ///< persons, as weighted; NaN unless the measure is harm
+} crashrank_further_contact;
+
+/// Number of contacts between others that follow from the candidate that crashrank_ranking_get has
+/// under `index`; 0 for NULL, and where there is no such index.
+CRASHRANK_API size_t crashrank_ranking_further_count(const crashrank_ranking* ranking,
+                                                     size_t index);
+/// One of them, by their begins; `contact` is its index from 0. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_ranking_further(const crashrank_ranking* ranking,
+                                                         size_t index, size_t contact,
+                                                         crashrank_further_contact* further,
+                                                         crashrank_error* error);
 /// The place of the candidate that crashrank_ranking_get has under `index`, from 1: candidates that
 /// are tied share it (1, 2, 2, 4) and have neighbouring indices. `sharing`, which may be NULL: how
 /// many candidates have that place. Errors: usage.

@@ -84,6 +84,33 @@ crashrank_status crashrank_ranking_get(const crashrank_ranking* ranking, size_t 
   return CRASHRANK_OK;
 }
 
+size_t crashrank_ranking_further_count(const crashrank_ranking* ranking, size_t index) {
+  if (index >= crashrank_ranking_size(ranking)) return 0;
+  return ranking->result.ranking[index].further.size();
+}
+
+crashrank_status crashrank_ranking_further(const crashrank_ranking* ranking, size_t index,
+                                           size_t contact, crashrank_further_contact* further,
+                                           crashrank_error* error) {
+  if (ranking == nullptr || further == nullptr) return refuse_null(error);
+  if (index >= crashrank_ranking_size(ranking)) {
+    return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
+  }
+  if (contact >= crashrank_ranking_further_count(ranking, index)) {
+    return refuse(CRASHRANK_USAGE, "the candidate has no such contact between others", error);
+  }
+  const FurtherContact& from = ranking->result.ranking[index].further[contact];
+  const bool has_harm = ranking->result.measure == Measure::harm;
+  *further = {ranking->actors[from.a].c_str(),
+              ranking->actors[from.b].c_str(),
+              from.time_s,
+              from.closing_speed_mps,
+              from.outcome_a.delta_v_mps,
+              from.outcome_b.delta_v_mps,
+              has_harm ? from.harm : std::numeric_limits<double>::quiet_NaN()};
+  return CRASHRANK_OK;
+}
+
 crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking, size_t index,
                                          size_t* place, size_t* sharing, crashrank_error* error) {
   if (ranking == nullptr || place == nullptr) return refuse_null(error);

@@ -29,10 +29,12 @@ BodyContact ContactRun::describe(bool is_first) const {
   result.impulse_ns = sign * Vector3d(impulse.x, impulse.y, 0.0);
   result.after = given.velocity;
   if (v.movable()) {
-    result.delta_v_mps = Vector3d(now.inverse_mass * own.x, now.inverse_mass * own.y, 0.0);
-    result.delta_yaw_rate_radps = now.inverse_inertia * own.moment;
-    result.after.linear_mps = Vector3d(now.vx, now.vy, given.velocity.linear_mps.z());
-    result.after.angular_radps.z() = now.spin;
+    const PlanarForce& taken = is_first ? taken_first_ : taken_second_;
+    result.delta_v_mps = now.inverse_mass * Vector3d(own.x - taken.x, own.y - taken.y, 0.0);
+    result.delta_yaw_rate_radps = now.inverse_inertia * (own.moment - taken.moment);
+    const PlanarBody& last = acts_ ? end : now;
+    result.after.linear_mps = Vector3d(last.vx, last.vy, given.velocity.linear_mps.z());
+    result.after.angular_radps.z() = last.spin;
     result.moved_m = Vector3d(end.x - start.x, end.y - start.y, 0.0);
     result.turned_rad = end.turned - start.turned;
   }
@@ -46,8 +48,8 @@ BodyContact ContactRun::describe(bool is_first) const {
     result.damaged.grow(own_side.own);
     result.damaged.grow(other_side.other);
     result.intrusion_m =
-        std::max(result.intrusion_m, static_cast<double>(std::max(own_side.intrusion_own,
-                                                                  other_side.intrusion_other)));
+        std::max(result.intrusion_m,
+                 static_cast<double>(std::max(own_side.intrusion_own, other_side.intrusion_other)));
   }
   return result;
 }

@@ -39,6 +39,7 @@ void BodyPair::begin(std::size_t a, std::size_t b) {
   second = static_cast<std::uint32_t>(b);
   of_first.begin();
   of_second.begin();
+  faded_until_s = -1e9;
   meet_again(left_at_step = 0);
 }
 
@@ -90,6 +91,15 @@ bool ContactRun::add(std::uint32_t pair) {
   return true;
 }
 
+void ContactRun::begin_here(const ContactBody& given_first, const ContactBody& given_second) {
+  given_first_ = given_first;
+  given_second_ = given_second;
+  start_first_ = end_first_ = motion_of(first_);
+  start_second_ = end_second_ = motion_of(second());
+  record_.begin(start_first_, start_second_);
+  time_s_ = -0.5 * step_s_;
+}
+
 double ContactRun::relative_speed() const {
   const PlanarBody& p = motion_of(first_);
   const PlanarBody& q = motion_of(second());
@@ -97,8 +107,7 @@ double ContactRun::relative_speed() const {
 }
 
 double ContactRun::speed_at_rims() const {
-  return relative_speed() +
-         rim_m_ * std::abs(motion_of(first_).spin - motion_of(second()).spin);
+  return relative_speed() + rim_m_ * std::abs(motion_of(first_).spin - motion_of(second()).spin);
 }
 
 /// Bodies that nothing moves have none, and so the others of several.
@@ -180,10 +189,19 @@ std::size_t ContactRun::most_pressed() const {
 }
 
 double ContactRun::next_step_s() const {
+  // However hard bodies press that are no faster than this against each other, a step takes this
+  // share of the usual travel: what rests or is pushed along needs no more.
+  constexpr double slow_mps = 1.0;
+  constexpr double least_travel = 1.0 / 60.0;
   double step_s = std::clamp(options_.travel_m / std::max(speed_mps_, 1e-3), options_.shortest_s,
                              options_.longest_s);
   if (acceleration_mps2_ > 0.0) {
-    step_s = std::max(0.25 * options_.shortest_s,
+    double least_s = 0.25 * options_.shortest_s;
+    if (std::max(speed_mps_, most_passing_mps_) < slow_mps) {
+      least_s = std::clamp(least_travel * options_.travel_m / std::max(speed_mps_, 1e-3), least_s,
+                           step_s);
+    }
+    step_s = std::max(least_s,
                       std::min(step_s, options_.speed_change * speed_mps_ / acceleration_mps2_));
   }
   return step_s;
@@ -237,13 +255,13 @@ void ContactRun::push() {
   const double force = std::hypot(on_first_.x, on_first_.y);
   acceleration_mps2_ =
       force * (p.inverse_mass + q.inverse_mass) +
-      rim_m_ *
-          (std::abs(on_first_.moment) * p.inverse_inertia +
-           std::abs(state_->pairs[pairs_[0]].on_second.moment) * q.inverse_inertia);
+      rim_m_ * (std::abs(on_first_.moment) * p.inverse_inertia +
+                std::abs(state_->pairs[pairs_[0]].on_second.moment) * q.inverse_inertia);
   double seconds = 0.0;
   if (change.slope < 0.0 && change.bend > 0.0) {
     seconds = std::min(step_s_, -change.slope / change.bend);
   }
+  pushed_s_ = seconds;
   const double before = moving_j();
   const auto push_one = [&](PlanarBody& body, const PlanarForce& f, PlanarForce& whole,
                             PlanarForce& since) {
@@ -359,6 +377,21 @@ void ContactRun::press() {
   speed_mps_ = speed_at_rims();
 }
 
+Eigen::Vector2d ContactRun::step_change_mps(bool of_first) const {
+  if (!presses()) return Eigen::Vector2d(0, 0);
+  const PlanarForce& f = of_first ? on_first_ : state_->pairs[pairs_[0]].on_second;
+  const double share = pushed_s_ * motion_of(of_first ? first_ : second()).inverse_mass;
+  return Eigen::Vector2d(share * f.x, share * f.y);
+}
+
+void ContactRun::take_back(bool from_first, double share) {
+  const PlanarForce& f = from_first ? on_first_ : state_->pairs[pairs_[0]].on_second;
+  PlanarForce& taken = from_first ? taken_first_ : taken_second_;
+  taken.x += share * pushed_s_ * f.x;
+  taken.y += share * pushed_s_ * f.y;
+  taken.moment += share * pushed_s_ * f.moment;
+}
+
 void ContactRun::end_step() {
   // Ends: bodies that have travelled this far without force have parted; a force that gave less
   // than this share of the impulse in such a time and travel has all but ended, once a share of
@@ -380,8 +413,9 @@ void ContactRun::end_step() {
   }
   over_ = quiet_m_ > (acts_ ? parted_m : missed_m) || time_s_ > longest_contact_s;
   if (acts_ && time_s_ - late_from_s_ > faded_s && late_m_ > faded_m) {
-    over_ = over_ || (late_ns_ < faded_share * impulse_ns_ &&
-                      impulse_ns_ > taken_share * momentum_before_ns_);
+    faded_ =
+        late_ns_ < faded_share * impulse_ns_ && impulse_ns_ > taken_share * momentum_before_ns_;
+    over_ = over_ || faded_;
     late_ns_ = 0.0;
     late_from_s_ = time_s_;
     late_m_ = 0.0;

@@ -23,11 +23,12 @@ struct BodyPair {
   NearPieces of_second;      ///< and of the second in the first
   PassRecord in_first;       ///< of the second's pieces
   PassRecord in_second;
-  PlanarForce on_second;          ///< in this step, about its centre of mass
-  PlanarForce since_rebound;      ///< impulse on the second, about the origin
-  PlanarForce impulse_on_second;  ///< in the whole contact, about its centre of mass
-  bool pressed = false;           ///< it bore a force
+  PlanarForce on_second;           ///< in this step, about its centre of mass
+  PlanarForce since_rebound;       ///< impulse on the second, about the origin
+  PlanarForce impulse_on_second;   ///< in the whole contact, about its centre of mass
+  bool pressed = false;            ///< it bore a force
   std::uint64_t left_at_step = 0;  ///< of the scene, when their last contact was over
+  double faded_until_s = -1e9;     ///< of the scene: see SceneContact::goes_on
 
   /// Forgets everything but its room.
   void begin(std::size_t a, std::size_t b);
@@ -65,14 +66,18 @@ public:
   static constexpr std::size_t most_others = 65;
 
   /// Begins with what moves now; `first` and `second` in the order of `goes_second`, indices into
-  /// the workspace's bodies, `pair` what is remembered of them. `given` are the two with their poses
-  /// as they are now. Workspace and vehicles outlive the run.
+  /// the workspace's bodies, `pair` what is remembered of them. `given` are the two with their
+  /// poses as they are now. Workspace and vehicles outlive the run.
   void begin(ContactWorkspace::State& state, std::size_t first, std::uint32_t pair,
              const ContactBody& given_first, const ContactBody& given_second,
              const Eigen::Vector3d& origin_m, const ContactVariant& variant,
              const ContactOptions& options);
-  /// A further body that nothing moves, beside a second that nothing moves. False: there is no room.
+  /// A further body that nothing moves, beside a second that nothing moves. False: there is no
+  /// room.
   bool add(std::uint32_t pair);
+
+  /// What was near only comes into contact: it begins here, in the middle of a step.
+  void begin_here(const ContactBody& given_first, const ContactBody& given_second);
 
   /// The step that the contact asks for, s.
   double next_step_s() const;
@@ -82,9 +87,15 @@ public:
   bool presses() const noexcept { return totals_.pressing > 0.0; }
   /// Changes the bodies' velocities by them, and by the rebound where it is due.
   void press();
+  /// What the step's force gave the first or the second body, m/s.
+  Eigen::Vector2d step_change_mps(bool of_first) const;
+  /// The share in [0, 1] of that which something else took at the same time: no change of velocity.
+  void take_back(bool from_first, double share);
   /// Once the bodies have moved to the end of the step.
   void end_step();
   bool over() const noexcept { return over_; }
+  /// It is over though the bodies may still rub against each other.
+  bool faded() const noexcept { return faded_; }
 
   std::size_t first() const noexcept { return first_; }
   /// Index of the body that it began with.
@@ -179,11 +190,15 @@ private:
   double rim_m_ = 0.0;  ///< no outline is further from its body's centre of mass
 
   bool over_ = false;
+  bool faded_ = false;
   bool acts_ = false;
-  Totals totals_;                ///< of this step
-  PlanarForce on_first_;         ///< in this step, about its centre of mass
-  PlanarForce since_rebound_;    ///< impulse on the first, about the origin
+  Totals totals_;                 ///< of this step
+  PlanarForce on_first_;          ///< in this step, about its centre of mass
+  PlanarForce since_rebound_;     ///< impulse on the first, about the origin
   PlanarForce impulse_on_first_;  ///< in the whole contact, about its centre of mass
+  double pushed_s_ = 0.0;         ///< how long it acted in this step
+  PlanarForce taken_first_;       ///< impulses on both, see `take_back`
+  PlanarForce taken_second_;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;

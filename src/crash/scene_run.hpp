@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,18 +32,34 @@ struct SceneOptions {
   AfterContact after = AfterContact::brakes;  ///< what the wheels of all that were hit do
   double grip = 0.7;                          ///< of tyres on the road
   double sliding_grip = 0.5;                  ///< of what has no wheels that turn
+  double rolling_step_s = 0.02;               ///< longest step without contact
   double after_last_contact_s = 3.0;          ///< the scene ends so long after the last force
   double longest_s = 30.0;                    ///< and so long after its start at the latest
 };
 
-/// A contact between two bodies of a scene, from its first touch to the end of its force.
+/// A contact between two bodies of a scene. Its velocities are those of the contact law's end; what
+/// follows within `same_contact_s` and changes neither velocity by more than `rubbing_mps`, rubbing
+/// on and pushing along, adds to its damage, energy and motion.
 struct SceneContact {
-  std::uint32_t a = 0;   ///< index of the lower body
+  static constexpr double same_contact_s = 0.1;
+  static constexpr double rubbing_mps = 0.5;
+  /// Forces that follow within this time after the contact law's end, s.
+  static constexpr double faded_s = 0.1;
+
+  std::uint32_t a = 0;   ///< index of the body that moves, of two the lower
   std::uint32_t b = 0;   ///< and of the other; of several that nothing moves the one pressed most
-  double begin_s = 0.0;  ///< on the plans' clock
-  ContactBody given_a;   ///< as it began
+  double begin_s = 0.0;  ///< on the plans' clock: of its first force
+  /// It goes on where the contact law ended an earlier contact of the two, which is validated as
+  /// far as that end: no part of that one's event.
+  bool goes_on = false;
+  bool is_first = false;  ///< with the body that the chain's first body meets first
+  ContactBody given_a;    ///< as it began
   ContactBody given_b;
   ContactOutcome outcome;
+  /// Bodies that nothing moves and that pressed on the other body: the first few.
+  static constexpr std::size_t most_pressed = 8;
+  std::array<std::uint32_t, most_pressed> pressed{};
+  std::size_t pressed_count = 0;
 };
 
 /// Everything that follows from the chain's first body: it and what it touches, what those touch
@@ -63,15 +80,17 @@ public:
   /// Room for scenes of so many bodies with so many pieces of outline each.
   void prepare(std::size_t bodies, std::size_t pieces);
 
-  /// Begins at a time with the chain's first body. Bodies' vehicles, plans and footings outlive the
-  /// run. Allocates where more room is needed than was prepared.
-  void begin(View<const SceneBody> bodies, std::size_t first, double start_s,
+  /// Begins at a time with the chain's first body and the one that it meets then. Bodies' vehicles,
+  /// plans and footings outlive the run. Allocates where more room is needed than was prepared.
+  void begin(View<const SceneBody> bodies, std::size_t first, std::size_t partner, double start_s,
              const Eigen::Vector3d& origin_m, const SceneOptions& options);
   /// Takes at most so many steps; false once the scene is over.
   bool advance(int steps);
 
   /// Contacts with a force that have ended, by the end of their force.
-  View<const SceneContact> contacts() const noexcept { return {contacts_.data(), contacts_.size()}; }
+  View<const SceneContact> contacts() const noexcept {
+    return {contacts_.data(), contacts_.size()};
+  }
   /// Contacts that go on.
   std::size_t at_once() const noexcept { return live_.size(); }
   const ContactRun& live(std::size_t k) const { return runs_[live_[k]]; }
@@ -102,9 +121,10 @@ private:
     double half_x = 0.0;
     double half_y = 0.0;
     Wheels wheels;
-    double placed_s = 0.0;    ///< planned: when it was last placed
-    double slack_m = -1.0;    ///< travel until its list of near bodies has to be made anew
-    std::size_t near = 0;     ///< bodies in that list
+    double struck_s = -1e9;  ///< when a force last acted that was more than a push
+    double placed_s = 0.0;   ///< planned: when it was last placed
+    double slack_m = -1.0;   ///< travel until its list of near bodies has to be made anew
+    std::size_t near = 0;    ///< bodies in that list
   };
 
   PlanarBody& motion_of(std::size_t i) { return memory_.bodies[i].motion; }
@@ -128,7 +148,10 @@ private:
   ContactRun* live_with(std::size_t i, std::size_t j);
   std::uint32_t pair_of(std::size_t i, std::size_t j, bool& in_memory);
   void close(ContactRun& run);
+  void tell(const ContactRun& run, const ContactOutcome& outcome, bool swapped);
+  void tell_pressed(const ContactRun& run, SceneContact& told) const;
   void lock_damaged_wheels(std::size_t i, const Box& damaged);
+  void drive_on_road(std::size_t i, double step_s);
   void settle();
   void step();
 
@@ -141,9 +164,11 @@ private:
   std::vector<std::uint32_t> near_;  ///< `most_near` for each body
   std::vector<ContactRun> runs_;
   std::vector<double> begun_s_;       ///< by run
+  std::vector<char> goes_on_;         ///< by run, see SceneContact
   std::vector<std::uint32_t> live_;   ///< runs that go on
   std::vector<std::uint32_t> spare_;  ///< runs that do not
   std::vector<SceneContact> contacts_;
+  const ContactRun* first_run_ = nullptr;  ///< with the first body's partner
   double start_s_ = 0.0;
   double now_s_ = 0.0;
   double last_force_s_ = 0.0;

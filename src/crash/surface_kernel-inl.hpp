@@ -58,8 +58,7 @@ inline void begin_block(const PressQuery& q, const PieceBlock& block, const Piec
     const F8 least = depths_at(target, block.band, at_x, at_y).least();
     store(select(less(all(allowed_m), least), all(never), all(0.0F)), states.s.data() + h);
     if (!known) continue;
-    const F8 crushed =
-        minimum(load(earlier.way.data() + h), load(earlier.furthest.data() + h));
+    const F8 crushed = minimum(load(earlier.way.data() + h), load(earlier.furthest.data() + h));
     const M8 any = less(all(0.0F), crushed);
     // From where it is now: the way to the surface first.
     store(select(any, crushed + positive(-least), all(0.0F)), states.furthest.data() + h);
@@ -296,8 +295,12 @@ template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& 
   const F8 other_depth = depth - own_depth;
   const F8 own_share =
       both_yield ? select(less(all(1e-6F), depth), own_depth / depth, all(0.5F)) : one;
-  force = force *
-          (one + minimum(all(2.0F * spread) * depth, all(q_.wider_m)) * all(1.0F / q_.narrow_m));
+  // Along no longer way than there is material ahead: a post behind a strip of sheet metal tears
+  // out, it does not drag a whole corner along.
+  const F8 remains = ahead * select(rearwards, d.rear, d.front) +
+                     ny * ny * select(less(ny, zero), d.right, d.left);
+  const F8 beside = minimum(all(2.0F * spread) * minimum(depth, remains), all(q_.wider_m));
+  force = force * (one + beside * all(1.0F / q_.narrow_m));
   const auto height = static_cast<float>(profile_edges_m[p.band + 1] - profile_edges_m[p.band]);
   const F8 length = load(p.rows->length_m.data() + p.first);
   const F8 pressed = (force + all(q_.dragged_kgm3 * height) * advance * advance) *

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crash/planar_body.hpp"
+#include "crashrank/crash/after_contact.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include <Eigen/Core>
@@ -24,13 +25,6 @@ struct Footing {
 /// the outline's box. Loads balance the centre of mass (standing vehicle, no load transfer); a
 /// centre of mass beyond the points counts as over the nearest. O(pieces of the outline).
 Footing footing_of(const Vehicle& vehicle);
-
-/// What the wheels do after a contact.
-enum class AfterContact {
-  brakes,    ///< all undamaged wheels brake with one share of their grip, and steer
-  releases,  ///< undamaged wheels roll freely, and steer
-  locks,     ///< no wheel turns
-};
 
 /// State of an axle's wheels: left, right.
 struct AxleWheels {

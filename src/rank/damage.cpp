@@ -8,8 +8,8 @@
 namespace crashrank::detail {
 namespace {
 
-/// The ego moves no further than this from one pose to the next, unless the record's neighbours are
-/// further apart: what lies between them is found by following corners.
+/// The first body moves no further than this from one pose to the next, unless the record's
+/// neighbours are further apart: what lies between them is found by following corners.
 constexpr double pose_spacing_m = 0.1;
 
 Box bounds_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
@@ -45,23 +45,23 @@ Box wider(const Box& box, float by) {
   return result;
 }
 
-// How far a point in the ego's coordinates moves in the frame of the other.
+// How far a point in a's coordinates moves in the frame of b.
 double way_of_point(const ContactPoses& from, const ContactPoses& to,
-                    const Eigen::Vector3d& in_ego_m) {
+                    const Eigen::Vector3d& in_a_m) {
   const Pose before = relative(from.b, from.a);
   const Pose after = relative(to.b, to.a);
-  return (after.rotation * in_ego_m + after.translation -
-          (before.rotation * in_ego_m + before.translation))
+  return (after.rotation * in_a_m + after.translation -
+          (before.rotation * in_a_m + before.translation))
       .norm();
 }
 
-// How far the corner of the ego's box that moves most gets in the other's frame.
-double way_of_ego(const Scene& scene, const ContactPoses& from, const ContactPoses& to) {
+// How far the corner of a's box that moves most gets in b's frame.
+double way_of_box(const Body& a, const ContactPoses& from, const ContactPoses& to) {
   double way_m = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
                                (corner & 4) != 0 ? 1.0 : -1.0);
-    const Eigen::Vector3d point = scene.ego.center_m + scene.ego.half_axes_m * sign;
+    const Eigen::Vector3d point = a.center_m + a.half_axes_m * sign;
     way_m = std::max(way_m, way_of_point(from, to, point));
   }
   return way_m;
@@ -69,21 +69,21 @@ double way_of_ego(const Scene& scene, const ContactPoses& from, const ContactPos
 
 // Entries of a record that stand for all: the first, the one at which the contact point has got
 // furthest, the last, and as many between them as keep neighbours close.
-std::vector<std::size_t> choose_entries(const Scene& scene, View<const ContactPoses> record,
+std::vector<std::size_t> choose_entries(const Body& a, View<const ContactPoses> record,
                                         std::size_t furthest) {
   std::vector<std::size_t> chosen{0};
   for (std::size_t i = 1; i < record.size(); ++i) {
     if (i == furthest || i + 1 == record.size() ||
-        way_of_ego(scene, record[chosen.back()], record[i + 1]) > pose_spacing_m) {
+        way_of_box(a, record[chosen.back()], record[i + 1]) > pose_spacing_m) {
       chosen.push_back(i);
     }
   }
   return chosen;
 }
 
-// Whether a body can touch the ego at one of the poses.
-bool comes_near(const Body& ego, const Body& other, const std::vector<Pose>& poses) {
-  const double reach_m = ego.radius_m + other.radius_m;
+// Whether a body can touch the first at one of the poses.
+bool comes_near(const Body& first, const Body& other, const std::vector<Pose>& poses) {
+  const double reach_m = first.radius_m + other.radius_m;
   return std::any_of(poses.begin(), poses.end(),
                      [reach_m](const Pose& pose) { return pose.translation.norm() <= reach_m; });
 }
@@ -121,17 +121,17 @@ void sum_up(const TriangleMesh& mesh, BodyDamage& damage) {
   }
 }
 
-DamagePlan plan_damage(const Scene& scene, const Pose& ego, const Contact& contact,
-                       const Impact& impact, const ContactMotion& motion,
+DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const ContactMotion& motion,
                        View<const std::size_t> pressed) {
   const View<const ContactPoses> record = motion.all();
-  const Body& other = scene.actors[contact.actor];
+  const Body& a = body_of(scene, query.a);
   DamagePlan plan;
-  plan.triangle_ego = impact.triangle_a;
-  plan.triangle_other = impact.triangle_b;
-  plan.first_pose = contact.state == ImpactState::contact ? 1 : 0;
+  plan.query = query;
+  plan.first_pose = query.state == ImpactState::contact && query.triangle_a >= 0 ? 1 : 0;
   plan.crush_s = record[record.size() - 1].time_s;
-  const Eigen::Vector3d point_m = ego.rotation.transpose() * (contact.point_m - ego.translation);
+  plan.pose_a = record[0].a;
+  const Eigen::Vector3d point_m =
+      plan.pose_a.rotation.transpose() * (query.point_m - plan.pose_a.translation);
   std::size_t furthest = 0;
   for (std::size_t i = 1; i < record.size(); ++i) {
     const double way_m = way_of_point(record[0], record[i], point_m);
@@ -139,58 +139,55 @@ DamagePlan plan_damage(const Scene& scene, const Pose& ego, const Contact& conta
     plan.crush_m = way_m;
     furthest = i;
   }
-  const std::vector<std::size_t> chosen = choose_entries(scene, record, furthest);
+  const std::vector<std::size_t> chosen = choose_entries(a, record, furthest);
   const auto add_path = [&](std::size_t actor) {
     const Body& body = scene.actors[actor];
     // Of joined bodies the record has the common pose.
     const bool stands = !body.vehicle.movable();
-    const Pose standing = body.motion.pose_at(contact.time_of_impact_s);
+    const Pose standing = body.motion.pose_at(0.0);
     DamagePath path;
     path.actor = actor;
     for (const std::size_t i : chosen) {
       path.poses.push_back(relative(record[i].a, stands ? standing : record[i].b));
     }
-    if (actor == contact.actor || comes_near(scene.ego, body, path.poses)) {
-      plan.paths.push_back(std::move(path));
-    }
+    if (actor == query.b || comes_near(a, body, path.poses)) plan.paths.push_back(std::move(path));
   };
-  add_path(contact.actor);
+  add_path(query.b);
   for (const std::size_t actor : pressed) {
-    if (actor != contact.actor) add_path(actor);
+    if (actor != query.b) add_path(actor);
   }
-  plan.ego = ego;
-  plan.other =
-      other.vehicle.movable() ? record[0].b : other.motion.pose_at(contact.time_of_impact_s);
+  const Body& b = scene.actors[query.b];
+  plan.pose_b = b.vehicle.movable() ? record[0].b : b.motion.pose_at(0.0);
   return plan;
 }
 
 void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& found,
-                 Contact& contact, DamageScratch& scratch, RankWork& work) {
-  const Body& other = scene.actors[contact.actor];
-  const Model& ego_model = *scene.ego.model;
-  const Model& other_model = *other.model;
-  scratch.ego.clear(ego_model.mesh.size());
-  scratch.other.clear(other_model.mesh.size());
+                 BodyDamage& damage_a, BodyDamage& damage_b, DamageScratch& scratch,
+                 RankWork& work) {
+  const DamageQuery& asked = plan.query;
+  const Body& a = body_of(scene, asked.a);
+  const Body& b = scene.actors[asked.b];
+  scratch.a.clear(a.model->mesh.size());
+  scratch.b.clear(b.model->mesh.size());
   scratch.overlaps.clear();
 
-  if (plan.triangle_ego >= 0 && plan.triangle_other >= 0) {
-    scratch.ego.add(static_cast<std::uint32_t>(plan.triangle_ego));
-    scratch.other.add(static_cast<std::uint32_t>(plan.triangle_other));
-    scratch.overlaps.push_back({relative(plan.ego, plan.other), {}});
+  if (asked.triangle_a >= 0 && asked.triangle_b >= 0) {
+    scratch.a.add(static_cast<std::uint32_t>(asked.triangle_a));
+    scratch.b.add(static_cast<std::uint32_t>(asked.triangle_b));
+    scratch.overlaps.push_back({relative(plan.pose_a, plan.pose_b), {}});
   }
-  if (contact.state == ImpactState::contained) {
-    const bool ego_is_inside = scene.ego.radius_m < other.radius_m;
-    add_all(ego_is_inside ? ego_model.mesh : other_model.mesh,
-            ego_is_inside ? scratch.ego : scratch.other);
+  if (asked.state == ImpactState::contained) {
+    const bool a_is_inside = a.radius_m < b.radius_m;
+    add_all(a_is_inside ? a.model->mesh : b.model->mesh, a_is_inside ? scratch.a : scratch.b);
   }
   std::size_t query = found.first;
   for (const DamagePath& path : plan.paths) {
-    const bool own = path.actor == contact.actor;
+    const bool own = path.actor == asked.b;
     const Body& body = scene.actors[path.actor];
     const auto add = [&scratch, own](View<const Pair> pairs) {
       for (const Pair& pair : pairs) {
-        scratch.ego.add(static_cast<std::uint32_t>(pair.a));
-        if (own) scratch.other.add(static_cast<std::uint32_t>(pair.b));
+        scratch.a.add(static_cast<std::uint32_t>(pair.a));
+        if (own) scratch.b.add(static_cast<std::uint32_t>(pair.b));
       }
     };
     for (std::size_t i = plan.first_pose; i < path.poses.size(); ++i, ++query) {
@@ -200,7 +197,7 @@ void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& 
         found.lists->for_each_run(query, add);
       } else {
         const CollideResult result =
-            collide(ego_model, *body.model, path.poses[i], scratch.pairs, scratch.collide);
+            collide(*a.model, *body.model, path.poses[i], scratch.pairs, scratch.collide);
         work.damage += result.work;
         if (!result.intersecting) continue;
         add(scratch.pairs);
@@ -213,28 +210,24 @@ void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& 
     for (std::size_t i = 1; i < path.poses.size(); ++i) {
       const Pose& from = path.poses[i - 1];
       const Pose& to = path.poses[i];
-      work.paths +=
-          add_passed(scene.ego, inverse(from), inverse(to), body, scratch.ego, scratch.passed);
-      if (path.actor != contact.actor) continue;
-      work.paths += add_passed(body, from, to, scene.ego, scratch.other, scratch.passed);
+      work.paths += add_passed(a, inverse(from), inverse(to), body, scratch.a, scratch.passed);
+      if (path.actor != asked.b) continue;
+      work.paths += add_passed(body, from, to, a, scratch.b, scratch.passed);
     }
   }
-  finish(ego_model.mesh, scratch.ego, plan.ego, contact.ego);
-  finish(other_model.mesh, scratch.other, plan.other, contact.other);
-  contact.crush_s = plan.crush_s;
-  contact.crush_m = plan.crush_m;
+  finish(a.model->mesh, scratch.a, plan.pose_a, damage_a);
+  finish(b.model->mesh, scratch.b, plan.pose_b, damage_b);
 
-  const Box ego_box = bounds_of(ego_model.mesh, contact.ego.triangles);
-  const Box other_box = bounds_of(other_model.mesh, contact.other.triangles);
-  if (ego_box.empty() || other_box.empty()) return;
-  const auto reach = static_cast<float>(contact.gap_m) + 1e-5F;
+  const Box box_a = bounds_of(a.model->mesh, damage_a.triangles);
+  const Box box_b = bounds_of(b.model->mesh, damage_b.triangles);
+  if (box_a.empty() || box_b.empty()) return;
+  const auto reach = static_cast<float>(asked.gap_m) + 1e-5F;
   for (const DamageScratch::Overlap& overlap : scratch.overlaps) {
-    const Pose& b_in_a = overlap.other_in_ego;
     const bool own = overlap.other.empty();
-    contact.ego.region.grow(
-        common(ego_box, wider(carried(b_in_a, own ? other_box : overlap.other), reach)));
+    damage_a.region.grow(
+        common(box_a, wider(carried(overlap.b_in_a, own ? box_b : overlap.other), reach)));
     if (!own) continue;
-    contact.other.region.grow(common(other_box, wider(carried(inverse(b_in_a), ego_box), reach)));
+    damage_b.region.grow(common(box_b, wider(carried(inverse(overlap.b_in_a), box_a), reach)));
   }
 }
 

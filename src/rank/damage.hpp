@@ -17,34 +17,44 @@ namespace crashrank::detail {
 struct DamageScratch {
   std::vector<Pair> pairs;
   ModelWorkspace collide;
-  TriangleSet ego;
-  TriangleSet other;
+  TriangleSet a;
+  TriangleSet b;
   PassedScratch passed;
-  /// Poses at which surfaces intersect, and the bounds of what the ego intersects there.
+  /// Poses at which surfaces intersect, and the bounds of what a intersects there.
   struct Overlap {
-    Pose other_in_ego;
+    Pose b_in_a;
     Box other;  ///< in its body coordinates; empty: those of the contact's damage
   };
   std::vector<Overlap> overlaps;
 };
 
-/// The way of a body past the ego during a contact.
+/// The way of a body past the contact's first one.
 struct DamagePath {
   std::size_t actor = 0;
-  std::vector<Pose> poses;  ///< of it in the ego's frame, in the order of time
+  std::vector<Pose> poses;  ///< of it in the first one's frame, in the order of time
+};
+
+/// A contact of which the damage is to be read. A is the ego or an actor.
+struct DamageQuery {
+  std::size_t a = ego_body;
+  std::size_t b = 0;  ///< an actor
+  ImpactState state = ImpactState::contact;
+  double gap_m = 0.0;
+  std::int32_t triangle_a = -1;  ///< that touched first; negative when none did
+  std::int32_t triangle_b = -1;
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< where they meet, world
 };
 
 /// Where the damage of a contact is read: along the motion that its simulation recorded.
 struct DamagePlan {
-  std::int32_t triangle_ego = -1;  ///< that touched first; negative when none did
-  std::int32_t triangle_other = -1;
-  /// Of the contact's actor, then of further bodies that the ego pressed on in the same contact.
+  DamageQuery query;
+  /// Of b, then of further bodies that a pressed on in the same contact.
   std::vector<DamagePath> paths;
   /// The first pose that is asked for intersecting triangles: bodies that were apart until first
   /// contact share no more than the first pair of triangles there.
   std::size_t first_pose = 0;
-  Pose ego;              ///< body to world at first contact
-  Pose other;            ///< the contact's actor then
+  Pose pose_a;           ///< body to world at first contact
+  Pose pose_b;           ///< b's then
   double crush_s = 0.0;  ///< see Contact
   double crush_m = 0.0;
 
@@ -56,11 +66,9 @@ struct DamagePlan {
   }
 };
 
-/// Says where to look for the damage of a contact that begins with the ego at `ego`. `motion` is
-/// that of the plain variant, A the ego; `pressed` are the actors that the ego pressed on in it,
-/// the contact's own may be among them.
-DamagePlan plan_damage(const Scene& scene, const Pose& ego, const Contact& contact,
-                       const Impact& impact, const ContactMotion& motion,
+/// Says where to look for the damage of a contact. `motion` is that of the plain variant; `pressed`
+/// are the actors that a pressed on in it, b may be among them.
+DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const ContactMotion& motion,
                        View<const std::size_t> pressed);
 
 /// Pairs found before, `queries[first + i]` at the plan's i-th pose; without lists each pose is
@@ -70,10 +78,9 @@ struct FoundDamage {
   std::size_t first = 0;
 };
 
-/// Fills in what a contact does to both bodies, `contact.ego`, `contact.other`, and how far and how
-/// long they moved.
+/// What a contact does to both bodies.
 void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& found,
-                 Contact& contact, DamageScratch& scratch, RankWork& work);
+                 BodyDamage& a, BodyDamage& b, DamageScratch& scratch, RankWork& work);
 
 /// Fills in area and parts from the triangles.
 void sum_up(const TriangleMesh& mesh, BodyDamage& damage);

@@ -1,15 +1,13 @@
 #include "rank/evaluate.hpp"
 
 #include "rank/bounds.hpp"
-#include "rank/contact_severity.hpp"
-#include "rank/follow.hpp"
 #include "rank/hits.hpp"
-#include "rank/meet.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace crashrank::detail {
@@ -29,91 +27,135 @@ void add_grazes(const Scratch& scratch, CandidateResult& result) {
   });
 }
 
-void sum_up_ego(const Scene& scene, CandidateResult& result) {
-  if (result.contacts.empty()) return;
-  result.ego = result.contacts.front().ego;
-  if (result.contacts.size() == 1) return;
-  for (std::size_t i = 1; i < result.contacts.size(); ++i) {
-    const BodyDamage& more = result.contacts[i].ego;
-    std::vector<std::uint32_t> both;
-    std::set_union(result.ego.triangles.begin(), result.ego.triangles.end(), more.triangles.begin(),
-                   more.triangles.end(), std::back_inserter(both));
-    result.ego.triangles = std::move(both);
-    result.ego.region.grow(more.region);
-  }
-  sum_up(scene.ego.model->mesh, result.ego);
+/// Adds damage to that of a body from earlier contacts; a triangle hit twice counts once.
+void merge(const BodyDamage& more, BodyDamage& whole) {
+  std::vector<std::uint32_t> both;
+  std::set_union(whole.triangles.begin(), whole.triangles.end(), more.triangles.begin(),
+                 more.triangles.end(), std::back_inserter(both));
+  whole.triangles = std::move(both);
+  whole.region.grow(more.region);
 }
 
-/// Scores that need no simulation.
-double planned_score(const CandidateResult& result, Measure measure) {
+/// By body: the damage of all contacts together.
+std::map<std::size_t, BodyDamage> whole_damage(const Scene& scene, const CandidateResult& result) {
+  std::map<std::size_t, BodyDamage> whole;
+  const auto add = [&whole](std::size_t body, const BodyDamage& damage) {
+    const auto [place, is_new] = whole.try_emplace(body, damage);
+    if (!is_new) merge(damage, place->second);
+  };
+  for (const Contact& contact : result.contacts) {
+    add(ego_body, contact.ego);
+    add(contact.actor, contact.other);
+  }
+  for (const FurtherContact& contact : result.further) {
+    add(contact.a, contact.damage_a);
+    add(contact.b, contact.damage_b);
+  }
+  for (auto& [body, damage] : whole) sum_up(body_of(scene, body).model->mesh, damage);
+  return whole;
+}
+
+/// Scores that are read from the damage.
+double damage_score(const std::map<std::size_t, BodyDamage>& damage, Measure measure) {
   double score = 0.0;
-  switch (measure) {
-    case Measure::polygons:
-      score = static_cast<double>(result.ego.triangles.size());
-      for (const Contact& contact : result.contacts) {
-        score += static_cast<double>(contact.other.triangles.size());
-      }
-      break;
-    case Measure::area:
-      score = result.ego.area_m2;
-      for (const Contact& contact : result.contacts) score += contact.other.area_m2;
-      break;
-    default:
-      for (const Contact& contact : result.contacts) score += contact.closing_energy_j;
-      break;
+  for (const auto& [body, whole] : damage) {
+    score += measure == Measure::area ? whole.area_m2 : static_cast<double>(whole.triangles.size());
   }
   return score;
 }
 
+/// The place among a candidate's effects of each sample's: samples that differ in risk alone share
+/// their simulation.
+std::vector<std::size_t> effect_of_sample(const Scene& scene) {
+  const auto same = [](const HarmSample& p, const HarmSample& q) {
+    return p.friction == q.friction && p.strength == q.strength && p.step == q.step &&
+           p.shift_m == q.shift_m;
+  };
+  std::vector<std::size_t> places;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < scene.samples.size(); ++i) {
+    if (i > 0 && (last == 0 || !same(scene.samples[i], scene.samples[i - 1]))) ++last;
+    places.push_back(last);
+  }
+  return places;
+}
+
+/// Simulates the chain of a first contact in a sample.
+void simulate(const Scene& scene, const Candidate& candidate, const Contact& first,
+              const HarmSample& sample, Scratch& scratch, RankWork& work,
+              std::vector<ContactEffect>& effects) {
+  scratch.chain.begin(scene, candidate, first, sample);
+  scratch.chain.finish();
+  scratch.chain.effects(effects, scratch.order);
+  work.crash_steps += scratch.chain.run().steps();
+  work.crash_pieces += scratch.chain.run().work();
+}
+
+/// What events of bodies come to: contacts of an event that is over by now.
+struct EventTotals {
+  std::map<std::pair<std::size_t, std::size_t>, BodyEvent> last;  ///< by body and event
+
+  void note(std::size_t body, const BodyEvent& event) { last[{body, event.number}] = event; }
+};
+
 /// The score of the plain variant; each contact learns its event and what it adds to the harm.
-double tally_up(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
-                CandidateResult& result) {
-  Tally tally;
-  std::size_t begun = 0;  // the first contact of the event
+double tally_up(const Scene& scene, const Approach& from, Tally& tally, CandidateResult& result) {
+  tally.begin();
+  EventTotals events;
+  const std::vector<ContactEffect>& effects = from.effects.front();
+  std::vector<std::array<std::size_t, 2>> numbers;
   for (std::size_t k = 0; k < effects.size(); ++k) {
-    const double before = tally.ego_score(scene);
-    const ContactEffect& effect = effects[k].front();
-    Contact& contact = result.contacts[k];
-    tally.add(scene, effect, scene.plain);
-    const EgoEvent& event = tally.event();
-    if (k == 0 || event.number != result.contacts[k - 1].event) begun = k;
-    contact.event = event.number;
-    for (std::size_t i = begun; i <= k; ++i) {
-      BodyOutcome& ego = result.contacts[i].severity.ego;
-      ego.event_delta_v_mps = event.delta_v_mps.norm();
-      ego.event_yaw_rate_change_radps = event.yaw_radps;
+    const ContactEffect& effect = effects[k];
+    std::array<double, 2> harm{};
+    for (std::size_t side = 0; side < 2; ++side) {
+      harm[side] = -tally.people_score(scene, effect.sides[side].body);
     }
+    tally.add(scene, effect, scene.plain);
+    numbers.emplace_back();
+    for (std::size_t side = 0; side < 2; ++side) {
+      const SideEffect& own = effect.sides[side];
+      const BodyEvent event = tally.event(own.body);
+      events.note(own.body, event);
+      numbers.back()[side] = event.number;
+      HarmExposure crushed;
+      crushed.crush_energy_j = own.crush_j;
+      harm[side] +=
+          tally.people_score(scene, own.body) + property_harm(crushed, scene.harm.weights);
+    }
+    const ToldContact& told = from.told[k];
+    if (!told.is_further) result.contacts[told.index].event = numbers.back()[0];
     if (scene.measure != Measure::harm) continue;
-    ContactSeverity& severity = contact.severity;
-    HarmExposure other = exposure_of_other(scene, effect);
-    other.crush_energy_j = effect.other_crush_j;
-    severity.other.harm = harm_of(other, scene.harm);
-    HarmExposure own;
-    own.crush_energy_j = effect.ego_crush_j;
-    severity.ego.harm = (tally.ego_score(scene) - before) + property_harm(own, scene.harm.weights);
-    severity.harm = severity.ego.harm + severity.other.harm;
+    const OutcomePair outcomes = outcomes_of(result, told);
+    outcomes.a.harm = harm[0];
+    outcomes.b.harm = harm[1];
+    (told.is_further ? result.further[told.index].harm
+                     : result.contacts[told.index].severity.harm) = harm[0] + harm[1];
+  }
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const OutcomePair outcomes = outcomes_of(result, from.told[k]);
+    const auto tell = [&](std::size_t side, BodyOutcome& outcome) {
+      const BodyEvent& event = events.last[{effects[k].sides[side].body, numbers[k][side]}];
+      outcome.event_delta_v_mps = event.delta_v_mps.norm();
+      outcome.event_yaw_rate_change_radps = event.yaw_radps;
+    };
+    tell(0, outcomes.a);
+    tell(1, outcomes.b);
   }
   return tally.score(scene);
 }
 
-/// How the bodies of a contact along the plan moved, and where the actors that the ego has met
-/// until then end in the list of them.
-struct SimulatedContact {
-  ContactMotion motion;
-  std::size_t met_end = 0;
-};
-
 // What the candidate scores in every sample, and the interval of those under its own risk model.
 void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
-                 CandidateResult& result) {
+                 Tally& tally, CandidateResult& result) {
   const std::vector<std::size_t> place = effect_of_sample(scene);
   for (std::size_t i = 0; i < scene.samples.size(); ++i) {
     const HarmSample& sample = scene.samples[i];
-    Tally tally;
-    for (const std::vector<ContactEffect>& variants : effects) {
-      tally.add(scene, variants[place[i]], sample);
+    double score = 0.0;
+    if (!effects.empty()) {
+      tally.begin();
+      for (const ContactEffect& effect : effects[place[i]]) tally.add(scene, effect, sample);
+      score = tally.score(scene);
     }
-    const double score = tally.score(scene);
     result.sample_scores.push_back(score);
     if (scene.measure == Measure::harm && sample.model != scene.harm.model) continue;
     ScoreInterval& interval =
@@ -125,64 +167,71 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
 
 }  // namespace
 
+void Scratch::prepare(const Scene& scene) {
+  std::uint32_t deepest = scene.ego.model->tree.depth;
+  for (const Body& actor : scene.actors) deepest = std::max(deepest, actor.model->tree.depth);
+  impact.prepare(deepest, deepest);
+  near.reserve(scene.actors.size());
+  place.reserve(scene.actors.size());
+  hits.reserve(scene.actors.size());
+  chain.prepare(scene);
+  effects.reserve(SceneRun::most_contacts + 1);
+  order.reserve(SceneRun::most_contacts + 1);
+  tally.prepare(scene.actors.size() + 1);
+}
+
 Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
                   RankWork& work) {
   Approach found;
   found.decided = find_hits(scene, candidate.motion, scratch, work);
-  double last_s = std::numeric_limits<double>::infinity();
-  std::vector<Contact>& contacts = found.result.contacts;
-  std::vector<SimulatedContact> simulated;
-  EgoAtContact first;
-  EgoAfterContact left;
-  for (const Scratch::Hit& hit : scratch.hits) {
-    if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
-    const EgoAtContact ego = planned(candidate.motion, hit.impact.time_s);
-    contacts.push_back(make_contact(scene, ego, hit.actor, hit.impact));
-    const std::size_t met_before = found.met.size();
-    const auto place = static_cast<std::size_t>(
-        std::find(found.met.begin(), found.met.end(), hit.actor) - found.met.begin());
-    if (place == met_before) add_met(scene, hit.actor, found.met);
+  const auto hit = std::find_if(scratch.hits.begin(), scratch.hits.end(),
+                                [](const Scratch::Hit& h) { return h.impact.hit(); });
+  CandidateResult& result = found.result;
+  result.collides = hit != scratch.hits.end();
+  if (result.collides) {
+    result.contacts.push_back(first_contact(scene, candidate.motion, hit->actor, hit->impact));
+    const Contact first = result.contacts.front();
+    result.contacts.front().severity.simulated = needs_crash(scene.measure);
     found.effects.emplace_back();
-    const EgoAfterContact after = simulate_variants(scene, ego, contacts.back(), found.met,
-                                                    scratch.crash, found.effects.back());
-    contacts.back().severity.simulated = scene.pulses;
-    if (contacts.size() == 1) {
-      last_s = hit.impact.time_s + same_crash_s;
-      first = ego;
-      left = after;
+    simulate(scene, candidate, first, scene.plain, scratch, work, found.effects.back());
+    result.crowded = scratch.chain.run().crowded();
+    found.told =
+        tell_contacts(scene, scratch.chain, scratch.order, hit->impact,
+                      candidate.motion.pose_at(first.time_of_impact_s), result, found.plans);
+    std::size_t last = 0;
+    const std::vector<std::size_t> places = effect_of_sample(scene);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (places[i] == last) continue;
+      last = places[i];
+      found.effects.emplace_back();
+      simulate(scene, candidate, first, scene.samples[i], scratch, work, found.effects.back());
     }
-    simulated.push_back({scratch.crash.motion, found.met.size()});
-    // A body that the ego pressed on in an earlier contact is damaged along that one's motion.
-    const auto pressing =
-        std::find_if(simulated.begin(), simulated.end(),
-                     [place](const SimulatedContact& earlier) { return place < earlier.met_end; });
-    found.plans.push_back(
-        plan_damage(scene, ego.pose, contacts.back(), hit.impact, pressing->motion,
-                    place < met_before ? View<const std::size_t>() : found.met_since(met_before)));
-    if (scene.pulses) break;
   }
-  found.result.collides = !contacts.empty();
-  add_grazes(scratch, found.result);
-  if (scene.pulses && !contacts.empty()) {
-    follow(scene, candidate, first, left, found, scratch, work);
-  }
+  add_grazes(scratch, result);
   return found;
 }
 
 CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&& approach,
                        FoundDamage found, Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(approach.result);
-  for (std::size_t i = 0; i < result.contacts.size(); ++i) {
-    read_damage(scene, approach.plans[i], found, result.contacts[i], scratch.damage, work);
+  for (std::size_t i = 0; i < approach.plans.size(); ++i) {
+    const std::size_t k = i - std::min(i, result.contacts.size());
+    const bool is_further = i >= result.contacts.size();
+    BodyDamage& a = is_further ? result.further[k].damage_a : result.contacts[i].ego;
+    BodyDamage& b = is_further ? result.further[k].damage_b : result.contacts[i].other;
+    read_damage(scene, approach.plans[i], found, a, b, scratch.damage, work);
     found.first += approach.plans[i].queries();
   }
-  sum_up_ego(scene, result);
+  const std::map<std::size_t, BodyDamage> damage = whole_damage(scene, result);
+  if (result.collides) result.ego = damage.at(ego_body);
   if (approach.decided) {
-    const double simulated = tally_up(scene, approach.effects, result);
-    result.score = scene.pulses ? simulated : planned_score(result, scene.measure);
+    const double simulated =
+        approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
+    result.score =
+        scored_by_damage(scene.measure) ? damage_score(damage, scene.measure) : simulated;
     result.score_interval = {*result.score, *result.score};
     result.numerical_interval = result.score_interval;
-    add_samples(scene, approach.effects, result);
+    add_samples(scene, approach.effects, scratch.tally, result);
   } else {
     ScoreBounds bounds;
     bounds.prepare(scene);

@@ -1,9 +1,10 @@
 #pragma once
 
-#include "rank/crash_scratch.hpp"
+#include "rank/crash_chain.hpp"
 #include "rank/damage.hpp"
 #include "rank/scene.hpp"
 #include "rank/tally.hpp"
+#include "rank/tell_contacts.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -26,29 +27,30 @@ struct Scratch {
   std::vector<std::size_t> place;  ///< by actor: where it is in `near`, or none
   std::vector<Hit> hits;
   ImpactWorkspace impact;
-  CrashScratch crash;
+  CrashChain chain;
+  std::vector<ContactEffect> effects;
+  std::vector<std::size_t> order;
+  Tally tally;
   DamageScratch damage;
   /// Given to the search for contacts, see ImpactOptions.
   bool (*stop)(void* stop_context) = nullptr;
   void* stop_context = nullptr;
+
+  /// Room for a scene: nothing but its damage allocates after it.
+  void prepare(const Scene& scene);
 };
 
-/// A candidate followed to its contacts, with the damage still to be read.
+/// A candidate followed through its crash, with the damage still to be read.
 struct Approach {
   CandidateResult result;         ///< contacts without damage, grazes
-  std::vector<DamagePlan> plans;  ///< by contact
-  /// By contact: in the plain variant, then in those of the samples.
+  std::vector<DamagePlan> plans;  ///< by contact, then by further contact
+  std::vector<ToldContact> told;  ///< by effect of the plain variant
+  /// Of the plain variant, then of those of the samples.
   std::vector<std::vector<ContactEffect>> effects;
-  std::vector<std::size_t> met;  ///< actors that were hit or pressed
   bool decided = true;
-
-  /// Those of `met` from an index on.
-  View<const std::size_t> met_since(std::size_t first) const {
-    return {met.data() + first, met.size() - first};
-  }
 };
 
-/// Follows one candidate to its first contact. Depends on the scene and the candidate alone, as do
+/// Follows one candidate through its crash. Depends on the scene and the candidate alone, as do
 /// the others here.
 Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch, RankWork& work);
 

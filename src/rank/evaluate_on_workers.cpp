@@ -88,7 +88,7 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
       first_query.push_back(queries.size());
       for (const DamagePlan& plan : found.plans) {
         for (const DamagePath& path : plan.paths) {
-          const Result<const PartIndex*> a = indices_a.of(*scene.ego.model);
+          const Result<const PartIndex*> a = indices_a.of(*body_of(scene, plan.query.a).model);
           if (!a) return a.error();
           const Result<const PartIndex*> b = indices_b.of(*scene.actors[path.actor].model);
           if (!b) return b.error();

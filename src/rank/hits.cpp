@@ -53,7 +53,7 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
   for (const Scratch::Near& near : scratch.near) {
     if (near.first_slice != slice) {
       slice = near.first_slice;
-      until_s = first_s + same_crash_s;
+      until_s = first_s;
     }
     const double from = scene.slice_s[near.first_slice];
     const double until = std::min(scene.slice_s[near.last_slice + 1], until_s);
@@ -82,13 +82,6 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
                                                         : p.actor < q.actor;
             });
   return decided;
-}
-
-EgoAtContact planned(const Motion& motion, double time_s) {
-  EgoAtContact ego;
-  motion.state_at(time_s, ego.pose, ego.met);
-  ego.left = ego.met;
-  return ego;
 }
 
 bool grazes_before(const Scratch& scratch, double until_s) {

@@ -23,7 +23,7 @@ Result<HarmOptions> parse(const std::string& text, const std::string& file,
   const detail::JsonObject root(
       *document, {}, status,
       {"$schema", "profile_version", "name", "description", "risk_model", "weights", "people",
-       "pedestrian", "friction", "ranges", "after_impact", "least_struck_share"});
+       "pedestrian", "friction", "ranges", "after_contact", "after_impact", "least_struck_share"});
   root.require("profile_version");
   root.text("$schema", text_characters);
   if (root.has("profile_version") && root.at("profile_version") != 1) {

@@ -256,7 +256,6 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->bodies = std::move(bodies);
     state->bounds.prepare(state->scene);
     state->states.resize(options.limits.candidates);
-    for (Refined& refined : state->states) refined.met.reserve(state->scene.actors.size());
     state->ranking.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
@@ -287,7 +286,7 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
     // From here on nothing can fail.
     for (std::size_t i = 0; i < actors.size(); ++i) std::swap(scene.actors[i].motion, coming[i]);
     scene.ego_start = ego_start;
-    detail::place_actors(scene, state_->rounds.own().evaluate.impact);
+    detail::place_actors(scene, state_->rounds.own().impact);
     state_->bounds.update(scene);
     return Success{};
   });

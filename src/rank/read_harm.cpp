@@ -96,14 +96,22 @@ void read_harm(const JsonObject& object, HarmOptions& harm) {
   }
   harm.friction = object.number("friction", friction, harm.friction);
   read_ranges(object, harm.ranges);
+  if (object.has("after_contact")) {
+    const Result<AfterContact> after =
+        after_contact_from_name(object.text("after_contact", name_characters));
+    if (after) {
+      harm.after_contact = *after;
+    } else {
+      object.refuse("after_contact", after.error().reason, after.error().remedy);
+    }
+  }
   if (object.has("after_impact")) {
+    // Without effect, but no nonsense either.
     const JsonObject after(object.at("after_impact"), object.path_of("after_impact"),
                            object.status(), {"deceleration_mps2", "longest_s", "most_contacts"});
-    harm.after.deceleration_mps2 = after.number(
-        "deceleration_mps2", {0.0, limits::deceleration_mps2}, harm.after.deceleration_mps2);
-    harm.after.longest_s = after.number("longest_s", {0.0, limits::after_s}, harm.after.longest_s);
-    harm.after.most_contacts =
-        after.count("most_contacts", 1, limits::contacts, harm.after.most_contacts);
+    after.number("deceleration_mps2", {0.0, limits::deceleration_mps2}, 0.0);
+    after.number("longest_s", {0.0, limits::after_s}, 0.0);
+    after.count("most_contacts", 1, limits::contacts, 1);
   }
   harm.least_struck_share = object.number("least_struck_share", share, harm.least_struck_share);
 }

@@ -1,10 +1,7 @@
 #include "rank/refine.hpp"
 
-#include "rank/follow.hpp"
 #include "rank/hits.hpp"
-#include "rank/meet.hpp"
 #include "rank/near.hpp"
-#include "rank/score_crash.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -27,153 +24,64 @@ void settle(Refined& state, double score) {
 
 std::uint64_t tests_of(const RankWork& work) {
   return work.box_tests + work.impact.bv_tests + work.impact.primitive_tests +
-         work.damage.bv_tests + work.damage.primitive_tests + work.paths;
+         work.damage.bv_tests + work.damage.primitive_tests + work.paths + work.crash_pieces;
 }
 
-View<const std::size_t> met(const Refined& state) { return {state.met.data(), state.met.size()}; }
-
-std::size_t contacts_left(const Scene& scene, const Refined& state) {
-  const std::size_t most = std::min(scene.harm.after.most_contacts, harm_limits::contacts);
-  return most - std::min(most, state.contacts);
-}
-
-void look_near(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work) {
-  find_near(q.scene, q.candidate.motion, 0.0, q.scene.slice_s.back(), scratch.evaluate, work);
+void look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+  find_near(q.scene, q.candidate.motion, 0.0, q.scene.slice_s.back(), scratch, work);
   state.told.stage = RankStage::near;
-  scratch.near.clear();
-  for (const Scratch::Near& near : scratch.evaluate.near) scratch.near.push_back(near.actor);
-  if (scratch.near.empty()) {
-    settle(state, 0.0);
-  } else {
-    narrow(state, 0.0, q.bounds.most_with_first(q.scene, q.candidate.motion, scratch.near));
-  }
+  if (scratch.near.empty()) settle(state, 0.0);
 }
 
-/// The contact whose crash is to be simulated next.
-void expect(const RefineQuery& q, Refined& state, const EgoAtContact& ego, Contact&& contact,
-            RefineScratch& scratch, RankWork& work) {
-  state.pending = std::move(contact);
-  state.ego = ego;
-  const CrashSetup crash =
-      set_up_crash(q.scene, ego, state.pending, met(state), scratch.crash.group);
-  add_met(q.scene, state.pending.actor, state.met);
-  ++state.contacts;
-  const std::size_t left = contacts_left(q.scene, state);
-  const Later all = q.bounds.most_after(q.scene, q.candidate.motion, met(state), left);
-  const Later near = most_in_reach(q.scene, reach_after(q.scene, q.candidate, crash, state.pending),
-                                   met(state), left, scratch.reach, work.box_tests);
-  state.after = {};
-  if (all.any && near.any) {
-    state.after = {true, std::min(all.most, near.most),
-                   std::min(all.ego_delta_v_mps, near.ego_delta_v_mps)};
-  }
-  const Range score =
-      state.tally.bounds(q.scene, pending_at_contact(crash, state.pending), state.after);
-  narrow(state, score.least, score.most);
-}
-
-/// All contacts of a measure that takes the planned motion only.
-void add_planned(const RefineQuery& q, Refined& state, const Scratch& scratch) {
-  double last_s = std::numeric_limits<double>::infinity();
-  double energy = 0.0;
-  double most_triangles = static_cast<double>(q.scene.ego.model->mesh.size());
-  double most_area = q.bounds.ego_surface_m2();
-  double least_triangles = 0.0;
-  for (const Scratch::Hit& hit : scratch.hits) {
-    if (!hit.impact.hit() || hit.impact.time_s > last_s) continue;
-    const EgoAtContact ego = planned(q.candidate.motion, hit.impact.time_s);
-    const Contact contact = make_contact(q.scene, ego, hit.actor, hit.impact);
-    if (last_s == std::numeric_limits<double>::infinity()) {
-      last_s = hit.impact.time_s + same_crash_s;
-    }
-    energy += contact.closing_energy_j;
-    most_triangles += static_cast<double>(q.scene.actors[hit.actor].model->mesh.size());
-    most_area += q.bounds.actor_surface_m2(hit.actor);
-    // The ego's triangle that met first may be the same for several bodies.
-    least_triangles += least_triangles == 0.0 ? 2.0 : 1.0;
-  }
-  switch (q.scene.measure) {
-    case Measure::closing_energy:
-      settle(state, energy);
-      break;
-    case Measure::polygons:
-      narrow(state, least_triangles, most_triangles);
-      break;
-    case Measure::area:
-      narrow(state, 0.0, (1.0 + 1e-9) * most_area);
-      break;
-    default:
-      break;
-  }
-}
-
-/// Finds the contacts of the planned motion. False when time was up.
-bool search(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work) {
-  const bool decided = find_hits(q.scene, q.candidate.motion, scratch.evaluate, work);
+/// Finds the first contact of the planned motion. False when time was up.
+bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+  const bool decided = find_hits(q.scene, q.candidate.motion, scratch, work);
   if (!decided && q.watch.expired()) return false;
   state.told.stage = RankStage::searched;
-  const auto first = std::find_if(scratch.evaluate.hits.begin(), scratch.evaluate.hits.end(),
+  const auto first = std::find_if(scratch.hits.begin(), scratch.hits.end(),
                                   [](const Scratch::Hit& hit) { return hit.impact.hit(); });
-  state.told.collides = first != scratch.evaluate.hits.end();
+  state.told.collides = first != scratch.hits.end();
   const double until_s =
       state.told.collides ? first->impact.time_s : std::numeric_limits<double>::infinity();
-  state.told.grazes = grazes_before(scratch.evaluate, until_s);
+  state.told.grazes = grazes_before(scratch, until_s);
   if (state.told.collides) {
-    const EgoAtContact ego = planned(q.candidate.motion, first->impact.time_s);
-    Contact contact = make_contact(q.scene, ego, first->actor, first->impact);
-    state.told.actor = contact.actor;
-    state.told.time_of_impact_s = contact.time_of_impact_s;
-    state.told.closing_speed_mps = contact.closing_speed_mps;
-    if (decided && scored_by_pulses(q.scene)) {
-      expect(q, state, ego, std::move(contact), scratch, work);
-    }
+    state.first = first_contact(q.scene, q.candidate.motion, first->actor, first->impact);
+    state.told.actor = state.first.actor;
+    state.told.time_of_impact_s = state.first.time_of_impact_s;
+    state.told.closing_speed_mps = state.first.closing_speed_mps;
   }
   state.stuck = !decided;
-  if (state.stuck) return true;
-  if (!state.told.collides) {
-    settle(state, 0.0);
-  } else if (!q.scene.pulses) {
-    add_planned(q, state, scratch.evaluate);
-  }
+  if (decided && !state.told.collides) settle(state, 0.0);
   return true;
 }
 
-/// Simulates the pending crash and looks for what comes after it.
-bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWork& work,
-           std::uint64_t& pulse_work) {
-  scratch.met.assign(state.met.begin(), state.met.end());
-  const CrashScore scored =
-      score_crash(q.scene, {state.ego, state.pending, state.tally, state.after, q.give_up_above},
-                  q.watch, scratch.met, scratch.crash);
-  pulse_work += scored.work;
-  narrow(state, scored.score.least, scored.score.most);
-  if (scored.end == CrashScore::End::given_up) return true;
-  if (scored.end == CrashScore::End::stopped) return false;
-
-  Tally tally = state.tally;
-  tally.add(q.scene, scored.effect, q.scene.plain);
-  const double start_s = state.pending.time_of_impact_s;
-  bool over = contacts_left(q.scene, state) == 0;
-  if (!over) {
-    scratch.aftermath.begin(q.scene, q.candidate, start_s, state.ego, scored.after);
-    over = !(scratch.aftermath.until_s() > start_s);
+/// Simulates what follows from the first contact. False when time was up.
+bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+  constexpr int steps_at_a_time = 8;
+  const HarmSample& plain = q.scene.plain;
+  CrashChain& chain = scratch.chain;
+  chain.begin(q.scene, q.candidate, state.first, plain);
+  std::size_t over = 0;
+  scratch.tally.begin();
+  bool going = true;
+  bool in_time = true;
+  while (going) {
+    going = chain.advance(steps_at_a_time);
+    if (!going) break;
+    for (; over < chain.contacts().size(); ++over) {
+      scratch.tally.add(q.scene, chain.effect(chain.contacts()[over]), plain);
+      narrow(state, scratch.tally.least_score(q.scene), state.told.interval.highest);
+    }
+    in_time = !q.watch.expired();
+    if (!in_time || state.told.interval.lowest > q.give_up_above) break;
   }
-  std::optional<Scratch::Hit> hit;
-  if (!over) {
-    bool stopped = false;
-    hit = find_next(q.scene, scratch.aftermath, {scratch.met.data(), scratch.met.size()}, start_s,
-                    q.watch, stopped, scratch.evaluate, work);
-    if (stopped) return false;
-  }
-  state.tally = tally;
-  state.met.assign(scratch.met.begin(), scratch.met.end());
-  state.told.stage = RankStage::followed;
-  if (!hit) {
-    settle(state, tally.score(q.scene));
-    return true;
-  }
-  const EgoAtContact ego = scratch.aftermath.at(hit->impact.time_s);
-  expect(q, state, ego, make_following_contact(q.scene, ego, *hit), scratch, work);
+  work.crash_steps += chain.run().steps();
+  work.crash_pieces += chain.run().work();
+  if (going) return in_time;
+  chain.effects(scratch.effects, scratch.order);
+  scratch.tally.begin();
+  for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, plain);
+  settle(state, scratch.tally.score(q.scene));
   return true;
 }
 
@@ -181,10 +89,7 @@ bool crash(const RefineQuery& q, Refined& state, RefineScratch& scratch, RankWor
 
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Refined& state) {
-  std::vector<std::size_t> met = std::move(state.met);
-  met.clear();
   state = {};
-  state.met = std::move(met);
   state.told.candidate = index;
   state.told.interval = {0.0, bounds.most(scene, candidate.motion)};
 }
@@ -194,12 +99,11 @@ void settle_as_clear(Refined& state) {
   settle(state, 0.0);
 }
 
-StepEnd refine(const RefineQuery& q, Refined& state, RefineScratch& scratch) {
+StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
   RankWork work;
   StepEnd end;
-  std::uint64_t pulse_work = 0;
-  scratch.evaluate.stop = &Watch::stop;
-  scratch.evaluate.stop_context = const_cast<Watch*>(&q.watch);
+  scratch.stop = &Watch::stop;
+  scratch.stop_context = const_cast<Watch*>(&q.watch);
   switch (state.told.stage) {
     case RankStage::unseen:
       look_near(q, state, scratch, work);
@@ -208,15 +112,14 @@ StepEnd refine(const RefineQuery& q, Refined& state, RefineScratch& scratch) {
       end.finished = search(q, state, scratch, work);
       break;
     case RankStage::searched:
-    case RankStage::followed:
     case RankStage::scored:
-      if (scored_by_pulses(q.scene)) {
-        end.finished = crash(q, state, scratch, work, pulse_work);
+      if (!scored_by_damage(q.scene.measure)) {
+        end.finished = crash(q, state, scratch, work);
       } else {
         // No stop within: what is begun is worth finishing.
-        scratch.evaluate.stop = nullptr;
+        scratch.stop = nullptr;
         try {
-          const CandidateResult result = evaluate(q.scene, q.candidate, scratch.evaluate, work);
+          const CandidateResult result = evaluate(q.scene, q.candidate, scratch, work);
           if (result.score) {
             settle(state, *result.score);
           } else {
@@ -229,7 +132,7 @@ StepEnd refine(const RefineQuery& q, Refined& state, RefineScratch& scratch) {
       if (state.told.known) state.told.stage = RankStage::scored;
       break;
   }
-  end.work = tests_of(work) + pulse_work;
+  end.work = tests_of(work);
   return end;
 }
 

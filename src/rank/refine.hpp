@@ -1,13 +1,8 @@
 #pragma once
 
 #include "crashrank/rank/ranker.hpp"
-#include "rank/aftermath.hpp"
 #include "rank/bounds.hpp"
-#include "rank/contact_severity.hpp"
-#include "rank/crash_scratch.hpp"
 #include "rank/evaluate.hpp"
-#include "rank/reach.hpp"
-#include "rank/tally.hpp"
 #include "rank/watch.hpp"
 
 #include <array>
@@ -17,28 +12,11 @@
 
 namespace crashrank::detail {
 
-/// Memory of one worker of a Ranker.
-struct RefineScratch {
-  Scratch evaluate;
-  CrashScratch crash;
-  std::vector<std::size_t> met;
-  Aftermath aftermath;
-  std::vector<std::size_t> near;
-  ReachMemory reach;
-};
-
 /// A candidate on its way to its score, between two steps.
 struct Refined {
   RankedCandidate told;
   bool stuck = false;  ///< a question about it stayed undecided: no step follows
-  Tally tally;         ///< of the contacts simulated so far
-  /// Actors hit, the pending one included, with those joined to them or pressing with them. As long
-  /// as there are actors; the Ranker reserves it.
-  std::vector<std::size_t> met;
-  std::size_t contacts = 0;  ///< the pending one included
-  Contact pending;           ///< whose crash comes next
-  EgoAtContact ego;          ///< at that
-  Later after;               ///< what contacts after the pending one may add
+  Contact first;       ///< from which its crash is simulated
 
   bool open() const noexcept { return !told.known && !stuck; }
 };
@@ -59,7 +37,7 @@ struct StepEnd {
   bool finished = true;  ///< false: time was up first; the interval may be narrower all the same
 };
 
-/// Begins with a candidate of which nothing is known yet. Keeps the memory of `state`.
+/// Begins with a candidate of which nothing is known yet.
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Refined& state);
 
@@ -68,7 +46,7 @@ void settle_as_clear(Refined& state);
 
 /// Takes an open candidate one stage further. Depends on the query and the candidate's own state
 /// alone. The interval only ever narrows.
-StepEnd refine(const RefineQuery& query, Refined& state, RefineScratch& scratch);
+StepEnd refine(const RefineQuery& query, Refined& state, Scratch& scratch);
 
 /// The order of `ranks_before`, for what is known of candidates so far.
 bool promises_more(const RankedCandidate& a, const RankedCandidate& b);

@@ -199,13 +199,6 @@ void check_harm(const HarmOptions& harm, const std::string& path, Check& check) 
               bounds::restitution);
   check.range(path + ".ranges.risk_speed", r.least_risk_speed, r.most_risk_speed,
               bounds::min_risk_speed, bounds::max_risk_speed);
-  check.not_negative(path + ".after_impact.deceleration_mps2", harm.after.deceleration_mps2,
-                     bounds::deceleration_mps2);
-  check.not_negative(path + ".after_impact.longest_s", harm.after.longest_s, bounds::after_s);
-  if (harm.after.most_contacts < 1 || harm.after.most_contacts > bounds::contacts) {
-    check.refuse(path + ".after_impact.most_contacts", "is out of range",
-                 "follow 1 to " + std::to_string(bounds::contacts));
-  }
   check.not_negative(path + ".least_struck_share", harm.least_struck_share, 1.0);
 }
 

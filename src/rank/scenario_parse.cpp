@@ -287,7 +287,7 @@ void read_models(const JsonObject& root, Scenario& scenario) {
 /// Keys of earlier crash models: accepted, so that files which have them stay valid.
 std::vector<std::string> find_keys_without_effect(const json& document) {
   std::vector<std::string> keys;
-  for (const char* const pointer : {"/crush", "/harm/least_struck_share"}) {
+  for (const char* const pointer : {"/crush", "/harm/after_impact", "/harm/least_struck_share"}) {
     if (!document.contains(json::json_pointer(pointer))) continue;
     std::string key(pointer + 1);
     std::replace(key.begin(), key.end(), '/', '.');
@@ -327,7 +327,7 @@ Scenario read_scenario(const json& document, Status& status) {
   if (root.has("harm")) {
     const JsonObject harm(root.at("harm"), "harm", status,
                           {"risk_model", "weights", "people", "pedestrian", "friction", "ranges",
-                           "after_impact", "least_struck_share"});
+                           "after_contact", "after_impact", "least_struck_share"});
     detail::read_harm(harm, scenario.harm);
   }
   scenario.grip = root.number("grip", {limits::min_grip, limits::max_grip}, 0.8);

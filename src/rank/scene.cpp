@@ -115,8 +115,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   Scene scene;
   scene.measure = options.measure.value_or(scenario.measure);
   scene.harm = options.harm.value_or(scenario.harm);
-  scene.pulses = needs_crash(scene.measure);
-  if (scene.pulses && scene.measure != Measure::intrusion && scene.harm.intervals) {
+  if (needs_crash(scene.measure) && scene.measure != Measure::intrusion && scene.harm.intervals) {
     scene.samples = harm_samples(scene.harm);
   }
   scene.plain.friction = scene.harm.friction;
@@ -141,6 +140,8 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   Result<Vehicle> own = vehicle_of(scenario.models[ego->model], models[ego->model]);
   if (!own) return own.error();
   scene.ego.vehicle = std::move(*own);
+  scene.ego.footing = footing_of(scene.ego.vehicle);
+  scene.grip = scenario.grip;
   scene.ego.occupants = scenario.ego.occupants;
 
   for (const ScenarioActor& actor : scenario.actors) {
@@ -155,8 +156,10 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.actors.push_back(make_body(models[body->model], body->mass_kg, std::move(*motion)));
     Result<Vehicle> vehicle = vehicle_of(scenario.models[body->model], models[body->model]);
     if (!vehicle) return vehicle.error();
-    scene.actors.back().vehicle = std::move(*vehicle);
-    scene.actors.back().occupants = actor.occupants;
+    Body& added = scene.actors.back();
+    added.vehicle = std::move(*vehicle);
+    if (added.vehicle.movable()) added.footing = footing_of(added.vehicle);
+    added.occupants = actor.occupants;
   }
 
   if (Status joined = join_fixed(scene); !joined) return joined.error();

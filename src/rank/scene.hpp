@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crash/tyres.hpp"
 #include "crashrank/base/box.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
@@ -27,6 +28,7 @@ struct Body {
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
   double radius_m = 0.0;            ///< no point of the body is further from its origin
   Vehicle vehicle;                  ///< what it is in a crash
+  Footing footing;                  ///< of what moves
   std::optional<double> occupants;  ///< persons; absent: the kind's
 };
 
@@ -58,11 +60,16 @@ struct Scene {
   Measure measure = Measure::polygons;
   HarmOptions harm;
   HarmSample plain;                 ///< in which nothing varies
-  bool pulses = false;              ///< the measure needs the crash itself
   std::vector<HarmSample> samples;  ///< in which the score is evaluated, too; may be empty
+  double grip = 0.8;                ///< of tyres on the road
   ImpactOptions impact;
   RankWork work;  ///< spent on preparing
 };
+
+/// The body that an index stands for: an actor, or the ego.
+inline const Body& body_of(const Scene& scene, std::size_t index) {
+  return index == ego_body ? scene.ego : scene.actors[index];
+}
 
 Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
                          const RankOptions& options, RankResult& result);

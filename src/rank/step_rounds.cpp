@@ -1,7 +1,5 @@
 #include "rank/step_rounds.hpp"
 
-#include "rank/score_crash.hpp"
-
 #include <algorithm>
 #include <chrono>
 
@@ -12,41 +10,22 @@ namespace {
 /// stretches of work between two looks at the clock are shorter (bench/rank: clock_looks).
 constexpr std::chrono::microseconds ahead{30};
 
-void prepare_scratch(const Scene& scene, RefineScratch& scratch) {
-  std::uint32_t deepest = scene.ego.model->tree.depth;
+void prepare_scratch(const Scene& scene, Scratch& scratch) {
+  scratch.prepare(scene);
   for (const Body& actor : scene.actors) {
-    deepest = std::max(deepest, actor.model->tree.depth);
-    scratch.evaluate.damage.collide.prepare(*scene.ego.model, *actor.model);
+    scratch.damage.collide.prepare(*scene.ego.model, *actor.model);
   }
-  scratch.evaluate.impact.prepare(deepest, deepest);
-  scratch.evaluate.near.reserve(scene.actors.size());
-  scratch.evaluate.place.reserve(scene.actors.size());
-  scratch.evaluate.hits.reserve(scene.actors.size());
-  scratch.near.reserve(scene.actors.size());
-  scratch.reach.prepare(scene.actors.size());
   // Poses at which surfaces meet list their pairs; twice as many as crash poses of dense meshes
   // have been seen to have.
   constexpr std::size_t pairs = std::size_t{1} << 17U;
-  scratch.evaluate.damage.pairs.reserve(pairs);
-  scratch.aftermath.prepare(scene);
-  std::size_t pieces = scene.ego.vehicle.profile->pieces.size();
-  for (const Body& actor : scene.actors) {
-    pieces = std::max(pieces, actor.vehicle.profile->pieces.size());
-  }
-  for (const JoinedBodies& joined : scene.joined) {
-    pieces = std::max(pieces, joined.vehicle.profile->pieces.size());
-  }
-  scratch.crash.workspace.prepare(pieces, std::min(FixedGroup::most, scene.actors.size()));
-  scratch.crash.group.reserve();
-  scratch.met.reserve(scene.actors.size());
+  scratch.damage.pairs.reserve(pairs);
 }
 
 }  // namespace
 
 void StepRounds::prepare(std::size_t candidates) {
-  scratch_ = std::vector<RefineScratch>(pool_.size() + 1);
-  for (RefineScratch& scratch : scratch_) prepare_scratch(scene_, scratch);
-  for (Slot& slot : slots_) slot.state.met.reserve(scene_.actors.size());
+  scratch_ = std::vector<Scratch>(pool_.size() + 1);
+  for (Scratch& scratch : scratch_) prepare_scratch(scene_, scratch);
   for (std::uint32_t i = 0; i < pool_.size(); ++i) helpers_.push_back({this, i + 1});
   if (pool_.size() > 0) kept_.resize(candidates);
 }
@@ -68,7 +47,7 @@ bool StepRounds::await(const Watch& limit) noexcept {
 void StepRounds::begin(View<const Candidate> candidates, const Watch& watch) noexcept {
   candidates_ = candidates;
   watch_ = watch;
-  const bool looks = scored_by_pulses(scene_) || scene_.measure == Measure::closing_energy;
+  const bool looks = !scored_by_damage(scene_.measure);
   leaves_ = watch.runs() && pool_.size() > 0 && looks &&
             std::none_of(candidates.begin(), candidates.end(),
                          [](const Candidate& c) { return c.motion.holds_poses(); });
@@ -118,7 +97,7 @@ void StepRounds::run(const std::vector<Refined>& states, const std::uint32_t* ch
   }
 }
 
-void StepRounds::take_part(RefineScratch& own, const Watch& until) noexcept {
+void StepRounds::take_part(Scratch& own, const Watch& until) noexcept {
   while (!until.expired()) {
     const std::size_t i = next_.fetch_add(1, std::memory_order_relaxed);
     if (i >= count_) return;

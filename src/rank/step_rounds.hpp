@@ -59,7 +59,7 @@ public:
   Done done(std::size_t step) const noexcept;
 
   /// The calling thread's memory.
-  RefineScratch& own() noexcept { return scratch_.front(); }
+  Scratch& own() noexcept { return scratch_.front(); }
 
 private:
   struct Slot {
@@ -72,12 +72,12 @@ private:
     std::uint32_t worker = 0;
   };
 
-  void take_part(RefineScratch& own, const Watch& until) noexcept;
+  void take_part(Scratch& own, const Watch& until) noexcept;
 
   const Scene& scene_;
   const ScoreBounds& bounds_;
   WorkerPool pool_;
-  std::vector<RefineScratch> scratch_;  ///< the calling thread's first
+  std::vector<Scratch> scratch_;  ///< the calling thread's first
   std::vector<Helper> helpers_;
   std::vector<Candidate> kept_;  ///< copies for workers that may be left, without names
 

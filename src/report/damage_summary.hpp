@@ -11,11 +11,17 @@
 
 namespace crashrank::detail {
 
-/// Damage as reports tell it.
+/// Numbers and names of a body's damage, as reports print them.
 struct DamageSummary {
   std::size_t triangles = 0;
   double area_m2 = 0.0;
   std::vector<std::string> parts;  ///< each name once, in mesh order
+};
+
+/// A body other than the ego with its damage from all contacts of a candidate.
+struct DamagedBody {
+  std::size_t actor = 0;  ///< index into Scenario::actors
+  BodyDamage damage;  ///< a triangle hit twice counts once; the pose is that at its first contact
 };
 
 inline const TriangleMesh& mesh_of_actor(const Scenario& scenario, View<const Model> models,
@@ -25,7 +31,12 @@ inline const TriangleMesh& mesh_of_actor(const Scenario& scenario, View<const Mo
 
 DamageSummary summary_of(const BodyDamage& damage, const TriangleMesh& mesh);
 
-/// Of all bodies that a candidate hits, together.
+/// The bodies other than the ego that a candidate's contacts damage, those between others
+/// included, each once, in the order of their first contacts.
+std::vector<DamagedBody> damaged_others(const Scenario& scenario, View<const Model> models,
+                                        const CandidateResult& candidate);
+
+/// Of all of those together.
 DamageSummary summary_of_others(const Scenario& scenario, View<const Model> models,
                                 const CandidateResult& candidate);
 

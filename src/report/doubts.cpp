@@ -52,16 +52,32 @@ void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
   if (!needs_crash(result.measure)) return;
   Counted fast;
   for (const CandidateResult& ranked : result.ranking) {
-    if (std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
-                    [](const Contact& c) { return c.closing_speed_mps > fastest_contact_mps; })) {
+    const auto is_fast = [](const auto& contact) {
+      return contact.closing_speed_mps > fastest_contact_mps;
+    };
+    if (std::any_of(ranked.contacts.begin(), ranked.contacts.end(), is_fast) ||
+        std::any_of(ranked.further.begin(), ranked.further.end(), is_fast)) {
       fast.add({});
     }
   }
   if (fast.count == 0) return;
   doubts.push_back(fmt::format(
-      "{} somebody at more than {:g} m/s, faster than the crash model was checked for; rank by "
+      "{} a contact at more than {:g} m/s, faster than the crash model was checked for; rank by "
       "closing-energy",
-      fast.many("candidate meets", "candidates meet"), fastest_contact_mps));
+      fast.many("candidate leads to", "candidates lead to"), fastest_contact_mps));
+}
+
+void doubt_crowds(const RankResult& result, std::vector<std::string>& doubts) {
+  Counted crowded;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (!ranked.crowded) continue;
+    crowded.add(
+        fmt::format("'{}', in place {}", result.candidates[ranked.candidate].name, ranked.place));
+  }
+  if (crowded.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} to more bodies or contacts than are simulated, so that scores may be too low: {}",
+      crowded.many("candidate leads", "candidates lead"), crowded.examples()));
 }
 
 void doubt_starts(const Scenario& scenario, const RankResult& result,
@@ -166,6 +182,7 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
 std::vector<std::string> ranking_doubts(const Scenario& scenario, const RankResult& result) {
   std::vector<std::string> doubts;
   doubt_speeds(result, doubts);
+  doubt_crowds(result, doubts);
   doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_actors(scenario, doubts);

@@ -2,8 +2,10 @@
 
 #include "crashrank/report/escape.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "report/contact_table.hpp"
 #include "report/damage_summary.hpp"
 #include "report/page/embedded.hpp"
+#include "report/parts_table.hpp"
 #include "report/plan_view.hpp"
 #include "report/ranking_words.hpp"
 #include "report/score_text.hpp"
@@ -21,62 +23,6 @@ namespace crashrank {
 namespace {
 
 using detail::DamageSummary;
-
-struct PartDamage {
-  std::string name;
-  std::size_t triangles = 0;
-  double area_m2 = 0.0;
-  double whole_m2 = 0.0;
-};
-
-double triangle_area_m2(const TriangleMesh& mesh, std::size_t index) {
-  const Triangle t = mesh.triangle(index);
-  const Eigen::Vector3d a = t.corner[0].cast<double>();
-  return 0.5 * (t.corner[1].cast<double>() - a).cross(t.corner[2].cast<double>() - a).norm();
-}
-
-std::vector<PartDamage> damage_by_part(const TriangleMesh& mesh, const BodyDamage& damage) {
-  std::vector<PartDamage> parts;
-  for (const std::uint32_t index : damage.parts) {
-    const Part& part = mesh.parts[index];
-    PartDamage row{part.name};
-    const std::uint32_t end = part.first_triangle + part.triangle_count;
-    for (std::uint32_t i = part.first_triangle; i < end; ++i) {
-      row.whole_m2 += triangle_area_m2(mesh, i);
-    }
-    const auto first =
-        std::lower_bound(damage.triangles.begin(), damage.triangles.end(), part.first_triangle);
-    const auto last = std::lower_bound(first, damage.triangles.end(), end);
-    row.triangles = static_cast<std::size_t>(last - first);
-    for (auto i = first; i != last; ++i) row.area_m2 += triangle_area_m2(mesh, *i);
-    parts.push_back(std::move(row));
-  }
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const PartDamage& p, const PartDamage& q) { return p.area_m2 > q.area_m2; });
-  return parts;
-}
-
-std::string parts_table(const std::string& title, const TriangleMesh& mesh,
-                        const BodyDamage& damage) {
-  constexpr std::size_t shown = 12;
-  std::string html = "<table class='parts'><caption>" + escape_xml(title) +
-                     "</caption><thead><tr><th>part</th><th>damaged m²</th><th>of the part</th>"
-                     "</tr></thead><tbody>\n";
-  const std::vector<PartDamage> parts = damage_by_part(mesh, damage);
-  for (std::size_t i = 0; i < std::min(shown, parts.size()); ++i) {
-    const PartDamage& part = parts[i];
-    const double share = part.whole_m2 > 0.0 ? 100.0 * part.area_m2 / part.whole_m2 : 0.0;
-    html += fmt::format(
-        "<tr><td>{}</td><td class='n'>{:.3f}</td><td class='n'><span class='bar' "
-        "style='width:{:.0f}px'></span>{:.0f} %</td></tr>\n",
-        escape_xml(part.name), part.area_m2, 0.5 * share, share);
-  }
-  html += "</tbody></table>\n";
-  if (parts.size() > shown) {
-    html += fmt::format("<p class='more'>and {} more parts</p>\n", parts.size() - shown);
-  }
-  return html;
-}
 
 class Page {
 public:
@@ -160,16 +106,24 @@ private:
       out_ += fmt::format(", tied with {} more", result_.ranking[0].sharing - 1);
     }
     out_ += "</h2>\n";
-    out_ +=
-        result_.ranking.size() > 1
-            ? "<p>" + escape_xml(detail::reason_words(scenario_, result_, scores_, 0)) + "</p>\n"
-            : "<p>It is the only candidate.</p>\n";
+    out_ += result_.ranking.size() > 1
+                ? "<p>" +
+                      escape_xml(detail::reason_words(scenario_, models_, result_, scores_, 0)) +
+                      "</p>\n"
+                : "<p>It is the only candidate.</p>\n";
     if (!result_.proved) {
       out_ += "<p class='note'>The first place is not proved; still in the race: ";
       for (std::size_t i = 0; i < result_.in_race.size(); ++i) {
         if (i > 0) out_ += ", ";
         out_ += escape_xml(result_.candidates[result_.in_race[i]].name);
       }
+      out_ += "</p>\n";
+    }
+    const std::vector<std::string> pushed =
+        detail::pushed_words(scenario_, result_, result_.ranking.size());
+    if (!pushed.empty()) {
+      out_ += "<p class='note'>Hurt by a contact between others:";
+      for (const std::string& words : pushed) out_ += "<br>" + escape_xml(words);
       out_ += "</p>\n";
     }
     const std::vector<std::string> open =
@@ -257,9 +211,12 @@ private:
     const DamageSummary ego = detail::summary_of(ranked.ego, models_[scenario_.ego.model].mesh);
     const DamageSummary other = detail::summary_of_others(scenario_, models_, ranked);
     std::string hit;
-    for (const Contact& contact : ranked.contacts) {
-      if (!hit.empty()) hit += ", ";
-      hit += detail::contact_name(scenario_, contact);
+    for (const std::size_t actor : detail::hit_actors(ranked)) {
+      hit += hit.empty() ? detail::contact_name(scenario_, first)
+                         : ", " + scenario_.actors[actor].name;
+    }
+    for (const detail::FurtherPair& pair : detail::further_pairs(ranked)) {
+      hit += ", " + detail::pair_name(scenario_, *pair.first);
     }
     std::string parts;
     for (std::size_t i = 0; i < std::min<std::size_t>(4, ego.parts.size()); ++i) {
@@ -280,18 +237,26 @@ private:
                         escape_xml(parts));
   }
 
-  /// Of all contacts: changes of velocity and harm add up, crush is the deepest. As many digits as
-  /// the ranges leave of anything.
+  /// Of all contacts: the ego's changes of velocity and harm add up; of the others', those hit by
+  /// others included, the greatest change of velocity and the sum of harm; crush is the deepest. As
+  /// many digits as the ranges leave of anything.
   void severity_cells(const CandidateResult& ranked) {
     BodyOutcome ego;
     BodyOutcome other;
+    const auto add_other = [&other](const BodyOutcome& outcome) {
+      other.delta_v_mps = std::max(other.delta_v_mps, outcome.delta_v_mps);
+      other.crush_m = std::max(other.crush_m, outcome.crush_m);
+      other.harm += outcome.harm;
+    };
     for (const Contact& contact : ranked.contacts) {
       ego.delta_v_mps += contact.severity.ego.delta_v_mps;
-      other.delta_v_mps = std::max(other.delta_v_mps, contact.severity.other.delta_v_mps);
       ego.crush_m = std::max(ego.crush_m, contact.severity.ego.crush_m);
-      other.crush_m = std::max(other.crush_m, contact.severity.other.crush_m);
       ego.harm += contact.severity.ego.harm;
-      other.harm += contact.severity.other.harm;
+      add_other(contact.severity.other);
+    }
+    for (const FurtherContact& contact : ranked.further) {
+      add_other(contact.outcome_a);
+      add_other(contact.outcome_b);
     }
     out_ += fmt::format(
         "<td class='n'>{}</td><td class='n'>{}</td><td class='n'>{}</td>"
@@ -312,7 +277,7 @@ private:
       out_ += std::string(ranked.place == result_.ranking[place + 1].place
                               ? " Tied with the next: "
                               : " Why it stands before the next: ") +
-              escape_xml(detail::reason_words(scenario_, result_, scores_, place));
+              escape_xml(detail::reason_words(scenario_, models_, result_, scores_, place));
     }
     out_ += "</p>\n<div class='columns'>\n" + plan_.draw(place);
     out_ += "<div>\n";
@@ -320,11 +285,12 @@ private:
       if (has_view()) {
         out_ += fmt::format("<button data-place='{}'>show in 3-D</button>\n", place + 1);
       }
-      out_ += parts_table("ego", models_[scenario_.ego.model].mesh, ranked.ego);
-      for (const Contact& contact : ranked.contacts) {
+      out_ += detail::contact_table(scenario_, result_.measure, ranked);
+      out_ += detail::parts_table("ego", models_[scenario_.ego.model].mesh, ranked.ego);
+      for (const detail::DamagedBody& body : detail::damaged_others(scenario_, models_, ranked)) {
         out_ +=
-            parts_table(scenario_.actors[contact.actor].name,
-                        detail::mesh_of_actor(scenario_, models_, contact.actor), contact.other);
+            detail::parts_table(scenario_.actors[body.actor].name,
+                                detail::mesh_of_actor(scenario_, models_, body.actor), body.damage);
       }
     }
     out_ += "</div></div></section>\n";
@@ -337,7 +303,8 @@ private:
     }
     out_ +=
         "<footer>Made by crashrank. Plans: the ego blue, what it hits sand, the shaded outline "
-        "its start, the arrow the closing velocity, damage red. Damage is what the "
+        "its start, the arrow the closing velocity, damage red, a ring where two others collide. "
+        "Damage is what the "
         "bodies pass through of each other, as rigid ones, in the simulated contact, not a "
         "deformation.";
     if (result_.measure != Measure::harm) {

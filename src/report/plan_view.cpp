@@ -188,7 +188,11 @@ std::string PlanView::draw(std::size_t place) const {
     const Eigen::Vector2d at = pose.translation.head<2>();
     if (!canvas.shows(at, 30.0)) continue;
     const bool is_hit = std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
-                                    [&](const Contact& contact) { return contact.actor == i; });
+                                    [i](const Contact& contact) { return contact.actor == i; }) ||
+                        std::any_of(ranked.further.begin(), ranked.further.end(),
+                                    [i](const FurtherContact& contact) {
+                                      return contact.a == i || contact.b == i;
+                                    });
     svg += canvas.body(outline_of_actor(i), pose, is_hit ? "other" : "bystander");
     const BodyKind kind = scenario_.models[scenario_.actors[i].model].kind;
     if (kind != BodyKind::barrier && kind != BodyKind::pole && kind != BodyKind::building) {
@@ -212,6 +216,16 @@ std::string PlanView::draw(std::size_t place) const {
                     first.other.pose, "damage");
     svg += arrow(canvas, first.point_m.head<2>(),
                  closing_velocity(ego, motions_[first.actor], first).head<2>());
+  }
+  for (const FurtherContact& contact : ranked.further) {
+    const Eigen::Vector2d at = contact.point_m.head<2>();
+    if (!canvas.shows(at, 0.0)) continue;
+    const Eigen::Vector2d p = canvas(at);
+    svg += fmt::format(
+        "<circle class='further' cx='{:.1f}' cy='{:.1f}' r='9'><title>{} / {}, {:.3f} s</title>"
+        "</circle>\n",
+        p.x(), p.y(), escape_xml(scenario_.actors[contact.a].name),
+        escape_xml(scenario_.actors[contact.b].name), contact.time_s);
   }
   svg += labels;
   const double y = 2.0 * half_height_m * pixels_per_m - 14.0;

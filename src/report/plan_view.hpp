@@ -20,7 +20,8 @@ using Outline = std::vector<Eigen::Vector2d>;
 Outline convex_hull(std::vector<Eigen::Vector2d> points);
 
 /// Draws candidates from above at the moment of their first contact: outlines of all bodies near
-/// it, the ego's way there, what is damaged, and the closing velocity. Prepared once a ranking.
+/// it, the ego's way there, what is damaged, the closing velocity, and where two others
+/// collide later. Prepared once a ranking.
 class PlanView {
 public:
   PlanView(const Scenario& scenario, View<const Model> models, const RankResult& result);

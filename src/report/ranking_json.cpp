@@ -2,6 +2,7 @@
 
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/rank/candidate.hpp"
+#include "report/contact_order.hpp"
 #include "report/damage_summary.hpp"
 
 #include <nlohmann/json.hpp>
@@ -50,9 +51,17 @@ const char* state_name(ImpactState state) {
 /// Most names in `tied_with`.
 constexpr std::size_t most_tied_names = 256;
 
+/// Keys of what is stated of both bodies of a contact.
+struct SideKeys {
+  const char* first;
+  const char* second;
+};
+constexpr SideKeys ego_other{"ego", "other"};
+constexpr SideKeys a_b{"a", "b"};
+
 /// {"ego": of one, "other": of the other}
-template <class T> Json both(T ego, T other) {
-  return {{"ego", std::move(ego)}, {"other", std::move(other)}};
+template <class T> Json both(T first, T second, SideKeys keys = ego_other) {
+  return {{keys.first, std::move(first)}, {keys.second, std::move(second)}};
 }
 
 Json outcome_json(const BodyOutcome& o, bool simulated) {
@@ -76,14 +85,31 @@ Json outcome_json(const BodyOutcome& o, bool simulated) {
 }
 
 Json severity_json(const ContactSeverity& s) {
+  Json ego = outcome_json(s.ego, s.simulated);
+  Json other = outcome_json(s.other, s.simulated);
   Json entry{{"simulated", s.simulated},
              {"slides", s.slides},
              {"dissipated_j", s.dissipated_j},
-             {"ego", outcome_json(s.ego, s.simulated)},
-             {"other", outcome_json(s.other, s.simulated)}};
+             {"a", ego},
+             {"b", other},
+             {"ego", std::move(ego)},
+             {"other", std::move(other)}};
   if (s.simulated) {
     entry["duration_s"] = s.duration_s;
     entry["harm"] = s.harm;
+  }
+  return entry;
+}
+
+Json severity_json(const FurtherContact& contact, bool simulated) {
+  Json entry{{"simulated", simulated},
+             {"slides", contact.slides},
+             {"dissipated_j", contact.dissipated_j},
+             {"a", outcome_json(contact.outcome_a, simulated)},
+             {"b", outcome_json(contact.outcome_b, simulated)}};
+  if (simulated) {
+    entry["duration_s"] = contact.duration_s;
+    entry["harm"] = contact.harm;
   }
   return entry;
 }
@@ -119,16 +145,14 @@ Json harm_json(const HarmOptions& harm) {
             {"risk_speed", Json::array({r.least_risk_speed, r.most_risk_speed})},
             {"all_models", r.all_models}}},
           {"least_struck_share", harm.least_struck_share},
-          {"after_impact",
-           {{"deceleration_mps2", harm.after.deceleration_mps2},
-            {"longest_s", harm.after.longest_s},
-            {"most_contacts", harm.after.most_contacts}}}};
+          {"after_contact", after_contact_name(harm.after_contact)}};
 }
 
-void add_damage(Json& entry, const DamageSummary& ego, const DamageSummary& other) {
-  entry["damaged_triangles"] = both(ego.triangles, other.triangles);
-  entry["damaged_area_m2"] = both(ego.area_m2, other.area_m2);
-  entry["damaged_parts"] = both(Json(ego.parts), Json(other.parts));
+void add_damage(Json& entry, const DamageSummary& first, const DamageSummary& second,
+                SideKeys keys = ego_other) {
+  entry["damaged_triangles"] = both(first.triangles, second.triangles, keys);
+  entry["damaged_area_m2"] = both(first.area_m2, second.area_m2, keys);
+  entry["damaged_parts"] = both(Json(first.parts), Json(second.parts), keys);
 }
 
 /// Corners of a region in body coordinates, null where the surfaces do not meet.
@@ -160,6 +184,27 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
   return entry;
 }
 
+/// A contact between two others: what is stated of the ego's contacts as `ego` and `other` has the
+/// keys `a` and `b` here, in the order of `bodies`.
+Json contact_json(const Scenario& scenario, View<const Model> models, const FurtherContact& contact,
+                  bool simulated) {
+  Json entry{
+      {"bodies", {scenario.actors[contact.a].name, scenario.actors[contact.b].name}},
+      {"time_of_impact_s", contact.time_s},
+      {"closing_speed_mps", contact.closing_speed_mps},
+      {"beyond_crash_model", contact.closing_speed_mps > fastest_contact_mps},
+      {"closing_energy_j", contact.closing_energy_j},
+      {"point_m", vector(contact.point_m)},
+      {"region_m", both(region(contact.damage_a.region), region(contact.damage_b.region), a_b)}};
+  entry["severity"] = severity_json(contact, simulated);
+  add_damage(
+      entry,
+      detail::summary_of(contact.damage_a, detail::mesh_of_actor(scenario, models, contact.a)),
+      detail::summary_of(contact.damage_b, detail::mesh_of_actor(scenario, models, contact.b)),
+      a_b);
+  return entry;
+}
+
 /// Names of the candidates that share a place, the first `most_tied_names` of them: every entry of
 /// a tie lists all others, which grows with the square of their number.
 Json tied_json(const RankResult& result, std::size_t index) {
@@ -181,8 +226,10 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
   const std::optional<double> demand = grip_demand(candidate, scenario, until_s);
   const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
   Json contacts = Json::array();
-  for (const Contact& contact : ranked.contacts) {
-    contacts.push_back(contact_json(scenario, models, contact));
+  for (const detail::AnyContact& contact : detail::contacts_in_order(ranked)) {
+    contacts.push_back(contact.own != nullptr ? contact_json(scenario, models, *contact.own)
+                                              : contact_json(scenario, models, *contact.further,
+                                                             needs_crash(result.measure)));
   }
   Json grazes = Json::array();
   for (const Graze& graze : ranked.grazes) {
@@ -204,6 +251,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
              {"overtaken_share", sampled ? Json(ranked.overtaken) : Json(nullptr)},
              {"collides", ranked.score || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
              {"contacts", std::move(contacts)},
+             {"crowded", ranked.crowded},
              {"other", nullptr},
              {"time_of_impact_s", nullptr},
              {"closing_speed_mps", nullptr},
@@ -299,7 +347,9 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
                   {"body_pairs", work.body_pairs},
                   {"impact_bv_tests", work.impact.bv_tests},
                   {"impact_primitive_tests", work.impact.primitive_tests},
-                  {"damage_queries", work.damage_queries}}},
+                  {"damage_queries", work.damage_queries},
+                  {"crash_steps", work.crash_steps},
+                  {"crash_pieces", work.crash_pieces}}},
                 {"ranking", std::move(ranking)}};
   if (result.effort) document["effort"] = effort_json(*result.effort);
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

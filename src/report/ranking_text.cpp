@@ -47,7 +47,8 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   }
   const Contact& first = ranked.contacts.front();
   std::string hit = detail::contact_name(scenario, first);
-  if (ranked.contacts.size() > 1) hit += fmt::format(" +{}", ranked.contacts.size() - 1);
+  const std::size_t follow = ranked.contacts.size() - 1 + ranked.further.size();
+  if (follow > 0) hit += fmt::format(" +{}", follow);
   const DamageSummary ego = detail::summary_of(ranked.ego, models[scenario.ego.model].mesh);
   const DamageSummary other = detail::summary_of_others(scenario, models, ranked);
   row.push_back(hit);
@@ -115,6 +116,9 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
       result.ranking.begin(), result.ranking.end(),
       [](const CandidateResult& ranked) { return ranked.score && !ranked.collides; }));
   for (const std::string& words : detail::not_separable_words(result, shown)) {
+    text += escape_terminal(words) + "\n";
+  }
+  for (const std::string& words : detail::pushed_words(scenario, result, shown)) {
     text += escape_terminal(words) + "\n";
   }
   if (std::any_of(result.ranking.begin(),

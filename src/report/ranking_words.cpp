@@ -1,9 +1,12 @@
 #include "report/ranking_words.hpp"
 
+#include "crashrank/rank/candidate.hpp"
+#include "report/damage_summary.hpp"
 #include "report/score_text.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace crashrank::detail {
@@ -33,15 +36,14 @@ const char* what_counts(Measure measure) {
   return "kinetic energy that the crash could turn into damage";
 }
 
-double damaged_area_m2(const CandidateResult& ranked) {
-  double area = ranked.ego.area_m2;
-  for (const Contact& contact : ranked.contacts) area += contact.other.area_m2;
-  return area;
+double damaged_area_m2(const Scenario& scenario, View<const Model> models,
+                       const CandidateResult& ranked) {
+  return ranked.ego.area_m2 + summary_of_others(scenario, models, ranked).area_m2;
 }
 
 // Where another measure would see the two the other way round, a reader should know.
-std::string other_view(const RankResult& result, const CandidateResult& first,
-                       const CandidateResult& second) {
+std::string other_view(const Scenario& scenario, View<const Model> models, const RankResult& result,
+                       const CandidateResult& first, const CandidateResult& second) {
   if (first.contacts.empty() || second.contacts.empty()) return {};
   const double first_speed = first.contacts.front().closing_speed_mps;
   const double second_speed = second.contacts.front().closing_speed_mps;
@@ -49,12 +51,37 @@ std::string other_view(const RankResult& result, const CandidateResult& first,
     return fmt::format(" Its closing speed is the higher one, though: {:.1f} m/s against {:.1f}.",
                        first_speed, second_speed);
   }
-  if (result.measure != Measure::area && damaged_area_m2(first) > damaged_area_m2(second)) {
+  const double first_m2 = damaged_area_m2(scenario, models, first);
+  const double second_m2 = damaged_area_m2(scenario, models, second);
+  if (result.measure != Measure::area && first_m2 > second_m2) {
     return fmt::format(
-        " By damaged area it would be the other way round: {:.2f} m² against {:.2f}.",
-        damaged_area_m2(first), damaged_area_m2(second));
+        " By damaged area it would be the other way round: {:.2f} m² against {:.2f}.", first_m2,
+        second_m2);
   }
   return {};
+}
+
+/// Whether an earlier contact of a candidate is with the actor.
+bool is_hit_before(const CandidateResult& ranked, std::size_t actor, double time_s) {
+  return std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
+                     [=](const Contact& contact) {
+                       return contact.actor == actor && contact.time_of_impact_s < time_s;
+                     }) ||
+         std::any_of(ranked.further.begin(), ranked.further.end(),
+                     [=](const FurtherContact& contact) {
+                       return (contact.a == actor || contact.b == actor) && contact.time_s < time_s;
+                     });
+}
+
+/// Whether the first actor, hit before, brings along most of the closing speed; `closing` is its
+/// velocity less the other's, m/s. The other moves as planned.
+bool is_pushed(const Scenario& scenario, const CandidateResult& ranked, std::size_t actor,
+               std::size_t other, const Eigen::Vector3d& closing, double time_s) {
+  if (!is_hit_before(ranked, actor, time_s) || is_hit_before(ranked, other, time_s)) return false;
+  const Result<Motion> planned = make_motion(scenario.actors[other]);
+  if (!planned) return false;
+  const double of_other = -planned->velocity_at(time_s).linear_mps.dot(closing);
+  return of_other < 0.5 * closing.squaredNorm();
 }
 
 /// Which tie-break decides between equal scores; the two are not tied.
@@ -78,9 +105,82 @@ const char* const overlap_meaning =
     "intrusion "
     "and damage, so that severity and score are unreliable";
 
+std::vector<std::size_t> hit_actors(const CandidateResult& ranked) {
+  std::vector<std::size_t> actors;
+  for (const Contact& contact : ranked.contacts) {
+    if (std::find(actors.begin(), actors.end(), contact.actor) == actors.end()) {
+      actors.push_back(contact.actor);
+    }
+  }
+  return actors;
+}
+
 std::string contact_name(const Scenario& scenario, const Contact& contact) {
   return scenario.actors[contact.actor].name +
          (begins_in_contact(contact) ? " (overlaps at start)" : "");
+}
+
+std::string pair_name(const Scenario& scenario, const FurtherContact& contact) {
+  return scenario.actors[contact.a].name + " / " + scenario.actors[contact.b].name;
+}
+
+std::vector<FurtherPair> further_pairs(const CandidateResult& ranked) {
+  std::vector<FurtherPair> pairs;
+  for (const FurtherContact& contact : ranked.further) {
+    const auto same = std::find_if(pairs.begin(), pairs.end(), [&contact](const FurtherPair& pair) {
+      return (pair.first->a == contact.a && pair.first->b == contact.b) ||
+             (pair.first->a == contact.b && pair.first->b == contact.a);
+    });
+    if (same == pairs.end()) {
+      pairs.push_back({&contact, contact.harm});
+    } else {
+      same->harm += contact.harm;
+    }
+  }
+  return pairs;
+}
+
+std::string further_words(const Scenario& scenario, const CandidateResult& ranked,
+                          const FurtherContact& contact) {
+  const std::string& a = scenario.actors[contact.a].name;
+  const std::string& b = scenario.actors[contact.b].name;
+  const double time_s = contact.time_s;
+  if (is_pushed(scenario, ranked, contact.a, contact.b, contact.closing, time_s)) {
+    return a + " is pushed into " + b;
+  }
+  if (is_pushed(scenario, ranked, contact.b, contact.a, -contact.closing, time_s)) {
+    return b + " is pushed into " + a;
+  }
+  return a + " and " + b + " collide";
+}
+
+std::vector<std::string> pushed_words(const Scenario& scenario, const RankResult& result,
+                                      std::size_t shown) {
+  constexpr std::size_t most = 12;
+  constexpr double least_harm = 0.001;  // brushes of fenders would fill the page
+  std::vector<std::string> words;
+  if (result.measure != Measure::harm) return words;
+  std::size_t left_out = 0;
+  for (std::size_t place = 0; place < std::min(shown, result.ranking.size()); ++place) {
+    const CandidateResult& ranked = result.ranking[place];
+    for (const FurtherPair& pair : further_pairs(ranked)) {
+      if (!(pair.harm >= least_harm)) continue;
+      if (words.size() == most) {
+        ++left_out;
+        continue;
+      }
+      words.push_back(
+          fmt::format("{}: {} at {:.2f} s (harm {:.2g})", result.candidates[ranked.candidate].name,
+                      further_words(scenario, ranked, *pair.first), pair.first->time_s, pair.harm));
+    }
+  }
+  if (left_out > 0) {
+    words.push_back(
+        left_out == 1
+            ? std::string("... and 1 more collision of others that hurts somebody")
+            : fmt::format("... and {} more collisions of others that hurt somebody", left_out));
+  }
+  return words;
 }
 
 std::string score_words(const CandidateResult& ranked, const std::string& score, Measure measure) {
@@ -102,15 +202,24 @@ std::string outcome_words(const Scenario& scenario, const CandidateResult& ranke
     text = fmt::format("overlaps {} at the start, closing at {:.1f} m/s",
                        scenario.actors[first.actor].name, first.closing_speed_mps);
   }
-  for (std::size_t i = 1; i < ranked.contacts.size(); ++i) {
-    text += (i + 1 == ranked.contacts.size() ? " and " : ", ") +
-            scenario.actors[ranked.contacts[i].actor].name;
+  const std::vector<std::size_t> actors = hit_actors(ranked);
+  for (std::size_t i = 1; i < actors.size(); ++i) {
+    text += (i + 1 == actors.size() ? " and " : ", ") + scenario.actors[actors[i]].name;
+  }
+  constexpr std::size_t described = 3;
+  const std::vector<FurtherPair> pairs = further_pairs(ranked);
+  for (std::size_t i = 0; i < std::min(described, pairs.size()); ++i) {
+    text += ", " + further_words(scenario, ranked, *pairs[i].first);
+  }
+  if (pairs.size() > described) {
+    text += fmt::format(", and {} more pairs of others collide", pairs.size() - described);
   }
   return text;
 }
 
-std::string reason_words(const Scenario& scenario, const RankResult& result,
-                         const std::vector<std::string>& scores, std::size_t place) {
+std::string reason_words(const Scenario& scenario, View<const Model> models,
+                         const RankResult& result, const std::vector<std::string>& scores,
+                         std::size_t place) {
   const CandidateResult& first = result.ranking[place];
   const CandidateResult& second = result.ranking[place + 1];
   const std::string first_score = score_words(first, scores[place], result.measure);
@@ -145,7 +254,7 @@ std::string reason_words(const Scenario& scenario, const RankResult& result,
         ". The two are not separable: simulated with half the steps or 1 mm aside, their order may "
         "turn round";
   }
-  return text + "." + other_view(result, first, second);
+  return text + "." + other_view(scenario, models, result, first, second);
 }
 
 }  // namespace crashrank::detail

@@ -216,12 +216,11 @@ std::vector<std::string> harm_words(const HarmOptions& harm) {
                   w.people_in_ego, w.people_in_car, w.people_in_truck, w.people_in_bus));
   lines.push_back(fmt::format(
       "Friction {:g} ({:g} to {:g}); ranges: stiffness x {:g} to {:g}, restitution x {:g} to {:g}, "
-      "speed of the risk curves x {:g} to {:g}, {}. After a contact: {:g} m/s2 for {:g} s at most, "
-      "{} contacts at most.",
+      "speed of the risk curves x {:g} to {:g}, {}. After a contact whatever was hit {}.",
       harm.friction, r.least_friction, r.most_friction, r.least_strength, r.most_strength,
       r.least_restitution, r.most_restitution, r.least_risk_speed, r.most_risk_speed,
       r.all_models ? "order under all four risk models" : "this risk model alone",
-      harm.after.deceleration_mps2, harm.after.longest_s, harm.after.most_contacts));
+      after_contact_name(harm.after_contact)));
   return lines;
 }
 

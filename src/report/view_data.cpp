@@ -1,6 +1,7 @@
 #include "report/view_data.hpp"
 
 #include "report/base64.hpp"
+#include "report/damage_summary.hpp"
 #include "report/palette.hpp"
 
 #include <fmt/format.h>
@@ -80,9 +81,9 @@ ViewData view_data(const Scenario& scenario, View<const Model> models, const Ran
     if (shown(scenario.ego.model)) {
       bodies.push_back(body_json(scenario.ego.model, models[scenario.ego.model].mesh, ego));
     }
-    for (const Contact& contact : ranked.contacts) {
-      const std::size_t model = scenario.actors[contact.actor].model;
-      if (shown(model)) bodies.push_back(body_json(model, models[model].mesh, contact.other));
+    for (const DamagedBody& body : damaged_others(scenario, models, ranked)) {
+      const std::size_t model = scenario.actors[body.actor].model;
+      if (shown(model)) bodies.push_back(body_json(model, models[model].mesh, body.damage));
     }
     const Contact& first = ranked.contacts.front();
     scenes[std::to_string(place + 1)] = {{"point", vector(first.point_m)},

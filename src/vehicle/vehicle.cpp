@@ -98,6 +98,15 @@ CrushStrength even_strength(double yield_npm, double slope_npm2, double length_m
   return strength;
 }
 
+/// A core over the body's whole length. What is beside it bears as much until it folds, but does
+/// not harden: mirrors, handlebars and arms hold no post as a chassis does.
+CrushCore even_core(double half_width_m) {
+  CrushCore core;
+  core.rails_half_width_m = half_width_m;
+  core.cage_half_width_m = half_width_m;
+  return core;
+}
+
 /// Engine and chassis would stop the body from that speed within `stop_m`, what is behind `after_m`
 /// of them within a hundredth of it.
 void harden(CrushStrength& strength, double mass_kg, double stop_m, double after_m) {
@@ -114,6 +123,10 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
   // Of lorries and buses: bumper and front wall, then a cab with seats (a bus to its rear wall).
   constexpr double before_cab_m = 0.3;
   constexpr double cab_m = 2.0;
+  // Half widths of what hardens, of the whole width: frame and engine within the handlebars, trunk
+  // within the arms.
+  constexpr double frame_share = 0.25;
+  constexpr double trunk_share = 0.25;
   const Vector3d size = box.extent().cast<double>();
   CarShape shape;
   shape.mass_kg = v.mass_kg;
@@ -132,8 +145,7 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
     case BodyKind::bus:
       // Campbell's line for the mass, borne by the chassis over its whole width.
       strength = car_strength(shape);
-      strength.core = CrushCore{};
-      strength.core.cage_half_width_m = 0.5 * shape.width_m;
+      strength.core = even_core(0.5 * shape.width_m);
       strength.core.cage_front_m = shape.front_x_m - before_cab_m;
       strength.core.cage_rear_m = v.kind == BodyKind::truck ? strength.core.cage_front_m - cab_m
                                                             : shape.rear_x_m + before_cab_m;
@@ -156,6 +168,7 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
       strength.low_m = 0.1;
       strength.high_m = 0.7;
       strength.rest = 0.06;
+      strength.core = even_core(frame_share * size.y());
       harden(strength, v.mass_kg, 1.0, 0.1);
       return strength;
     case BodyKind::bicycle:
@@ -167,6 +180,7 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
     case BodyKind::pedestrian:
       // About 5 kN/m at no depth: what a chest bears over its breadth; bones behind 0.1 m.
       strength = even_strength(5e3, 50e3, 0.1, size.z());
+      strength.core = even_core(trunk_share * size.y());
       harden(strength, v.mass_kg, 0.5, 0.05);
       return strength;
     case BodyKind::barrier:

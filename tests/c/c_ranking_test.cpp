@@ -4,6 +4,7 @@
 #include "crashrank/tree/model_file.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>
@@ -131,6 +132,63 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
   };
   EXPECT_EQ(without_time(crashrank_ranking_json(ranking.get())),
             without_time(ranking_json(*read, bodies, *expected)));
+}
+
+TEST(CApi, ContactsBetweenOthersAreTheLibrarys) {
+  const std::string file = CRASHRANK_SCENARIOS "/pushed_onto_crossing.json";
+  crashrank_error error{};
+  crashrank_scenario* made = nullptr;
+  ASSERT_EQ(crashrank_scenario_load(file.c_str(), &made, &error), CRASHRANK_OK) << error.message;
+  const Scenario scenario(made);
+  const Models models = make_models();
+  ASSERT_EQ(crashrank_models_import_scenario(models.get(), scenario.get(), &error), CRASHRANK_OK)
+      << error.message;
+  for (const char* measure : {"harm", "closing-energy"}) {
+    const bool by_harm = std::string(measure) == "harm";
+    crashrank_rank_options options{};
+    options.measure = measure;
+    options.json = 1;
+    crashrank_ranking* answer = nullptr;
+    ASSERT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &answer, &error), CRASHRANK_OK)
+        << error.message;
+    const Ranking ranking(answer);
+    const auto json = nlohmann::json::parse(crashrank_ranking_json(ranking.get()));
+    size_t all = 0;
+    for (size_t place = 0; place < crashrank_ranking_size(ranking.get()); ++place) {
+      size_t count = 0;
+      for (const auto& wanted : json["ranking"][place]["contacts"]) {
+        if (wanted.contains("other")) continue;  // the ego's
+        crashrank_further_contact contact{};
+        ASSERT_EQ(crashrank_ranking_further(ranking.get(), place, count, &contact, &error),
+                  CRASHRANK_OK);
+        EXPECT_EQ(wanted["bodies"][0], contact.a);
+        EXPECT_EQ(wanted["bodies"][1], contact.b);
+        EXPECT_EQ(wanted["time_of_impact_s"], contact.time_s);
+        EXPECT_EQ(wanted["closing_speed_mps"], contact.closing_speed_mps);
+        EXPECT_EQ(wanted["severity"]["a"]["delta_v_mps"], contact.a_delta_v_mps);
+        EXPECT_EQ(wanted["severity"]["b"]["delta_v_mps"], contact.b_delta_v_mps);
+        if (by_harm) {
+          EXPECT_EQ(wanted["severity"]["harm"], contact.harm);
+        } else {
+          EXPECT_TRUE(std::isnan(contact.harm));
+        }
+        ++count;
+      }
+      EXPECT_EQ(crashrank_ranking_further_count(ranking.get(), place), count);
+      crashrank_further_contact contact{};
+      EXPECT_EQ(crashrank_ranking_further(ranking.get(), place, count, &contact, &error),
+                CRASHRANK_USAGE);
+      all += count;
+    }
+    EXPECT_GT(all, 0U);
+    const size_t size = crashrank_ranking_size(ranking.get());
+    EXPECT_EQ(crashrank_ranking_further_count(ranking.get(), size), 0U);
+    crashrank_further_contact contact{};
+    EXPECT_EQ(crashrank_ranking_further(ranking.get(), size, 0, &contact, nullptr),
+              CRASHRANK_USAGE);
+    EXPECT_EQ(crashrank_ranking_further(ranking.get(), 0, 0, nullptr, nullptr), CRASHRANK_USAGE);
+  }
+  EXPECT_EQ(crashrank_ranking_further_count(nullptr, 0), 0U);
 }
 
 TEST(CApi, ARankerAnswersAsRankDoesAndWithinABudgetSoundly) {

@@ -44,6 +44,7 @@ SCENARIO = {
     "ego": {"model": "car", "speed_mps": 12},
     "actors": [
         {"name": "saloon", "model": "car", "pose": {"x_m": 14}},
+        {"name": "ahead", "model": "car", "pose": {"x_m": 19.2}},
         {"name": "post", "model": "post", "pose": {"x_m": 12, "y_m": 3.5}},
         {"name": "child", "model": "child", "pose": {"x_m": 12, "y_m": -3}}],
     "candidates": {"listed": [
@@ -142,7 +143,14 @@ class Answers(unittest.TestCase):
     def test_rank(self):
         for measure in ("polygons", "closing-energy", "delta-v", "harm"):
             document = self.check("rank", "scenario.json", "--measure", measure)
-            self.assertTrue(any(entry["contacts"] for entry in document["ranking"]))
+            contacts = [c for entry in document["ranking"] for c in entry["contacts"]]
+            self.assertTrue(any("other" in c for c in contacts))
+            self.assertTrue(any("other" not in c for c in contacts))
+            for entry in document["ranking"]:
+                times = [c["time_of_impact_s"] for c in entry["contacts"]]
+                self.assertEqual(times, sorted(times))
+                for c in entry["contacts"]:
+                    self.assertEqual("ego" in c["bodies"], "other" in c)
 
     def test_validate(self):
         car = str(DATA / "models" / "sedan.obj")

@@ -12,7 +12,6 @@
 namespace crashrank {
 namespace {
 
-using detail::AfterContact;
 using detail::Footing;
 using detail::Wheels;
 using Eigen::Vector3d;

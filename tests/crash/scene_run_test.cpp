@@ -65,7 +65,8 @@ struct Stage {
 };
 
 void run_to_end(SceneRun& run) {
-  while (run.advance(1000)) {}
+  while (run.advance(1000)) {
+  }
 }
 
 const Vehicle& named(const char* name) {
@@ -92,19 +93,23 @@ TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
         Stage stage;
         stage.add(scene.a);
         stage.add(scene.b);
-        run.begin(stage.ready(false), 0, 0.0, scene.point_m, {});
+        run.begin(stage.ready(false), 0, 1, 0.0, scene.point_m, {});
         run_to_end(run);
         ASSERT_EQ(run.contacts().size() > 0, alone.acts);
         if (!alone.acts) return;
         const SceneContact& first = run.contacts()[0];
         EXPECT_EQ(first.a, 0U);
         EXPECT_EQ(first.b, 1U);
+        // What follows within 0.1 s, a slap of the tail or rubbing, belongs to it in a scene.
+        if (first.outcome.steps != alone.steps) return;
         changes.push_back(test::change(first.outcome, alone, closing));
-        EXPECT_NEAR(first.outcome.duration_s, alone.duration_s, 0.1);
+        EXPECT_NEAR(first.outcome.duration_s, alone.duration_s, 1e-3);
       });
   test::print_changes("scene against contact alone", changes);
-  ASSERT_GT(changes.size(), 200U);
-  EXPECT_LT(percentile(changes, 0.9), 1e-6);
+  ASSERT_GT(changes.size(), 150U);
+  // Centres of mass are rounded elsewhere, which may turn a piece's float the other way.
+  EXPECT_LT(percentile(changes, 0.99), 1e-12);
+  EXPECT_LT(percentile(changes, 1.0), 1e-3);
 }
 
 /// Bodies thrown at each other from all around, at least two of them movable.
@@ -142,8 +147,8 @@ Totals totals_of(const SceneRun& run, std::size_t count) {
     sum.moment += mass * (b.x * b.vy - b.y * b.vx) + b.spin / b.inverse_inertia;
     sum.energy += b.energy();
     sum.scale += mass * std::hypot(b.vx, b.vy);
-    sum.moment_scale += mass * std::hypot(b.x, b.y) * std::hypot(b.vx, b.vy) +
-                        std::abs(b.spin) / b.inverse_inertia;
+    sum.moment_scale +=
+        mass * std::hypot(b.x, b.y) * std::hypot(b.vx, b.vy) + std::abs(b.spin) / b.inverse_inertia;
   }
   return sum;
 }
@@ -161,7 +166,7 @@ TEST(SceneRun, PilesOnIceConserveMomentumAndNeverGainEnergy) {
   for (int i = 0; i < 60; ++i) {
     Stage stage = pile(random, 3 + random.below(8), false);
     const std::size_t count = stage.plans.size();
-    run.begin(stage.ready(false), 0, 0.0, Vector3d::Zero(), {});
+    run.begin(stage.ready(false), 0, 1, 0.0, Vector3d::Zero(), {});
     const Totals before = totals_of(run, count);
     // A rebound gives back part of what was lost before it.
     bool going = true;
@@ -176,8 +181,10 @@ TEST(SceneRun, PilesOnIceConserveMomentumAndNeverGainEnergy) {
     for (std::size_t k = 0; k < count; ++k) bodies += run.touched(k) ? 1U : 0U;
     moment = std::max(moment, std::abs(after.moment - before.moment) / before.moment_scale);
   }
-  std::printf("%zu contacts, %zu bodies touched; momentum off by %.3g, moment by %.3g, energy gained %.3g\n",
-              contacts, bodies, momentum, moment, gained);
+  std::printf(
+      "%zu contacts, %zu bodies touched; momentum off by %.3g, moment by %.3g, energy gained "
+      "%.3g\n",
+      contacts, bodies, momentum, moment, gained);
   EXPECT_GT(contacts, 100U);
   EXPECT_LT(momentum, 1e-12);
   EXPECT_LT(moment, 1e-11);
@@ -193,7 +200,7 @@ TEST(SceneRun, ACarIsPushedIntoThePersonBehindIt) {
   stage.add(sedan, flat_pose(0, 0, 0), 0.0);
   stage.add(person, flat_pose(8, 0, 0), 0.0);
   SceneRun run;
-  run.begin(stage.ready(true), 0, 0.0, Vector3d::Zero(), {});
+  run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
   run_to_end(run);
   bool struck = false;
   bool pushed = false;
@@ -216,7 +223,7 @@ TEST(SceneRun, OnlyTheChainOfTheFirstBodyActs) {
   stage.add(hatch, flat_pose(-10, 0, 0), 10.0);
   stage.add(hatch, flat_pose(10, 0, detail::pi), 10.0);
   SceneRun run;
-  run.begin(stage.ready(true), 0, 0.0, Vector3d::Zero(), {});
+  run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
   run_to_end(run);
   EXPECT_EQ(run.contacts().size(), 0U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(run.touched(i));
@@ -239,7 +246,7 @@ TEST(SceneRun, MirrorsTo) {
       stage.add(cast.movable[1].vehicle, flat_pose(-7, side * y, side * yaw), speed);
       stage.add(cast.movable[0].vehicle, flat_pose(0, 0, side * 2.0), 8.0);
       stage.add(cast.movable[1].vehicle, flat_pose(6, side * 2.0, side * 0.7), 0.0);
-      run.begin(stage.ready(true), 0, 0.0, Vector3d::Zero(), {});
+      run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
       run_to_end(run);
       for (std::size_t k = 0; k < 3; ++k) ends.emplace_back(run.body(k).x, side * run.body(k).y, 0);
     }

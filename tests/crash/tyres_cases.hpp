@@ -65,7 +65,7 @@ inline bool at_rest(const detail::PlanarBody& b) {
 
 /// Any state of the wheels.
 inline detail::Wheels any_wheels(Random& random, const detail::Footing& footing) {
-  const auto after = static_cast<detail::AfterContact>(random.below(3));
+  const auto after = static_cast<AfterContact>(random.below(3));
   const double steering = random.uniform(-0.6, 0.6);
   const double brake = random.uniform(0, 1);
   const unsigned damaged = random.below(2) == 0 ? 0U : random.below(16);

@@ -15,7 +15,6 @@
 namespace crashrank {
 namespace {
 
-using detail::AfterContact;
 using detail::Footing;
 using detail::PlanarBody;
 using detail::Wheels;

@@ -38,7 +38,7 @@ class MilkTruck(unittest.TestCase):
 
     def test_measures_disagree_but_braking_beats_going_on(self):
         orders = {}
-        for measure in ("polygons", "area", "closing-energy"):
+        for measure in ("polygons", "area", "closing-energy", "energy", "delta-v"):
             orders[measure] = [row["candidate"] for row in self.rank("--measure", measure)]
             self.assertLess(orders[measure].index("brake straight ahead"),
                             orders[measure].index("keep going"), measure)

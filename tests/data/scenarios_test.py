@@ -30,14 +30,20 @@ class Scenario(unittest.TestCase):
         models = self.scenario["models"]
         of = {actor["name"]: models[actor["model"]].get("mass_kg")
               for actor in self.scenario["actors"]}
-        return models[self.scenario["ego"]["model"]]["mass_kg"], of
+        return {**of, "ego": models[self.scenario["ego"]["model"]]["mass_kg"]}
 
     def energy(self, row):
-        ego, others = self.masses()
+        """Closing energy of the first contact of every pair of bodies."""
+        mass = self.masses()
+        met = set()
         total = 0.0
         for contact in row["contacts"]:
-            other = others[contact["other"]]
-            reduced = ego if other is None else ego * other / (ego + other)
+            a, b = (mass[name] for name in contact["bodies"])
+            pair = tuple(sorted(contact["bodies"]))
+            if pair in met:
+                continue
+            met.add(pair)
+            reduced = (a or b) if a is None or b is None else a * b / (a + b)
             total += 0.5 * reduced * contact["closing_speed_mps"] ** 2
         return total
 
@@ -63,7 +69,7 @@ class Scenario(unittest.TestCase):
     def test_two_measures_disagree(self):
         by_polygons = order(self.ranking, lambda row: row["score"])
         by_energy = order(self.ranking, self.energy)
-        self.assertNotEqual(by_polygons[0], by_energy[0])
+        self.assertNotEqual(by_polygons, by_energy)
 
 
 if __name__ == "__main__":

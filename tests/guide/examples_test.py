@@ -46,6 +46,8 @@ class Examples(unittest.TestCase):
         for entry in self.ranking("--measure", "harm"):
             harm = 0.0
             for contact in entry["contacts"]:
+                if "other" not in contact:
+                    continue
                 harm += contact["severity"]["ego"]["delta_v_mps"] / 20
                 if contact["other"] in outside:
                     harm += 5 * (contact["closing_speed_mps"] / 10) ** 2

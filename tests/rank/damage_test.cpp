@@ -6,9 +6,12 @@
 #include "oracle/shipped_models.hpp"
 #include "rank/scenes.hpp"
 
+#include "crash/scene_run.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,22 +43,35 @@ bool holds(const BodyDamage& damage, std::size_t triangle) {
                             static_cast<std::uint32_t>(triangle));
 }
 
-/// The simulation of a contact between the ego on its plan and an actor, set up from the scenario.
+/// The simulation of what follows from the first contact of the ego on its plan with an actor, set
+/// up from the scenario.
 class OwnSimulation {
 public:
   OwnSimulation(const Scene& scene, const RankResult& result, const CandidateResult& c)
       : contact_(c.contacts.at(0)),
         ego_(describe(scene, scene.scenario.ego.model)),
         other_(describe(scene, scene.scenario.actors[contact_.actor].model)) {
-    ContactBody a{&ego_, {}, {}};
-    ContactBody b{&other_, {}, {}};
-    result.candidates[c.candidate].motion.state_at(contact_.time_of_impact_s, a.pose, a.velocity);
-    make_motion(scene.scenario.actors[contact_.actor])
-        ->state_at(contact_.time_of_impact_s, b.pose, b.velocity);
-    if (!other_.movable()) b.velocity = {};
-    ContactWorkspace workspace;
-    const ContactVariant plain{result.harm.friction / 0.3, 1.0, 1.0};
-    outcome = simulate_contact(a, b, {}, contact_.point_m, plain, workspace);
+    const Motion& plan = result.candidates[c.candidate].motion;
+    const Motion other_plan = *make_motion(scene.scenario.actors[contact_.actor]);
+    const detail::Footing footing = detail::footing_of(ego_);
+    const detail::Footing other_footing = detail::footing_of(other_);
+    detail::SceneOptions options;
+    options.variant = {result.harm.friction / 0.3, 1.0, 1.0};
+    options.grip = scene.scenario.grip;
+    std::array<detail::SceneBody, 2> bodies;
+    bodies[0].vehicle = &ego_;
+    bodies[0].plan = &plan;
+    bodies[0].footing = &footing;
+    bodies[1].vehicle = &other_;
+    bodies[1].plan = &other_plan;
+    bodies[1].footing = other_.movable() ? &other_footing : nullptr;
+    for (detail::SceneBody& body : bodies) body.brake = 0.45;
+    detail::SceneRun run;
+    run.begin({bodies.data(), bodies.size()}, 0, 1, contact_.time_of_impact_s, contact_.point_m,
+              options);
+    while (run.advance(1000)) {
+    }
+    outcome = run.contacts()[0].outcome;
   }
 
   ContactOutcome outcome;
@@ -110,11 +126,11 @@ TEST(Damage, IsWhatTheWallHoldsAlongTheSimulatedMotion) {
         car_against(car_box(), wall_box(), BodyKind::building, speed, yaw, random.real(-3.0, 3.0));
     const RankResult result = scene.ranked();
     const CandidateResult& c = only(result);
-    ASSERT_EQ(c.contacts.size(), 1U);
+    ASSERT_GE(c.contacts.size(), 1U);
     const Contact& contact = c.contacts[0];
     const OwnSimulation own(scene, result, c);
     EXPECT_EQ(own.outcome.a.delta_v_mps.norm(), contact.severity.ego.delta_v_mps);
-    EXPECT_EQ(contact.crush_s, own.outcome.duration_s);
+    EXPECT_EQ(contact.crush_s, own.outcome.motion.poses[own.outcome.motion.count - 1].time_s);
     sliding += own.outcome.slides ? 1 : 0;
     const View<const ContactPoses> record = own.outcome.motion.all();
     const TriangleMesh& mesh = scene.models[0].mesh;
@@ -167,7 +183,7 @@ TEST(Damage, HoldsAllPairsAtTheFurthestAndTheLastPose) {
     scene.scenario.actors[0].yaw_rate_radps = random.real(-0.3, 0.3);
     const RankResult result = scene.ranked();
     const CandidateResult& c = only(result);
-    ASSERT_EQ(c.contacts.size(), 1U);
+    ASSERT_GE(c.contacts.size(), 1U);
     const Contact& contact = c.contacts[0];
     const OwnSimulation own(scene, result, c);
     EXPECT_EQ(own.outcome.a.delta_v_mps.norm(), contact.severity.ego.delta_v_mps);
@@ -226,7 +242,7 @@ TEST(Damage, ReachesAsDeepAsTheSimulatedCrush) {
     const Scene scene = car_against(car, wall_box(), BodyKind::building, speed, 0.0, 3.0);
     const RankResult result = scene.ranked(Measure::area);
     const CandidateResult& c = only(result);
-    ASSERT_EQ(c.contacts.size(), 1U);
+    ASSERT_GE(c.contacts.size(), 1U);
     const Contact& contact = c.contacts[0];
     const OwnSimulation own(scene, result, c);
     const double depth = front_m - static_cast<double>(contact.ego.region.min.x());

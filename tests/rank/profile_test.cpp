@@ -65,9 +65,7 @@ std::vector<double> numbers_of(const HarmOptions& h) {
           r.least_risk_speed,
           r.most_risk_speed,
           r.all_models ? 1.0 : 0.0,
-          h.after.deceleration_mps2,
-          h.after.longest_s,
-          static_cast<double>(h.after.most_contacts),
+          static_cast<double>(h.after_contact),
           h.least_struck_share};
 }
 
@@ -79,7 +77,7 @@ TEST(Profile, TheShippedOneWritesOutTheDefaults) {
   other.pedestrian = {7, 0.7};
   other.friction = 7;
   other.ranges = {0.7, 0.7, 7, 7, 0.7, 0.7, 7, 7, false};
-  other.after = {7, 7, 7};
+  other.after_contact = AfterContact::locks;
   other.least_struck_share = 0.7;
   const Result<HarmOptions> profile = parse_profile(default_profile().dump(), "p.json", other);
   ASSERT_TRUE(profile.ok()) << profile.error().message();
@@ -95,6 +93,30 @@ TEST(Profile, WhatItLeavesOutStays) {
   ASSERT_TRUE(profile.ok()) << profile.error().message();
   other.weights.cyclist = 0.5;
   other.friction = 0.4;
+  EXPECT_EQ(numbers_of(*profile), numbers_of(other));
+}
+
+TEST(Profile, WhatWheelsDoAfterAContactIsReadByName) {
+  for (const AfterContact after :
+       {AfterContact::brakes, AfterContact::releases, AfterContact::locks}) {
+    const json text{{"profile_version", 1}, {"after_contact", after_contact_name(after)}};
+    HarmOptions other;
+    other.after_contact =
+        after == AfterContact::brakes ? AfterContact::locks : AfterContact::brakes;
+    const Result<HarmOptions> profile = parse_profile(text.dump(), "p.json", other);
+    ASSERT_TRUE(profile.ok()) << profile.error().message();
+    EXPECT_EQ(profile->after_contact, after);
+  }
+}
+
+TEST(Profile, KeysWithoutEffectChangeNothing) {
+  HarmOptions other;
+  other.after_contact = AfterContact::releases;
+  const Result<HarmOptions> profile = parse_profile(
+      R"({"profile_version": 1,
+          "after_impact": {"deceleration_mps2": 9, "longest_s": 1, "most_contacts": 2}})",
+      "p.json", other);
+  ASSERT_TRUE(profile.ok()) << profile.error().message();
   EXPECT_EQ(numbers_of(*profile), numbers_of(other));
 }
 
@@ -120,7 +142,13 @@ TEST(Profile, ErrorsNameTheirPlace) {
   expect_refused(with("/ranges/strength", json::array({1.4, 0.7})), "ranges.strength");
   expect_refused(with("/ranges/strength", json::array({1, 2, 3})), "ranges.strength");
   expect_refused(with("/ranges/all_models", 1), "ranges.all_models");
+  expect_refused(with("/after_contact", "flies"), "after_contact");
+  expect_refused(with("/after_contact", 0), "after_contact");
   expect_refused(with("/after_impact/most_contacts", 1e9), "after_impact.most_contacts");
+  expect_refused(with("/after_impact/longest_s", -1), "after_impact.longest_s");
+  expect_refused(with("/after_impact/deceleration_mps2", "hard"), "after_impact.deceleration_mps2");
+  expect_refused(with("/after_impact/gentle", 1), "after_impact.gentle");
+  expect_refused(with("/after_impact", 3), "after_impact");
   expect_refused(with("/least_struck_share", 1.5), "least_struck_share");
   expect_refused(with("/risk_model", "tea leaves"), "risk_model");
   expect_refused("[]", "");
@@ -185,7 +213,7 @@ TEST(Profile, TheSchemaStatesLimitsAndDefaults) {
   const Result<HarmOptions> read_back = parse_profile(profile.dump(), "p.json");
   ASSERT_TRUE(read_back.ok()) << read_back.error().message();
   EXPECT_EQ(numbers_of(*read_back), numbers_of(HarmOptions{}));
-  EXPECT_EQ(profile.size(), 9U);
+  EXPECT_EQ(profile.size(), 10U);
 }
 
 TEST(Profile, RankTakesTheScenariosAndTheCallersOverIt) {

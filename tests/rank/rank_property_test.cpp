@@ -119,6 +119,11 @@ std::string text_of(const Scenario& scenario, const RankResult& result) {
     out << result.candidates[c.candidate].name << ' ' << c.score.value_or(-1.0) << ' '
         << c.score_interval.lowest << ' ' << c.score_interval.highest << ' ' << c.collides << '\n';
     for (const Contact& contact : c.contacts) write(out, scenario, contact);
+    for (const FurtherContact& f : c.further) {
+      out << scenario.actors[f.a].name << ' ' << scenario.actors[f.b].name << ' ' << f.time_s << ' '
+          << f.outcome_a.delta_v_mps << ' ' << f.outcome_b.delta_v_mps << ' '
+          << f.damage_a.triangles.size() << ' ' << f.damage_b.triangles.size() << '\n';
+    }
   }
   out << result.complete << result.proved << result.in_race.at(0);
   return out.str();
@@ -182,7 +187,8 @@ TEST(RankProperty, AMirrorImageIsRankedAlike) {
     at_rims += differ.size();
     return static_cast<double>(differ.size());
   };
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  std::vector<double> delta_v;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Scene scene = random_scene(seed);
     const RankResult here = scene.ranked();
@@ -197,19 +203,32 @@ TEST(RankProperty, AMirrorImageIsRankedAlike) {
                                                o.curvature_per_m == -candidate.curvature_per_m;
                                       });
       ASSERT_NE(image, there.ranking.end());
-      ASSERT_EQ(c.contacts.size(), image->contacts.size());
-      double differ = compare(c.ego, image->ego);
-      for (std::size_t i = 0; i < c.contacts.size(); ++i) {
-        ++hits;
-        EXPECT_EQ(c.contacts[i].actor, image->contacts[i].actor);
-        EXPECT_NEAR(c.contacts[i].time_of_impact_s, image->contacts[i].time_of_impact_s, 1e-5);
-        differ += compare(c.contacts[i].other, image->contacts[i].other);
+      ASSERT_EQ(c.collides, image->collides);
+      if (!c.collides) continue;
+      ++hits;
+      const Contact& first = c.contacts[0];
+      const Contact& mirror = image->contacts[0];
+      EXPECT_EQ(first.actor, mirror.actor);
+      EXPECT_NEAR(first.time_of_impact_s, mirror.time_of_impact_s, 1e-5);
+      // What a chain of contacts makes of outlines that are cut from the other end parts; the first
+      // contact does not.
+      delta_v.push_back(std::abs(first.severity.ego.delta_v_mps - mirror.severity.ego.delta_v_mps) /
+                        first.closing_speed_mps);
+      if (c.contacts.size() > 1 || image->contacts.size() > 1 || !c.further.empty() ||
+          !image->further.empty()) {
+        continue;
       }
+      const double differ = compare(c.ego, image->ego) + compare(first.other, mirror.other);
       EXPECT_NEAR(c.score.value(), image->score.value(), differ) << candidate.name;
     }
   }
-  std::printf("%zu of %zu triangles in one of the images alone\n", at_rims, triangles);
-  EXPECT_LT(static_cast<double>(at_rims), 0.003 * static_cast<double>(triangles));
+  std::sort(delta_v.begin(), delta_v.end());
+  std::printf(
+      "%zu of %zu triangles in one of the images alone; delta-v over closing speed of %zu "
+      "first contacts: p50 %.3g, p95 %.3g\n",
+      at_rims, triangles, hits, delta_v[hits / 2], delta_v[hits * 95 / 100]);
+  EXPECT_LT(delta_v[hits / 2], 1e-3);
+  EXPECT_LT(static_cast<double>(at_rims), 0.002 * static_cast<double>(triangles));
   EXPECT_GT(hits, 50U);
 }
 

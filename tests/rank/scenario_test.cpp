@@ -78,7 +78,7 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
   EXPECT_FALSE(s.actors[1].occupants.has_value());
   EXPECT_EQ(s.actors[2].occupants, 4.5);
   EXPECT_EQ(s.horizon_s, 4.0);
-  EXPECT_EQ(s.keys_without_effect, std::vector<std::string>{"crush"});
+  EXPECT_EQ(s.keys_without_effect, (std::vector<std::string>{"crush", "harm.after_impact"}));
   EXPECT_EQ(s.measure, Measure::area);
   EXPECT_EQ(s.harm.model, RiskModel::malliaris_monfort);
   EXPECT_EQ(s.harm.weights.pedestrian, 2.0);
@@ -88,7 +88,7 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
   EXPECT_EQ(s.harm.ranges.least_friction, 0.2);
   EXPECT_EQ(s.harm.ranges.most_friction, 0.5);
   EXPECT_FALSE(s.harm.ranges.all_models);
-  EXPECT_EQ(s.harm.after.most_contacts, 1U);
+  EXPECT_EQ(s.harm.after_contact, AfterContact::releases);
   EXPECT_EQ(s.grip, 0.8);
 }
 
@@ -175,13 +175,30 @@ TEST(Scenario, DefaultsAreThoseOfTheSchema) {
 TEST(Scenario, KeysWithoutEffectAreListed) {
   json document = sample();
   EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
-            std::vector<std::string>{"crush"});
+            (std::vector<std::string>{"crush", "harm.after_impact"}));
   document["harm"]["least_struck_share"] = 0.5;
+  EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
+            (std::vector<std::string>{"crush", "harm.after_impact", "harm.least_struck_share"}));
+  document["harm"].erase("after_impact");
   EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
             (std::vector<std::string>{"crush", "harm.least_struck_share"}));
   document.erase("crush");
   document.erase("harm");
   EXPECT_TRUE(parse_scenario(document.dump(), "f")->keys_without_effect.empty());
+}
+
+TEST(Scenario, WhatWheelsDoAfterAContactReadsBackFromTheSchema) {
+  const json key = json::parse(read(CRASHRANK_SCHEMA))
+                       .at(json::json_pointer("/$defs/harm/properties/after_contact"));
+  ASSERT_EQ(key.at("enum").size(), 3U);
+  EXPECT_EQ(key.at("default"), after_contact_name(HarmOptions{}.after_contact));
+  json document = sample();
+  for (const json& name : key.at("enum")) {
+    document["harm"]["after_contact"] = name;
+    const Result<Scenario> s = parse_scenario(document.dump(), "f");
+    ASSERT_TRUE(s.ok()) << s.error().message();
+    EXPECT_EQ(after_contact_name(s->harm.after_contact), name.get<std::string>());
+  }
 }
 
 TEST(Scenario, EverySurfaceOfTheSchemaReadsBack) {

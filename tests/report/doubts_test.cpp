@@ -35,9 +35,24 @@ TEST(Doubts, ContactsFasterThanTheCrashModelAreTold) {
   Sound told;
   told.result.ranking[1].contacts[1].closing_speed_mps = 140.1;
   ASSERT_EQ(told.doubts().size(), 1U);
-  EXPECT_EQ(told.doubts()[0].rfind("1 candidate meets somebody at more than 140 m/s", 0), 0U);
+  EXPECT_EQ(told.doubts()[0].rfind("1 candidate leads to a contact at more than 140 m/s", 0), 0U);
   told.result.measure = Measure::closing_energy;
   EXPECT_TRUE(told.doubts().empty());
+}
+
+TEST(Doubts, ContactsBetweenOthersCountAndCrowdsAreTold) {
+  Sound told;
+  told.push_into("third");
+  EXPECT_TRUE(told.doubts().empty());
+  told.result.ranking[1].further.front().closing_speed_mps = 140.1;
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0].rfind("1 candidate leads to a contact at more than 140 m/s", 0), 0U);
+  told.result.ranking[1].further.front().closing_speed_mps = 5.0;
+  told.result.ranking[1].crowded = true;
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0],
+            "1 candidate leads to more bodies or contacts than are simulated, so that scores "
+            "may be too low: 'hit', in place 2");
 }
 
 TEST(Doubts, BodiesThatOverlapAtTheStartAreNamedOnceInEveryAnswer) {
@@ -159,7 +174,7 @@ TEST(Doubts, ThePageTellsThem) {
             std::string::npos);
   told.result.ranking[1].contacts[0].closing_speed_mps = 150.0;
   EXPECT_NE(html_report(told.scenario, told.models, told.result)
-                .find("Doubtful: 1 candidate meets somebody"),
+                .find("Doubtful: 1 candidate leads to a contact"),
             std::string::npos);
 }
 

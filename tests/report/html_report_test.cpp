@@ -25,6 +25,7 @@ TEST(HtmlReport, LetsNoNameOutOfItsPlace) {
   Told told;
   told.scenario.name = evil;
   told.scenario.description = evil;
+  told.push_into(evil);
   told.scenario.actors[0].name = evil;
   told.result.candidates[1].name = evil;
   told.models[0].mesh.parts[0].name = evil;
@@ -33,6 +34,25 @@ TEST(HtmlReport, LetsNoNameOutOfItsPlace) {
   EXPECT_EQ(page.find('\x1b'), std::string::npos);
   EXPECT_EQ(count(page, "<script"), count(page, "</script"));
   EXPECT_GE(count(page, "&lt;img src=x"), 4U);
+}
+
+TEST(HtmlReport, ListsAndMarksContactsBetweenOthers) {
+  Told told;
+  told.result.measure = Measure::harm;
+  told.push_into("third");
+  const std::string page = html_report(told.scenario, told.models, told.result);
+  for (const char* words : {"<td>ego / wall</td><td class='n'>0.500</td>",
+                            "<td>wall / third</td><td class='n'>0.750</td><td class='n'>5.0</td>"
+                            "<td class='n'>6.2</td>",
+                            "<circle class='further'", "<title>wall / third, 0.750 s</title>",
+                            "Hurt by a contact between others:<br>hit: wall is pushed into third",
+                            "wall, second, wall / third"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+  EXPECT_LT(page.find("<td>ego / wall</td>"), page.find("<td>wall / third</td>"));
+  EXPECT_LT(page.find("<td>wall / third</td>"), page.find("<td>ego / second</td>"));
+  EXPECT_EQ(count(page, "<caption>wall</caption>"), 1U);
+  EXPECT_EQ(count(page, "<caption>third</caption>"), 1U);
 }
 
 TEST(HtmlReport, AsksNothingOfTheNetwork) {
@@ -61,7 +81,8 @@ TEST(HtmlReport, ListsEveryCandidateAndSaysThatThePlaceIsNotProved) {
 }
 
 TEST(HtmlReport, CarriesTheDamageThatWasTold) {
-  const Told told;
+  Told told;
+  told.push_into("third");
   const std::string page = html_report(told.scenario, told.models, told.result);
   const std::string opening = "<script type='application/json' id='view-data'>";
   const std::size_t begin = page.find(opening);
@@ -73,7 +94,7 @@ TEST(HtmlReport, CarriesTheDamageThatWasTold) {
   const auto data = nlohmann::json::parse(page.substr(from, page.find("</script", from) - from));
   ASSERT_EQ(data["scenes"].size(), 1U);  // of three candidates one is known to hit
   const auto& bodies = data["scenes"]["2"]["bodies"];
-  ASSERT_EQ(bodies.size(), 3U);
+  ASSERT_EQ(bodies.size(), 4U);  // the wall, hit twice, stands in it once
   for (const auto& body : bodies) EXPECT_EQ(body["damaged"], "AQ==");  // the first triangle
   EXPECT_EQ(data["models"]["0"]["indices"], "AAAAAAEAAAACAAAA");       // 0, 1, 2
 }

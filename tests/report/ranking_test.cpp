@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace crashrank {
 namespace {
@@ -165,7 +167,74 @@ TEST(RankingJson, TellsStabilityAndEveryWeight) {
   }
   EXPECT_EQ(answer["harm"]["weights"]["cyclist"], 0.75);
   EXPECT_TRUE(answer["harm"]["least_struck_share"].is_number());
-  EXPECT_TRUE(answer["harm"]["after_impact"]["most_contacts"].is_number());
+  EXPECT_EQ(answer["harm"]["after_contact"], "brakes");
+}
+
+TEST(RankingJson, ListsContactsBetweenOthersInTheOrderOfTime) {
+  Told told = by_harm();
+  told.push_into("third");
+  told.result.ranking[1].contacts[0].severity.ego.delta_v_mps = 2.5;
+  told.result.ranking[1].contacts[0].severity.other.delta_v_mps = 7.5;
+  told.result.ranking[1].crowded = true;
+  const auto answer = nlohmann::json::parse(ranking_json(told.scenario, told.models, told.result));
+  const auto& hit = answer["ranking"][1];
+  ASSERT_EQ(hit["contacts"].size(), 3U);
+  const std::vector<std::vector<std::string>> bodies{
+      {"ego", "wall"}, {"wall", "third"}, {"ego", "second"}};
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto& contact = hit["contacts"][i];
+    EXPECT_EQ(contact["bodies"], nlohmann::json(bodies[i]));
+    EXPECT_EQ(contact.contains("other"), i != 1);
+    EXPECT_EQ(contact["severity"].contains("ego"), i != 1);
+    EXPECT_EQ(contact["damaged_triangles"].contains("ego"), i != 1);
+    EXPECT_EQ(contact["damaged_triangles"].contains("a"), i == 1);
+  }
+  const auto& own = hit["contacts"][0]["severity"];
+  EXPECT_EQ(own["a"], own["ego"]);
+  EXPECT_EQ(own["b"], own["other"]);
+  EXPECT_EQ(own["a"]["delta_v_mps"], 2.5);
+  EXPECT_EQ(own["b"]["delta_v_mps"], 7.5);
+  const auto& pushed = hit["contacts"][1];
+  EXPECT_EQ(pushed["time_of_impact_s"], 0.75);
+  EXPECT_EQ(pushed["closing_speed_mps"], 5.0);
+  EXPECT_EQ(pushed["severity"]["a"]["delta_v_mps"], 1.5);
+  EXPECT_EQ(pushed["severity"]["b"]["delta_v_mps"], 3.5);
+  EXPECT_EQ(pushed["severity"]["harm"], 0.31);
+  EXPECT_EQ(pushed["damaged_parts"]["b"], nlohmann::json::array({"\x1b[31mdoor"}));
+  // Three bodies of one damaged triangle each; that of the wall is hit twice.
+  EXPECT_EQ(hit["damaged_triangles"]["other"], 3);
+  EXPECT_EQ(hit["damaged_area_m2"]["other"], 1.5);
+  EXPECT_EQ(hit["crowded"], true);
+  EXPECT_EQ(answer["ranking"][0]["crowded"], false);
+}
+
+TEST(RankingText, SaysWhoIsHurtByAContactBetweenOthers) {
+  Told told = by_harm();
+  told.push_into("third \x1b[2J");
+  const std::string text = ranking_text(told.scenario, told.models, told.result);
+  EXPECT_NE(text.find("wall +2"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nhit: wall is pushed into third "), std::string::npos) << text;
+  EXPECT_NE(text.find(" at 0.75 s (harm 0.31)\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+
+  // One line a pair, with all its harm.
+  FurtherContact again = told.result.ranking[1].further.front();
+  again.time_s = 1.0;
+  again.harm = 0.11;
+  std::swap(again.a, again.b);
+  told.result.ranking[1].further.push_back(again);
+  const std::string twice = ranking_text(told.scenario, told.models, told.result);
+  EXPECT_NE(twice.find(" at 0.75 s (harm 0.42)\n"), std::string::npos) << twice;
+  EXPECT_EQ(twice.find("hit: "), twice.rfind("hit: ")) << twice;
+
+  // Most of the closing speed is the third body's own: it is not run into.
+  told.scenario.actors[2].pose.rotation = Eigen::Matrix3d::Identity();
+  told.scenario.actors[2].speed_mps = -5.0;
+  const std::string meets = ranking_text(told.scenario, told.models, told.result);
+  EXPECT_NE(meets.find("hit: wall and third "), std::string::npos) << meets;
+
+  told.result.measure = Measure::polygons;
+  EXPECT_EQ(ranking_text(told.scenario, told.models, told.result).find("hit: "), std::string::npos);
 }
 
 }  // namespace

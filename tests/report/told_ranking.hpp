@@ -81,6 +81,30 @@ struct Told {
     result.actors = {{1, fixed, true}, {1, fixed, true}};
   }
 
+  /// Lets what the second candidate hits first be pushed into a third body, named as asked, at
+  /// 0.75 s, between the ego's contacts; the triangles are those that the ego damages as well.
+  void push_into(const std::string& name) {
+    ScenarioActor actor;
+    actor.name = name;
+    actor.model = 1;
+    scenario.actors.push_back(actor);
+    result.actors.push_back(result.actors.front());
+    FurtherContact contact;
+    contact.a = 0;
+    contact.b = 2;
+    contact.time_s = 0.75;
+    contact.closing = {4.0, 3.0, 0.0};
+    contact.closing_speed_mps = 5.0;
+    contact.harm = 0.31;
+    contact.outcome_a.delta_v_mps = 1.5;
+    contact.outcome_a.event_delta_v_mps = 6.25;
+    contact.outcome_b.delta_v_mps = 3.5;
+    contact.outcome_b.harm = 0.31;
+    contact.damage_a = result.ranking[1].contacts[0].other;
+    contact.damage_b = contact.damage_a;
+    result.ranking[1].further = {contact};
+  }
+
   Scenario scenario;
   std::vector<Model> models;
   RankResult result;

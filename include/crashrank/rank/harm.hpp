@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/base/export.hpp"
+#include "crashrank/crash/after_contact.hpp"
 #include "crashrank/crash/injury.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
 
@@ -18,8 +19,7 @@ namespace crashrank {
 //
 // people_weight is the number of people in or on the body times their weight, risk_of the
 // probability of one of them in [0, 1], property_harm a weight times the crush energy. All terms
-// are
-// >= 0. The people on one body in several contacts are injured with the probability
+// are at least 0. The people on one body in several contacts are injured with the probability
 // 1 - prod(1 - p_i), see `combined_risk`, which is at least the largest p_i and at most their sum:
 // each further contact raises it or leaves it, so the first few contacts give a lower bound.
 //
@@ -74,26 +74,19 @@ struct HarmRanges {
   bool all_models = true;
 };
 
-/// How a vehicle goes on after a contact: it leaves with the velocity and the yaw rate that the
-/// crash gave it and is slowed evenly, whoever drives. What it meets then is a further contact.
-struct AfterImpact {
-  /// Between a free roll (0.1 g) and locked wheels (0.7 g): a choice.
-  double deceleration_mps2 = 3.5;
-  double longest_s = 3.0;         ///< nothing later counts as the same crash
-  std::size_t most_contacts = 4;  ///< of one candidate, the first included; 1 follows nobody
-};
-
 /// How harm is counted.
 struct HarmOptions {
   RiskModel model = RiskModel::tum;  ///< whose curves
   HarmWeights weights;               ///< what people count for
   HarmRanges ranges;                 ///< what is not known
   double friction = 0.3;             ///< between the bodies
-  AfterImpact after;                 ///< how the ego goes on
+  /// What the undamaged wheels of all vehicles do that were hit. `brakes`: with 0.45 of the grip,
+  /// the ego with more where its manoeuvre did. Bodies without wheels slide.
+  AfterContact after_contact = AfterContact::brakes;
   /// Without effect: a contact that transfers no velocity injures nobody, and the fall of a brushed
   /// rider comes from `HarmExposure::road_speed_mps`. Profiles and scenarios may still contain it.
   double least_struck_share = 0.3;
-  bool intervals = true;  ///< evaluate the samples: eight simulations a contact in place of one
+  bool intervals = true;  ///< evaluate the samples: eight simulations a crash in place of one
   /// Age and sex of all pedestrians, for the curves that have coefficients of them; empty: the mean
   /// person of the curve's sample.
   PedestrianDescription pedestrian;
@@ -176,8 +169,8 @@ struct HarmSample {
   double occupant_speed = 1.0;       ///< times the speed at which an occupant's curve is read
   double outside_speed = 1.0;        ///< and that of people outside cars
   double step = 1.0;                 ///< times the steps of the simulation
-  /// The ego at each contact is moved this far to the left of its velocity relative to the other,
-  /// m.
+  /// The ego's plan is moved this far to the left of its velocity relative to the body that it
+  /// meets first, m.
   double shift_m = 0.0;
 };
 

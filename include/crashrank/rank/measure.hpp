@@ -11,7 +11,7 @@ namespace crashrank {
 enum class Measure {
   polygons,        ///< triangles that intersect, of both bodies (Wiseman & Grinberg 2016)
   area,            ///< area of those triangles, m²
-  closing_energy,  ///< ½·m₁m₂/(m₁+m₂)·v² with the closing speed v at first contact, J
+  closing_energy,  ///< ½·m₁m₂/(m₁+m₂)·v² v: closing speed of a pair's first contact, J
   delta_v,         ///< the ego's change of velocity in the crash, m/s
   energy,          ///< kinetic energy that the crash turns into damage and heat, J
   intrusion,       ///< how far the crush reaches into passengers' cages, both bodies', m

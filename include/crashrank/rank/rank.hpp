@@ -64,20 +64,20 @@ struct BodyOutcome {
   double delta_v_y_mps = 0.0;          ///< to the left, m/s
   double yaw_rate_change_radps = 0.0;  ///< to the left, rad/s
   /// Of the event that the contact belongs to: contacts of one body that overlap in time or lie
-  /// less than 0.1 s apart change its velocity together. What harm reads.
+  /// less than 0.1 s apart change its velocity together. Harm reads the greatest that it reached.
   double event_delta_v_mps = 0.0;
   double event_yaw_rate_change_radps = 0.0;  ///< of the event, to the left, rad/s
   double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
   int clock = 12;               ///< the PDOF as an hour, 12 ahead
-  double crush_energy_j = 0.0;  ///< from here on 0 unless the crash was simulated
+  double crush_energy_j = 0.0;  ///< turned into its deformation, J
   double ees_mps = 0.0;         ///< energy-equivalent speed, m/s
   double crush_m = 0.0;         ///< deepest, m
   double intrusion_m = 0.0;     ///< into the passengers' cage, m
-  double harm = 0.0;            ///< persons, as weighted
+  double harm = 0.0;            ///< persons, as weighted; measure harm only
   std::string cdc;              ///< collision deformation classification, SAE J224
 };
 
-/// The crash with one body: it as it moves when met, the ego as the contacts before left it.
+/// What a contact does to its two bodies, both as the contacts before left them.
 struct ContactSeverity {
   /// Harm was evaluated (measures that need it). The changes of velocity are the simulation's in
   /// any case: the same numbers under every measure.
@@ -90,7 +90,9 @@ struct ContactSeverity {
   double harm = 0.0;          ///< persons, as weighted
 };
 
-/// One body hit by a candidate. Points and directions in world coordinates.
+/// A contact of the ego with another body. Points and directions in world coordinates. Of contacts
+/// after the first, which the simulation finds, `gap_m` is 0, `point_m` the mean point of the force
+/// and `normal` the direction of `closing`.
 struct Contact {
   std::size_t actor = 0;                     ///< index into Scenario::actors
   ImpactState state = ImpactState::contact;  ///< how the bodies meet
@@ -107,10 +109,8 @@ struct Contact {
   /// ½·m₁m₂/(m₁+m₂)·closing_speed²: all that the crash could turn into damage if the bodies stuck
   /// together and their velocities passed through the common centre of mass.
   double closing_energy_j = 0.0;
-  /// Duration of the simulated motion along which the damage was read, from first contact to the
-  /// end of the force, s. 0 where the bodies do not press on each other. It is
-  /// `severity.duration_s`, but for a body that nothing moves and that the ego pressed on in an
-  /// earlier contact along its plan already: that contact's motion then holds for both.
+  /// Duration of the simulated motion along which the damage was read, from the contact's begin to
+  /// the end of its force, s: `severity.duration_s`. 0 where the bodies do not press on each other.
   double crush_s = 0.0;
   /// Greatest distance in that motion of the ego's point at `point_m` from where it was at first
   /// contact, in the other body's frame, m. Both bodies' crush together in a square hit; more where
@@ -121,7 +121,30 @@ struct Contact {
   BodyDamage ego;
   BodyDamage other;          ///< and of `actor`
   ContactSeverity severity;  ///< the crash that begins with it
-  std::size_t event = 0;     ///< number of the ego's event that it belongs to, from 1
+  std::size_t event = 0;     ///< number of the ego's event that it belongs to, from 1; 0: no force
+};
+
+/// Stands for the ego where a body is named by an index into Scenario::actors.
+inline constexpr std::size_t ego_body = static_cast<std::size_t>(-1);
+
+/// A contact between two bodies that are not the ego, one of which was hit before by the ego or by
+/// what it had hit. World axes.
+struct FurtherContact {
+  std::size_t a = 0;    ///< index into Scenario::actors; it moves, as b may
+  std::size_t b = 0;    ///< and the other
+  double time_s = 0.0;  ///< from the decision, s
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< mean point of the force, m
+  Eigen::Vector3d closing = Eigen::Vector3d::Zero();  ///< a's velocity less b's there, m/s
+  double closing_speed_mps = 0.0;                     ///< its length
+  double closing_energy_j = 0.0;                      ///< as in Contact
+  bool slides = false;                                ///< past each other rather than into
+  double duration_s = 0.0;                            ///< of the force, s
+  double dissipated_j = 0.0;                          ///< turned into damage and heat, J
+  double harm = 0.0;                                  ///< persons, as weighted
+  BodyOutcome outcome_a;                              ///< what it does to a
+  BodyOutcome outcome_b;                              ///< and to b
+  BodyDamage damage_a;                                ///< triangles of a
+  BodyDamage damage_b;                                ///< and of b
 };
 
 /// A pass closer than the tolerance that touches nothing.
@@ -140,10 +163,14 @@ struct CandidateResult {
   /// where there are none, the score's interval where the score is not known.
   ScoreInterval numerical_interval;
   bool collides = false;  ///< it touches somebody
-  /// In time order (then by actor). Measures that simulate the crash: the first contact, then what
-  /// the ego meets as the crash leaves it (AfterImpact). The others: the first contact and all that
-  /// begin no later than 0.05 s after it along the planned motion.
+  /// The ego's, in the order of their begins: the first, which the exact search found, then those
+  /// of the simulated scene that follows from it.
   std::vector<Contact> contacts;
+  /// Those between others that follow from it, in the order of their begins.
+  std::vector<FurtherContact> further;
+  /// The scene had more bodies close together, or more contacts, than it follows or reports: 64
+  /// contacts in all, 64 pairs of bodies, 24 contacts at once, of a body the 32 nearest within 5 m.
+  bool crowded = false;
   std::vector<Graze> grazes;  ///< before the first contact, in time order
   /// The ego's damage from all contacts together; a triangle hit twice counts once.
   BodyDamage ego;
@@ -191,6 +218,8 @@ struct RankWork {
   std::uint64_t damage_queries = 0;  ///< poses at which intersecting triangles were listed
   CollideWork damage;                ///< done by those
   std::uint64_t paths = 0;           ///< corners whose way through the other body was followed
+  std::uint64_t crash_steps = 0;     ///< of simulated scenes
+  std::uint64_t crash_pieces = 0;    ///< pieces of outlines moved in them
 
   /// Adds up.
   RankWork& operator+=(const RankWork& other) {
@@ -200,13 +229,15 @@ struct RankWork {
     damage_queries += other.damage_queries;
     damage += other.damage;
     paths += other.paths;
+    crash_steps += other.crash_steps;
+    crash_pieces += other.crash_pieces;
     return *this;
   }
 };
 
 /// What a Ranker's call did and how long it took.
 struct RankerEffort {
-  std::uint64_t work = 0;           ///< tests of boxes, triangles and facets: what a budget cuts
+  std::uint64_t work = 0;           ///< boxes, triangles, outline pieces: what a budget cuts
   std::size_t without_search = 0;   ///< scores known from the swept boxes alone
   std::size_t without_crash = 0;    ///< and from the search for contacts, no crash simulated
   std::size_t fully_evaluated = 0;  ///< scores known from simulated crashes
@@ -242,24 +273,29 @@ struct RankResult {
 ///
 /// For every candidate the ego and the actors follow their motions until the horizon. First contact
 /// is found without stepping over any (time_of_impact); a body inside another at the start is a
-/// contact at time 0. From there the contact is simulated (`simulate_contact`, nothing varied), and
-/// every triangle that meets the other body along the simulated motion, on which both bodies
-/// overlap as rigid ones, is damaged: those that intersect it at one of the recorded poses
-/// (ContactMotion), about every 0.1 m of the way, the greatest compression and the end of the force
-/// among them; and those that it passed through between two poses, a corner's straight way crossing
-/// its surface. So a pole leaves a furrow, and a front that is wholly inside a wall counts. Bodies
-/// that do not press on each other damage the first pair of triangles alone. Where both bodies give
-/// way, the overlap is the sum of both crush depths: each body's damage then reaches deeper than
-/// its own crush.
+/// contact at time 0. From there the crash is simulated (the law of `simulate_contact`), and with
+/// nothing varied every triangle that meets the other body of a contact along the simulated motion,
+/// on which both overlap as rigid ones, is damaged: those that intersect it at one of the recorded
+/// poses (ContactMotion), about every 0.1 m of the way, the greatest compression and the end of the
+/// force among them; and those that it passed through between two poses, a corner's straight way
+/// crossing its surface. So a pole leaves a furrow, and a front that is wholly inside a wall
+/// counts. Bodies that do not press on each other damage the first pair of triangles alone. Where
+/// both bodies give way, the overlap is the sum of both crush depths: each body's damage then
+/// reaches deeper than its own crush.
 ///
-/// Scores add up over the contacts: `polygons` counts damaged triangles of the ego and of all hit,
-/// `area` adds their areas, `closing-energy` and `energy` the contacts' energies, `delta-v` the
-/// ego's changes of velocity, `intrusion` both bodies', `harm` everybody's risk as weighted.
-/// Measures that simulate the crash (harm, delta-v, energy, intrusion) go on after a contact: the
-/// ego leaves it with the velocity and yaw rate of the crash, slowed evenly (AfterImpact), and what
-/// it meets then is a further contact that begins with what is left, up to a limit of contacts and
-/// time. Bodies met at the same time are taken in turn. No body is met twice, and bodies that were
-/// hit are not followed. The other measures take the planned motion and each contact by itself.
+/// The crash of a candidate is one simulated scene: the ego, what it hits, what that is pushed into
+/// and so on press on each other and on the road with their tyres (HarmOptions::after_contact says
+/// what their wheels do), until everything rests, or 3 s after the last force. What is crushed
+/// stays crushed when two bodies meet again. All other bodies keep their plans, do not react and
+/// pass through each other. Where a scene reaches its limits, `CandidateResult::crowded` is set.
+///
+/// Scores add up over all contacts of the scene, those between others included: `polygons` counts
+/// damaged triangles of all bodies, `area` adds their areas, a triangle that is hit twice once;
+/// `closing-energy` adds the energy of every pair's first contact, `energy` all, `intrusion` both
+/// bodies', `delta-v` the changes of velocity in the ego's events, `harm` everybody's risk as
+/// weighted. An event is a body's contacts that begin less than 0.1 s after the end of one before;
+/// the risk of the people in a body is that of injury in at least one of its events.
+///
 /// Order: lower score; then what touches
 /// nothing before what does, a clean miss before a graze; then the later first contact; then the
 /// lower closing speed. Candidates that agree in all of these are tied: they share a place and are

@@ -37,8 +37,8 @@ struct RankerOptions {
 struct RankBudget {
   /// Counted from the call; at or below 0 it answers at once. Infinity: all is ranked.
   double deadline_s = std::numeric_limits<double>::infinity();
-  /// In tests of boxes, triangles and facets; what is cut off is the same on every machine and for
-  /// every number of workers.
+  /// In tests of boxes, triangles and outline pieces; what is cut off is the same on every machine
+  /// and for every number of workers.
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   /// Ends as soon as the first place is proved.
   bool first_place_only = false;
@@ -49,7 +49,6 @@ enum class RankStage : std::uint8_t {
   unseen,    ///< nothing but what no candidate can exceed
   near,      ///< the bodies that its swept boxes meet are known; exact where there are none
   searched,  ///< its contacts, or the first of them, are known; exact without any
-  followed,  ///< some of its contacts were simulated, further ones may come
   scored,    ///< its score is known
 };
 
@@ -90,13 +89,13 @@ struct RankerAnswer {
 /// Every candidate carries an interval that holds its final score. Refined are first those that can
 /// still win, the most promising first; once the first place is proved, the others. A candidate
 /// goes through: the bodies that its swept boxes meet (none: the score is 0); the search for its
-/// contact (none: 0; otherwise what nobody can exceed at that closing speed); then its crashes, one
-/// by one, each left as soon as the score can no longer be the lowest. Bounds rest on what the
-/// contact promises, momentum conserved and energy never gained: see harm.hpp.
+/// contact (none: 0); then its crash, left as soon as the score can no longer be the lowest: no
+/// score is below what the contacts that are over come to by themselves, and none above what all
+/// the energy there is can do.
 ///
 /// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls are those by
-/// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and `intrusion`,
-/// and harm that weighs property, whose last stage allocates.
+/// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and
+/// `closing-energy`, whose last stage allocates.
 ///
 /// At its deadline a call returns without waiting for workers in the middle of a step: they leave
 /// it at their next look at the clock, behind the caller's back, reading nothing of the caller's

@@ -17,7 +17,8 @@ namespace crashrank {
 /// One JSON document, keys in a fixed order, numbers in the shortest form that reads back to the
 /// same bits; what is infinite or not known is null. Every candidate is listed, best first. In a
 /// candidate's entry `other` and the time and speed beside it are those of its first contact, the
-/// damage of `ego` and `other` that of all its contacts together; each contact tells its own.
+/// damage of `ego` and `other` that of all its contacts together, `other` being all other bodies.
+/// `contacts` lists the ego's and those between others by their begins, each with its own damage.
 /// Units stand in the keys; angles are degrees.
 CRASHRANK_API std::string ranking_json(const Scenario& scenario, View<const Model> models,
                                        const RankResult& result);
@@ -28,16 +29,18 @@ struct RankingTextOptions {
   bool colours = false;  ///< ANSI codes for the titles
 };
 
-/// A table, best candidate first, and a line about what is not in it. Names are escaped for a
+/// A table, best candidate first, and lines about what is not in it: contacts between others that
+/// hurt somebody among them. Names are escaped for a
 /// terminal.
 CRASHRANK_API std::string ranking_text(const Scenario& scenario, View<const Model> models,
                                        const RankResult& result,
                                        const RankingTextOptions& options = {});
 
 /// What makes places of an answer doubtful though nothing is wrong with it, one sentence each,
-/// names as they are: contacts faster than the crash model reaches, bodies that overlap at the
-/// start, listed manoeuvres beyond the grip of the tyres, timed poses that end while their body
-/// moves or begin at another speed than the ego's, keys of the scenario that are without effect.
+/// names as they are: contacts faster than the crash model reaches, more contacts than
+/// are simulated, bodies that overlap at the start, listed manoeuvres beyond the grip of the tyres,
+/// timed poses that end while their body moves or begin at another speed than the ego's, keys of
+/// the scenario that are without effect.
 CRASHRANK_API std::vector<std::string> ranking_doubts(const Scenario& scenario,
                                                       const RankResult& result);
 

@@ -1,0 +1,194 @@
+#include "rank/crash_chain.hpp"
+
+#include "crash/pair_order.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace crashrank::detail {
+namespace {
+
+using Eigen::Vector3d;
+
+SideEffect side_of(std::size_t body, const ContactBody& given, const BodyContact& contact) {
+  SideEffect side;
+  side.body = body;
+  side.delta_v_mps = contact.delta_v_mps;
+  side.impulse_ns = contact.impulse_ns;
+  side.forward = given.pose.rotation.col(0);
+  side.yaw_radps = contact.delta_yaw_rate_radps;
+  side.road_mps = given.velocity.linear_mps.norm();
+  side.intrusion_m = contact.intrusion_m;
+  side.crush_j = contact.crush_energy_j;
+  return side;
+}
+
+SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
+  SceneOptions options;
+  options.variant = variant_of(sample);
+  options.contact.travel_m *= sample.step;
+  options.contact.shortest_s *= sample.step;
+  options.contact.longest_s *= sample.step;
+  options.contact.speed_change *= sample.step;
+  options.rolling_step_s *= sample.step;
+  options.after = scene.harm.after_contact;
+  options.grip = scene.grip;
+  return options;
+}
+
+}  // namespace
+
+double closing_energy_j(double mass_a_kg, double mass_b_kg, double speed_mps) {
+  double reduced = mass_a_kg * mass_b_kg / (mass_a_kg + mass_b_kg);
+  if (std::isinf(mass_a_kg)) reduced = mass_b_kg;
+  if (std::isinf(mass_b_kg)) reduced = mass_a_kg;
+  return 0.5 * reduced * speed_mps * speed_mps;
+}
+
+ContactVariant variant_of(const HarmSample& sample) {
+  // What friction is stated for is the pair of painted panels; the others scale with it.
+  const double panels = friction_between(Surface::sheet_metal, Surface::sheet_metal);
+  return {sample.friction / panels, sample.strength, 1.0};
+}
+
+void CrashChain::prepare(const Scene& scene) {
+  bodies_.reserve(scene.actors.size() + 1);
+  actors_.reserve(scene.actors.size() + 1);
+  placed_.reserve(scene.actors.size() + 1);
+  std::size_t pieces = scene.ego.vehicle.profile->pieces.size();
+  for (const Body& actor : scene.actors) {
+    pieces = std::max(pieces, actor.vehicle.profile->pieces.size());
+  }
+  for (const JoinedBodies& joined : scene.joined) {
+    pieces = std::max(pieces, joined.vehicle.profile->pieces.size());
+  }
+  run_.prepare(scene.actors.size() + 1, pieces);
+}
+
+void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Contact& first,
+                       const HarmSample& sample) {
+  first_ = &first;
+  bodies_.clear();
+  actors_.clear();
+  const auto add = [&](std::size_t index, const Vehicle& vehicle, const Motion& plan) {
+    SceneBody body;
+    body.vehicle = &vehicle;
+    body.plan = &plan;
+    body.brake = brake_after_contact;
+    body.footing = vehicle.movable() ? &body_of(scene, index).footing : nullptr;
+    bodies_.push_back(body);
+    actors_.push_back(index);
+  };
+  add(ego_body, scene.ego.vehicle, candidate.motion);
+  std::size_t partner = 0;
+  SceneBody& ego = bodies_.front();
+  const double braking = -candidate.acceleration_mps2 / (scene.grip * standard_gravity_mps2);
+  ego.brake = std::clamp(braking, brake_after_contact, 1.0);
+  ego.steering_rad = std::atan(candidate.curvature_per_m * scene.ego.vehicle.wheelbase_m);
+  const Vector3d across(-first.closing.y(), first.closing.x(), 0.0);
+  const double speed = across.norm();
+  if (speed > 0.0) ego.shift_m = (sample.shift_m / speed) * across;
+  for (std::size_t i = 0; i < scene.actors.size(); ++i) {
+    const std::size_t joined = scene.joined_of[i];
+    if (joined == Scene::alone) {
+      add(i, scene.actors[i].vehicle, scene.actors[i].motion);
+    } else if (scene.joined[joined].members.front() == i) {
+      const bool hit = scene.joined_of[first.actor] == joined;
+      add(hit ? first.actor : i, scene.joined[joined].vehicle, scene.actors[i].motion);
+    }
+  }
+  sort_actors(first.time_of_impact_s);
+  while (actors_[partner] != first.actor) ++partner;
+  run_.begin({bodies_.data(), bodies_.size()}, 0, partner, first.time_of_impact_s, first.point_m,
+             options_of(scene, sample));
+}
+
+/// By what they are and where, so that no answer depends on the order of the actors.
+void CrashChain::sort_actors(double time_s) {
+  placed_.clear();
+  for (const SceneBody& body : bodies_) {
+    ContactBody placed;
+    placed.vehicle = body.vehicle;
+    body.plan->state_at(time_s, placed.pose, placed.velocity);
+    placed_.push_back({placed, body, actors_[placed_.size()]});
+  }
+  std::sort(placed_.begin() + 1, placed_.end(), [](const Placed& p, const Placed& q) {
+    if (goes_second(q.at, p.at)) return true;
+    return !goes_second(p.at, q.at) && p.actor < q.actor;
+  });
+  for (std::size_t i = 1; i < placed_.size(); ++i) {
+    bodies_[i] = placed_[i].body;
+    actors_[i] = placed_[i].actor;
+  }
+}
+
+void CrashChain::finish() {
+  while (run_.advance(std::numeric_limits<int>::max())) {
+  }
+}
+
+ContactEffect CrashChain::effect(const SceneContact& contact) const {
+  ContactEffect e;
+  e.begin_s = contact.begin_s;
+  e.is_apart = contact.goes_on;
+  e.end_s = contact.begin_s + contact.outcome.duration_s;
+  e.closing_mps = contact.is_first ? first_->closing_speed_mps : closing_of(contact).norm();
+  e.closing_energy_j = closing_energy_j(contact.given_a.vehicle->mass_kg,
+                                        contact.given_b.vehicle->mass_kg, e.closing_mps);
+  e.restitution = contact.outcome.restitution;
+  e.dissipated_j = contact.outcome.dissipated_j;
+  e.sides[0] = side_of(body(contact.a), contact.given_a, contact.outcome.a);
+  e.sides[1] = side_of(contact.is_first ? first_->actor : body(contact.b), contact.given_b,
+                       contact.outcome.b);
+  return e;
+}
+
+Vector3d closing_of(const SceneContact& contact) {
+  const Vector3d& point = contact.outcome.point_m;
+  const auto at = [&](const ContactBody& body) {
+    return velocity_of_point(body.velocity, body.pose.translation, point);
+  };
+  Vector3d closing = at(contact.given_a) - at(contact.given_b);
+  closing.z() = 0.0;
+  return closing;
+}
+
+void CrashChain::effects(std::vector<ContactEffect>& effects,
+                         std::vector<std::size_t>& order) const {
+  const View<const SceneContact> all = contacts();
+  order.resize(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
+    const SceneContact& c = all[p];
+    const SceneContact& d = all[q];
+    if (c.begin_s != d.begin_s) return c.begin_s < d.begin_s;
+    if (c.a != d.a) return c.a < d.a;
+    return c.b != d.b ? c.b < d.b : p < q;
+  });
+  effects.clear();
+  const bool acts =
+      std::any_of(order.begin(), order.end(), [&](std::size_t k) { return all[k].is_first; });
+  if (!acts) {
+    order.insert(order.begin(), without_force);
+    ContactEffect touch;
+    touch.begin_s = touch.end_s = first_->time_of_impact_s;
+    touch.closing_mps = first_->closing_speed_mps;
+    touch.closing_energy_j = first_->closing_energy_j;
+    touch.sides[1].body = first_->actor;
+    effects.push_back(touch);
+  }
+  for (const std::size_t k : order) {
+    if (k == without_force) continue;
+    ContactEffect next = effect(all[k]);
+    // What two bodies close with again they had before.
+    const bool again = std::any_of(effects.begin(), effects.end(), [&](const ContactEffect& e) {
+      return e.sides[0].body == next.sides[0].body && e.sides[1].body == next.sides[1].body;
+    });
+    if (again) next.closing_energy_j = 0.0;
+    effects.push_back(next);
+  }
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,209 @@
+#include "rank/tell_contacts.hpp"
+
+#include "crashrank/crash/cdc.hpp"
+#include "crashrank/crash/pdof.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crashrank::detail {
+namespace {
+
+using Eigen::Vector3d;
+
+void fill(const ContactBody& body, const Model& model, const BodyContact& from, bool slides,
+          BodyOutcome& to) {
+  const Vehicle& v = *body.vehicle;
+  const Vector3d local = body.pose.rotation.transpose() * from.delta_v_mps;
+  to.delta_v_mps = from.delta_v_mps.norm();
+  to.delta_v_x_mps = local.x();
+  to.delta_v_y_mps = local.y();
+  to.yaw_rate_change_radps = from.delta_yaw_rate_radps;
+  to.event_delta_v_mps = to.delta_v_mps;
+  to.event_yaw_rate_change_radps = to.yaw_rate_change_radps;
+  to.pdof_deg = from.pdof_deg;
+  to.clock = clock_of(to.pdof_deg);
+  to.crush_energy_j = from.crush_energy_j;
+  to.ees_mps = v.movable() ? std::sqrt(2.0 * from.crush_energy_j / v.mass_kg) : 0.0;
+  to.intrusion_m = from.intrusion_m;
+  if (from.damaged.empty()) return;
+  const Box bounds = model.mesh.bounds();
+  const double damage_m = damage_depth_m(from.damaged, bounds);
+  // What ploughs along a flank is deep below the front, but damage is no deeper than its bounds.
+  to.crush_m = std::min(from.crush_depth_m, damage_m);
+  to.cdc = cdc_code({to.pdof_deg, from.damaged, bounds, damage_m, slides});
+}
+
+/// A contact of the ego's that the exact search did not find: bodies are deformed by then.
+Contact later_contact(const Scene& scene, const CrashChain& chain, const SceneContact& from) {
+  Contact contact;
+  contact.actor = chain.body(from.b);
+  contact.time_of_impact_s = from.begin_s;
+  contact.point_m = from.outcome.point_m;
+  contact.closing = closing_of(from);
+  contact.closing_speed_mps = contact.closing.norm();
+  // Where surfaces already intersect, no facet tells a direction that means something.
+  if (contact.closing_speed_mps > 0.0) contact.normal = contact.closing.normalized();
+  contact.normal_speed_mps = contact.closing_speed_mps;
+  contact.closing_energy_j = closing_energy_j(
+      scene.ego.mass_kg, scene.actors[contact.actor].mass_kg, contact.closing_speed_mps);
+  return contact;
+}
+
+FurtherContact further_contact(const Scene& scene, const CrashChain& chain,
+                               const SceneContact& from) {
+  FurtherContact contact;
+  contact.a = chain.body(from.a);
+  contact.b = chain.body(from.b);
+  const Body& a = scene.actors[contact.a];
+  const Body& b = scene.actors[contact.b];
+  contact.time_s = from.begin_s;
+  contact.point_m = from.outcome.point_m;
+  contact.closing = closing_of(from);
+  contact.closing_speed_mps = contact.closing.norm();
+  contact.closing_energy_j = closing_energy_j(a.mass_kg, b.mass_kg, contact.closing_speed_mps);
+  contact.slides = from.outcome.slides;
+  contact.duration_s = from.outcome.duration_s;
+  contact.dissipated_j = from.outcome.dissipated_j;
+  fill(from.given_a, *a.model, from.outcome.a, contact.slides, contact.outcome_a);
+  fill(from.given_b, *b.model, from.outcome.b, contact.slides, contact.outcome_b);
+  return contact;
+}
+
+void tell_severity(const Scene& scene, const SceneContact& from, Contact& contact) {
+  ContactSeverity& severity = contact.severity;
+  severity.simulated = needs_crash(scene.measure);
+  severity.slides = from.outcome.slides;
+  severity.duration_s = from.outcome.duration_s;
+  severity.dissipated_j = from.outcome.dissipated_j;
+  fill(from.given_a, *scene.ego.model, from.outcome.a, severity.slides, severity.ego);
+  fill(from.given_b, *scene.actors[contact.actor].model, from.outcome.b, severity.slides,
+       severity.other);
+}
+
+/// The actors that pressed on the first body in a contact, joined ones with those beside them.
+std::vector<std::size_t> pressed_actors(const Scene& scene, const CrashChain& chain,
+                                        const SceneContact& from) {
+  std::vector<std::size_t> pressed;
+  for (std::size_t k = 0; k < from.pressed_count; ++k) {
+    const std::size_t actor = chain.body(from.pressed[k]);
+    const std::size_t joined = scene.joined_of[actor];
+    if (joined == Scene::alone) {
+      pressed.push_back(actor);
+    } else {
+      const std::vector<std::size_t>& members = scene.joined[joined].members;
+      pressed.insert(pressed.end(), members.begin(), members.end());
+    }
+  }
+  return pressed;
+}
+
+}  // namespace
+
+Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor,
+                      const Impact& impact) {
+  const Body& other = scene.actors[actor];
+  Contact contact;
+  contact.actor = actor;
+  contact.state = impact.state;
+  contact.time_of_impact_s = impact.time_s;
+  contact.gap_m = impact.gap_m;
+  contact.normal = impact.normal;
+  Pose ego_pose;
+  Velocity ego_velocity;
+  ego.state_at(impact.time_s, ego_pose, ego_velocity);
+  Pose other_pose;
+  Velocity other_velocity;
+  other.motion.state_at(impact.time_s, other_pose, other_velocity);
+  if (impact.triangle_a >= 0 && impact.triangle_b >= 0) {
+    contact.point_m = 0.5 * (impact.point_a_m + impact.point_b_m);
+  } else {
+    // One lies inside the other: the middle of the smaller one stands for the place, of equal ones
+    // the middle between theirs.
+    const Vector3d own = ego_pose.rotation * scene.ego.center_m + ego_pose.translation;
+    const Vector3d theirs = other_pose.rotation * other.center_m + other_pose.translation;
+    contact.point_m = scene.ego.radius_m < other.radius_m   ? own
+                      : other.radius_m < scene.ego.radius_m ? theirs
+                                                            : Vector3d(0.5 * (own + theirs));
+  }
+  contact.closing = velocity_of_point(ego_velocity, ego_pose.translation, contact.point_m) -
+                    velocity_of_point(other_velocity, other_pose.translation, contact.point_m);
+  contact.closing_speed_mps = contact.closing.norm();
+  contact.normal_speed_mps = std::max(0.0, contact.closing.dot(contact.normal));
+  contact.closing_energy_j =
+      closing_energy_j(scene.ego.mass_kg, other.mass_kg, contact.closing_speed_mps);
+  return contact;
+}
+
+OutcomePair outcomes_of(CandidateResult& result, const ToldContact& told) {
+  if (told.is_further) {
+    FurtherContact& contact = result.further[told.index];
+    return {contact.outcome_a, contact.outcome_b};
+  }
+  ContactSeverity& severity = result.contacts[told.index].severity;
+  return {severity.ego, severity.other};
+}
+
+std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& chain,
+                                       const std::vector<std::size_t>& order, const Impact& impact,
+                                       const Pose& ego, CandidateResult& result,
+                                       std::vector<DamagePlan>& plans) {
+  std::vector<ToldContact> told;
+  std::vector<DamagePlan> further_plans;
+  plans.emplace_back();  // the first contact's
+  bool first_acts = false;
+  for (const std::size_t k : order) {
+    if (k == CrashChain::without_force) {
+      told.push_back({false, 0});
+      continue;
+    }
+    const SceneContact& from = chain.contacts()[k];
+    const std::vector<std::size_t> pressed = pressed_actors(scene, chain, from);
+    const View<const std::size_t> pressed_view{pressed.data(), pressed.size()};
+    DamageQuery query;
+    if (from.a != 0) {
+      result.further.push_back(further_contact(scene, chain, from));
+      told.push_back({true, result.further.size() - 1});
+      const FurtherContact& contact = result.further.back();
+      query = {contact.a, contact.b, ImpactState::contact, 0.0, -1, -1, contact.point_m};
+      further_plans.push_back(plan_damage(scene, query, from.outcome.motion, pressed_view));
+      continue;
+    }
+    const bool is_first = from.is_first;
+    if (!is_first) result.contacts.push_back(later_contact(scene, chain, from));
+    const std::size_t index = is_first ? 0 : result.contacts.size() - 1;
+    Contact& contact = result.contacts[index];
+    tell_severity(scene, from, contact);
+    told.push_back({false, index});
+    query = {ego_body, contact.actor, contact.state, contact.gap_m, -1, -1, contact.point_m};
+    if (is_first) {
+      query.triangle_a = impact.triangle_a;
+      query.triangle_b = impact.triangle_b;
+    }
+    DamagePlan plan = plan_damage(scene, query, from.outcome.motion, pressed_view);
+    contact.crush_s = plan.crush_s;
+    contact.crush_m = plan.crush_m;
+    if (is_first) {
+      plans.front() = std::move(plan);
+    } else {
+      plans.push_back(std::move(plan));
+    }
+    first_acts = first_acts || is_first;
+  }
+  if (!first_acts) {
+    // The surfaces touch, but the outlines do not press on each other.
+    const Contact& contact = result.contacts.front();
+    ContactMotion motion;
+    motion.count = 1;
+    motion.poses[0].a = ego;
+    motion.poses[0].b = scene.actors[contact.actor].motion.pose_at(contact.time_of_impact_s);
+    plans.front() = plan_damage(scene,
+                                {ego_body, contact.actor, contact.state, contact.gap_m,
+                                 impact.triangle_a, impact.triangle_b, contact.point_m},
+                                motion, {});
+  }
+  for (DamagePlan& plan : further_plans) plans.push_back(std::move(plan));
+  return told;
+}
+
+}  // namespace crashrank::detail

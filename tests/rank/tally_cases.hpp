@@ -1,0 +1,50 @@
+#pragma once
+
+#include "rank/tally.hpp"
+
+#include "crash/shapes.hpp"
+
+#include <array>
+#include <vector>
+
+namespace crashrank::detail {
+
+inline Body make_body(BodyKind kind) {
+  VehicleFacts facts;
+  facts.kind = kind;
+  const Result<Vehicle> v = describe_vehicle(test::box_mesh({2.0, 0.9, 0.7}, {1.2, 0, 0.7}), facts);
+  Body body;
+  body.vehicle = *v;
+  body.mass_kg = v->mass_kg;
+  return body;
+}
+
+inline constexpr std::array<BodyKind, 9> all_kinds{
+    BodyKind::car,        BodyKind::truck,   BodyKind::bus,
+    BodyKind::motorcycle, BodyKind::bicycle, BodyKind::pedestrian,
+    BodyKind::barrier,    BodyKind::pole,    BodyKind::building};
+/// Place of a building among those.
+inline constexpr std::size_t wall = 8;
+
+/// Measures that the tally scores.
+inline constexpr std::array<Measure, 4> tallied{Measure::delta_v, Measure::energy,
+                                                Measure::intrusion, Measure::harm};
+
+/// A car that is the ego and one actor of each kind.
+inline Scene scene_of(Measure measure) {
+  Scene scene;
+  scene.measure = measure;
+  scene.ego = make_body(BodyKind::car);
+  for (const BodyKind kind : all_kinds) scene.actors.push_back(make_body(kind));
+  scene.plain.model = scene.harm.model;
+  return scene;
+}
+
+/// What the contacts come to in the plain variant.
+inline Tally tally_of(const Scene& scene, const std::vector<ContactEffect>& effects) {
+  Tally tally;
+  for (const ContactEffect& e : effects) tally.add(scene, e, scene.plain);
+  return tally;
+}
+
+}  // namespace crashrank::detail
