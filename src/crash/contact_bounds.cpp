@@ -25,28 +25,24 @@ double ContactRun::most_speed_mps() const {
 }
 
 double ContactRun::most_left_ns() const {
-  const double inverse =
-      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
+  const double inverse = motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   if (over_ || !(inverse > 0.0)) return 0.0;
   return ((1.0 + 1e-9) * relative_speed() + most_speed_mps()) / inverse;
 }
 
 double ContactRun::rounding_ns() const {
-  const double inverse =
-      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
+  const double inverse = motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   return inverse > 0.0 ? 1e-12 * speeds_before_mps_ / inverse : 0.0;
 }
 
 double ContactRun::least_whole_ns() const {
-  const double inverse =
-      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
+  const double inverse = motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   if (!(inverse > 0.0)) return 0.0;
   return std::max(0.0, (1.0 - 1e-9) * speed_before_mps_ - most_speed_mps()) / inverse;
 }
 
 double ContactRun::most_whole_ns() const {
-  const double inverse =
-      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
+  const double inverse = motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   if (!(inverse > 0.0)) return 0.0;
   return ((1.0 + 1e-9) * speed_before_mps_ + most_speed_mps()) / inverse;
 }
@@ -61,8 +57,7 @@ double ContactRun::most_whole_j() const {
   const double lost = dissipated_j();
   if (over_) return lost;
   const double most = most_speed_mps();
-  const double inverse =
-      motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
+  const double inverse = motion_of(first_).inverse_mass + motion_of(second()).inverse_mass;
   return lost + 0.5 * most * most / inverse + rounding_j();
 }
 

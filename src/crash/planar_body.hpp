@@ -59,7 +59,8 @@ inline PlanarPlace place_of(const PlanarBody& body) {
   return {body.x, body.y, body.cosine, body.sine};
 }
 
-/// The pose of a body's origin `now`, when it was `given` at `start`; `center_m` of mass, body axes.
+/// The pose of a body's origin `now`, when it was `given` at `start`; `center_m` of mass, body
+/// axes.
 Pose moved_pose(const Pose& given, const Eigen::Vector3d& center_m, const PlanarPlace& start,
                 const PlanarPlace& now);
 
