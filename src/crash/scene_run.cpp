@@ -1,7 +1,6 @@
 #include "crash/scene_run.hpp"
 
 #include "crash/pair_order.hpp"
-#include "crashrank/crash/pdof.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Bodies nearer than this may press within the next steps, m.
-constexpr double live_m = 0.15;
-/// Bodies nearer than this are in each other's lists, m.
-constexpr double listed_m = 5.0;
 constexpr double standard_gravity = 9.80665;
 constexpr auto no_pair = static_cast<std::uint32_t>(-1);
 /// Bodies slower than this at their rims have come to rest, m/s.
@@ -162,78 +157,6 @@ void SceneRun::set_wheels(std::size_t i) {
   m.wheels = wheels_after(*body.footing, options_.after, body.steering_rad, body.brake, m.damaged);
 }
 
-/// No smaller than the distance of their outlines: the greatest along the axes of both boxes.
-double SceneRun::gap_m(std::size_t i, std::size_t j) const {
-  const Member& m = members_[i];
-  const Member& n = members_[j];
-  const PlanarBody& p = body(i);
-  const PlanarBody& q = body(j);
-  const double x =
-      q.x + q.cosine * n.box_x - q.sine * n.box_y - (p.x + p.cosine * m.box_x - p.sine * m.box_y);
-  const double y =
-      q.y + q.sine * n.box_x + q.cosine * n.box_y - (p.y + p.sine * m.box_x + p.cosine * m.box_y);
-  const double c = std::abs(p.cosine * q.cosine + p.sine * q.sine);
-  const double s = std::abs(p.cosine * q.sine - p.sine * q.cosine);
-  const double along_p =
-      std::abs(p.cosine * x + p.sine * y) - m.half_x - c * n.half_x - s * n.half_y;
-  const double beside_p =
-      std::abs(p.cosine * y - p.sine * x) - m.half_y - s * n.half_x - c * n.half_y;
-  const double along_q =
-      std::abs(q.cosine * x + q.sine * y) - n.half_x - c * m.half_x - s * m.half_y;
-  const double beside_q =
-      std::abs(q.cosine * y - q.sine * x) - n.half_y - s * m.half_x - c * m.half_y;
-  return std::max(std::max(along_p, beside_p), std::max(along_q, beside_q));
-}
-
-/// No two of their points are faster against each other.
-double SceneRun::closing_bound(std::size_t i, std::size_t j) const {
-  const PlanarBody& p = body(i);
-  const PlanarBody& q = body(j);
-  // The sum of both turns first: it does not depend on which is which.
-  const double turning =
-      members_[i].rim_m * std::abs(p.spin) + members_[j].rim_m * std::abs(q.spin);
-  return std::hypot(p.vx - q.vx, p.vy - q.vy) + turning;
-}
-
-bool SceneRun::lists(std::size_t i, std::size_t j) const {
-  const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(i * most_near);
-  const auto end = begin + static_cast<std::ptrdiff_t>(members_[i].near);
-  return std::find(begin, end, j) != end;
-}
-
-/// The nearest bodies within `listed_m`.
-void SceneRun::list_near(std::size_t i) {
-  Member& m = members_[i];
-  m.near = 0;
-  m.slack_m = listed_m;
-  std::uint32_t* const list = near_.data() + i * most_near;
-  const Vehicle& own = *bodies_[i].vehicle;
-  for (std::size_t j = 0; j < bodies_.size(); ++j) {
-    if (j == i || !can_press(own, *bodies_[j].vehicle)) continue;
-    place(j);
-    const double gap = gap_m(i, j);
-    if (gap > listed_m) continue;
-    if (m.near < most_near) {
-      list[m.near++] = static_cast<std::uint32_t>(j);
-      continue;
-    }
-    crowded_ = true;
-    std::size_t furthest = 0;
-    for (std::size_t k = 1; k < most_near; ++k) {
-      if (gap_m(i, list[k]) > gap_m(i, list[furthest])) furthest = k;
-    }
-    if (gap_m(i, list[furthest]) > gap) list[furthest] = static_cast<std::uint32_t>(j);
-  }
-}
-
-void SceneRun::list_near() {
-  // Before the next list none that is left out comes so near as to press.
-  const double needed_m = live_m + 2.0 * options_.rolling_step_s * fastest_mps_;
-  for (const std::uint32_t i : chain_) {
-    if (members_[i].state != State::rests && members_[i].slack_m < needed_m) list_near(i);
-  }
-}
-
 /// Every pair of which one is in the chain and moves, once.
 template <typename Each> void SceneRun::each_near_pair(Each each) {
   // By index: what is touched in it joins the chain.
@@ -322,148 +245,6 @@ void SceneRun::open_contacts() {
   each_near_pair([&](std::size_t i, std::size_t j) {
     if (gap_m(i, j) < live_m && live_with(i, j) == nullptr) open(i, j);
   });
-}
-
-void SceneRun::lock_damaged_wheels(std::size_t i, const Box& damaged) {
-  const Footing* const footing = bodies_[i].footing;
-  if (footing == nullptr || !footing->wheels || damaged.empty()) return;
-  // A tyre reaches so far around its middle.
-  constexpr double tyre_x_m = 0.3;
-  constexpr double tyre_y_m = 0.1;
-  const Vector3d& center = bodies_[i].vehicle->center_m;
-  const Eigen::Array2d y = footing->y_m + center.y();
-  unsigned bit = 1;
-  for (const double axle_m : {footing->front_m + center.x(), footing->rear_m + center.x()}) {
-    for (int side = 0; side < 2; ++side, bit *= 2) {
-      const bool reached = axle_m > static_cast<double>(damaged.min.x()) - tyre_x_m &&
-                           axle_m < static_cast<double>(damaged.max.x()) + tyre_x_m &&
-                           y[side] > static_cast<double>(damaged.min.y()) - tyre_y_m &&
-                           y[side] < static_cast<double>(damaged.max.y()) + tyre_y_m;
-      if (reached) members_[i].damaged = static_cast<std::uint8_t>(members_[i].damaged | bit);
-    }
-  }
-  set_wheels(i);
-}
-
-void SceneRun::close(ContactRun& run) {
-  ended_work_ += run.work();
-  for (const std::uint32_t k : run.pairs()) {
-    memory_.pairs[k].left_at_step = steps_;
-    if (run.faded()) memory_.pairs[k].faded_until_s = now_s_ + SceneContact::faded_s;
-  }
-  if (run.acts()) {
-    const std::size_t first = run.first();
-    const std::size_t second = run.most_pressed();
-    // What moves comes first, of two the lower.
-    const bool swapped = members_[first].state == State::fixed ||
-                         (second < first && members_[second].state != State::fixed);
-    const ContactOutcome outcome = run.outcome(swapped);
-    lock_damaged_wheels(first, (swapped ? outcome.b : outcome.a).damaged);
-    lock_damaged_wheels(second, (swapped ? outcome.a : outcome.b).damaged);
-    tell(run, outcome, swapped);
-  }
-  if (&run == first_run_) first_run_ = nullptr;
-}
-
-namespace {
-
-/// The share of a later contact's change of velocity, which begins as `given`, that is one: what
-/// only makes up for what slows the body, since the earlier force or meanwhile, is none.
-double lasting_share(const BodyContact& more, const ContactBody& given, const BodyContact& whole) {
-  const double change = more.delta_v_mps.norm();
-  if (!(change > 0.0)) return 1.0;
-  const Vector3d arm = given.pose.rotation * given.vehicle->center_m;
-  const Vector3d begin = given.velocity.linear_mps + given.velocity.angular_radps.cross(arm);
-  const Vector3d along = more.delta_v_mps / (change * change);
-  const double lost = std::clamp((whole.after.linear_mps - begin).dot(along), 0.0, 1.0);
-  return std::clamp((more.after.linear_mps - begin).dot(along) - lost, 0.0, 1.0);
-}
-
-/// Since its begin, s.
-double rubbed_until_s(const SceneContact& contact) {
-  const ContactMotion& motion = contact.outcome.motion;
-  return motion.poses[motion.count - 1].time_s;
-}
-
-/// Adds what rubbing on after the contact does to one of them: its velocity is that of before.
-void add_body(const BodyContact& more, BodyContact& whole) {
-  whole.after = more.after;
-  whole.crush_depth_m = std::max(whole.crush_depth_m, more.crush_depth_m);
-  whole.crush_energy_j += more.crush_energy_j;
-  whole.intrusion_m = std::max(whole.intrusion_m, more.intrusion_m);
-  whole.damaged.grow(more.damaged);
-}
-
-/// Adds rubbing on, which begins `later_s` after the contact.
-void add_rubbing(const ContactOutcome& more, double later_s, ContactOutcome& whole) {
-  whole.dissipated_j += more.dissipated_j;
-  whole.friction_j += more.friction_j;
-  add_body(more.a, whole.a);
-  add_body(more.b, whole.b);
-  ContactPoses last = more.motion.poses[more.motion.count - 1];
-  last.time_s += later_s;
-  if (whole.motion.count < ContactMotion::most) ++whole.motion.count;
-  whole.motion.poses[whole.motion.count - 1] = last;
-}
-
-}  // namespace
-
-void SceneRun::tell_pressed(const ContactRun& run, SceneContact& told) const {
-  for (const std::uint32_t k : run.pairs()) {
-    const BodyPair& pair = memory_.pairs[k];
-    const auto end = told.pressed.begin() + static_cast<std::ptrdiff_t>(told.pressed_count);
-    if (!pair.pressed || told.pressed_count == SceneContact::most_pressed ||
-        std::find(told.pressed.begin(), end, pair.second) != end) {
-      continue;
-    }
-    told.pressed[told.pressed_count++] = pair.second;
-  }
-}
-
-void SceneRun::tell(const ContactRun& run, const ContactOutcome& outcome, bool swapped) {
-  const std::size_t first = run.first();
-  const std::size_t second = run.most_pressed();
-  const bool stands = members_[second].state == State::fixed;
-  const auto a = static_cast<std::uint32_t>(swapped ? second : first);
-  const auto b = static_cast<std::uint32_t>(swapped ? first : second);
-  const double begin_s = begun_s_[static_cast<std::size_t>(&run - runs_.data())];
-  for (std::size_t k = contacts_.size(); k > 0; --k) {
-    SceneContact& earlier = contacts_[k - 1];
-    if (earlier.a != a || earlier.b != b) continue;
-    const double later_s = begin_s - earlier.begin_s;
-    if (later_s - rubbed_until_s(earlier) > SceneContact::same_contact_s) break;
-    const ContactBody& given_a = swapped ? run.given_second() : run.given_first();
-    const ContactBody& given_b = swapped ? run.given_first() : run.given_second();
-    const double change = std::max(
-        lasting_share(outcome.a, given_a, earlier.outcome.a) * outcome.a.delta_v_mps.norm(),
-        lasting_share(outcome.b, given_b, earlier.outcome.b) * outcome.b.delta_v_mps.norm());
-    if (change > SceneContact::rubbing_mps) break;
-    add_rubbing(outcome, later_s, earlier.outcome);
-    if (stands) tell_pressed(run, earlier);
-    return;
-  }
-  if (contacts_.size() == most_contacts) {
-    crowded_ = true;
-    return;
-  }
-  contacts_.push_back({});
-  SceneContact& told = contacts_.back();
-  told.a = a;
-  told.b = b;
-  told.begin_s = begin_s;
-  told.goes_on = goes_on_[static_cast<std::size_t>(&run - runs_.data())] != 0;
-  told.is_first = &run == first_run_;
-  told.outcome = outcome;
-  const ContactBody given_second = stands ? given(second) : run.given_second();
-  told.given_a = swapped ? given_second : run.given_first();
-  told.given_b = swapped ? run.given_first() : given_second;
-  if (!stands) return;
-  tell_pressed(run, told);
-  // Of several that nothing moves the contact may have begun with another.
-  ContactMotion& motion = told.outcome.motion;
-  for (std::size_t k = 0; k < motion.count; ++k) {
-    (swapped ? motion.poses[k].a : motion.poses[k].b) = given_second.pose;
-  }
 }
 
 /// What has come to rest stays until it is pushed.

@@ -107,6 +107,9 @@ public:
   std::uint64_t work() const noexcept;
 
 private:
+  /// Bodies nearer than this may press within the next steps, m.
+  static constexpr double live_m = 0.15;
+
   enum class State : std::uint8_t { fixed, planned, free, rests };
   struct Member {
     State state = State::fixed;
