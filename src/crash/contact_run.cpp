@@ -79,7 +79,7 @@ void ContactRun::begin(ContactWorkspace::State& state, std::size_t first, std::u
   energy_before_j_ = moving_j();
   speed_before_mps_ = relative_speed();
   momentum_before_ns_ = speed_before_mps_ / (p.inverse_mass + q.inverse_mass);
-  speeds_before_mps_ = std::hypot(p.vx, p.vy) + std::hypot(q.vx, q.vy);
+  speeds_before_mps_ = plane_length(p.vx, p.vy) + plane_length(q.vx, q.vy);
   speed_mps_ = speed_at_rims();
   over_ = !can_press(*given_first.vehicle, *given_second.vehicle);
 }
@@ -103,7 +103,7 @@ void ContactRun::begin_here(const ContactBody& given_first, const ContactBody& g
 double ContactRun::relative_speed() const {
   const PlanarBody& p = motion_of(first_);
   const PlanarBody& q = motion_of(second());
-  return std::hypot(p.vx - q.vx, p.vy - q.vy);
+  return plane_length(p.vx - q.vx, p.vy - q.vy);
 }
 
 double ContactRun::speed_at_rims() const {
@@ -181,7 +181,7 @@ std::size_t ContactRun::most_pressed() const {
   double greatest = 0.0;
   for (const std::uint32_t k : pairs()) {
     const PlanarForce& impulse = state_->pairs[k].impulse_on_second;
-    const double size = std::hypot(impulse.x, impulse.y);
+    const double size = plane_length(impulse.x, impulse.y);
     if (size > greatest) most = state_->pairs[k].second;
     greatest = std::max(greatest, size);
   }
@@ -252,7 +252,7 @@ void ContactRun::push() {
   }
   const PlanarBody& p = motion_of(first_);
   const PlanarBody& q = motion_of(second());
-  const double force = std::hypot(on_first_.x, on_first_.y);
+  const double force = plane_length(on_first_.x, on_first_.y);
   acceleration_mps2_ =
       force * (p.inverse_mass + q.inverse_mass) +
       rim_m_ * (std::abs(on_first_.moment) * p.inverse_inertia +
@@ -287,7 +287,7 @@ void ContactRun::push() {
 }
 
 ContactRun::AtForce ContactRun::at_force() const {
-  const double force = std::hypot(on_first_.x, on_first_.y);
+  const double force = plane_length(on_first_.x, on_first_.y);
   if (!(totals_.weight > 0.0) || !(force > 0.0)) return {};
   const double x = totals_.point_x / totals_.weight;
   const double y = totals_.point_y / totals_.weight;
@@ -295,7 +295,7 @@ ContactRun::AtForce ContactRun::at_force() const {
   const PlanarBody& q = motion_of(second());
   const double vx = p.vx - p.spin * (y - p.y) - (q.vx - q.spin * (y - q.y));
   const double vy = p.vy + p.spin * (x - p.x) - (q.vy + q.spin * (x - q.x));
-  return {-(vx * on_first_.x + vy * on_first_.y) / force, std::hypot(vx, vy)};
+  return {-(vx * on_first_.x + vy * on_first_.y) / force, plane_length(vx, vy)};
 }
 
 /// Greatest compression: what is left of the closing speed is taken out along the impulse until

@@ -74,11 +74,11 @@ struct SharedCrush {
   F8 depth_a;  ///< A's part of the depth, m
 };
 
-/// Splits a depth so that both curves bear the same force. The sum of both depths is piecewise
-/// linear in the force and never falls: the last of its six corners below the depth is the one at
-/// the greatest force, and the rest of the way is straight.
-HWY_INLINE SharedCrush share_crush(const CrushCurves& curve_a, const CrushCurves& curve_b,
-                                   F8 depth) {
+/// Splits a depth so that both curves bear the same force, wherever they go. The sum of both depths
+/// is piecewise linear in the force and never falls: the last of its six corners below the depth is
+/// the one at the greatest force, and the rest of the way is straight.
+HWY_INLINE SharedCrush share_hardened(const CrushCurves& curve_a, const CrushCurves& curve_b,
+                                      F8 depth) {
   const CrushCorners a(curve_a);
   const CrushCorners b(curve_b);
   const F8 zero = all(0.0F);
@@ -105,6 +105,17 @@ HWY_INLINE SharedCrush share_crush(const CrushCurves& curve_a, const CrushCurves
   const F8 compliance = compliance_a + compliance_b;
   const F8 rise = select(less(zero, compliance), (depth - sum) / compliance, zero);
   return {force + rise, minimum(depth_a + rise * compliance_a, depth)};
+}
+
+/// Splits a depth so that both curves bear the same force; of the lanes `where`.
+HWY_INLINE SharedCrush share_crush(const CrushCurves& a, const CrushCurves& b, F8 depth, M8 where) {
+  // Where neither hardens yet: yield_a + slope_a·a = yield_b + slope_b·(depth - a), and what does
+  // not yield leaves all of the depth to the other.
+  const F8 even = (b.slope * depth + (b.yield - a.yield)) / (a.slope + b.slope);
+  const F8 in_a = minimum(positive(even), depth);
+  const M8 hardens = either(less(a.length, in_a), less(b.length, depth - in_a));
+  if (bits(both(where, hardens)) != 0) return share_hardened(a, b, depth);
+  return {select(less(all(0.0F), even), a.yield + a.slope * in_a, b.yield + b.slope * depth), in_a};
 }
 
 /// 0 to 1 over the width of a rail, 1/2 at 0, so that nothing jumps where a body slides along.

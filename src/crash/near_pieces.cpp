@@ -10,8 +10,9 @@ void NearPieces::resize(std::size_t most_pieces) {
   // Every band may end in a block that is not full.
   const std::size_t most_blocks = most_pieces / block_pieces + profile_bands;
   if (listed.size() >= most_blocks) return;
-  blocks.resize(most_blocks);
+  groups.resize(most_blocks / 8 + profile_bands);
   states.resize(most_blocks);
+  curves.resize(most_blocks);
   listed.resize(most_blocks, 0);
 }
 

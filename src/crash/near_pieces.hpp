@@ -17,13 +17,33 @@ struct alignas(64) PieceStates {
   std::array<float, block_pieces> ahead{};     ///< of it, along the other body's x
 };
 
+/// How a block's pieces give way where they press themselves: see CrushCurves.
+struct alignas(64) PieceCurves {
+  std::array<float, block_pieces> yield{};
+  std::array<float, block_pieces> slope{};
+  std::array<float, block_pieces> length{};
+  std::array<float, block_pieces> hardening{};
+  std::array<float, block_pieces> hardening_length{};
+  std::array<float, block_pieces> rigid{};
+};
+
+/// Blocks of a group that are in a list, a bit for each.
+struct NearGroup {
+  std::uint32_t group = 0;
+  std::uint8_t listed = 0;
+  /// Those that have been inside the other body: they are followed wherever they are, so that they
+  /// press no further before they are there again.
+  std::uint8_t followed = 0;
+};
+
 /// Blocks of one body's outline whose pieces may press into another body.
 struct NearPieces {
-  std::vector<std::uint32_t> blocks;  ///< of the present list: the first `count`
+  std::vector<NearGroup> groups;      ///< of the present list: the first `count`
   std::vector<PieceStates> states;    ///< by block; of those that are listed
+  std::vector<PieceCurves> curves;    ///< likewise
   std::vector<std::uint32_t> listed;  ///< by block: number of the last list that it was in
-  std::size_t count = 0;              ///< blocks in the present list
-  std::size_t pieces = 0;             ///< in them
+  std::size_t count = 0;              ///< groups in the present list
+  std::size_t pieces = 0;             ///< moved by the last pass
   std::uint32_t list = 0;             ///< number of the present list
   std::uint32_t begun = 0;            ///< lists since this number are of the same two bodies
   std::uint32_t resumed = 0;          ///< and those until this one of an earlier contact

@@ -8,6 +8,9 @@
 
 namespace crashrank::detail {
 
+/// Several times faster than std::hypot, which minds numbers that no body has.
+inline double plane_length(double x, double y) { return std::sqrt(x * x + y * y); }
+
 /// A body that moves in the plane. Coordinates from the point of first contact, world axes.
 struct PlanarBody {
   double inverse_mass = 0.0;     ///< 0: nothing moves it

@@ -41,7 +41,7 @@ double SceneRun::closing_bound(std::size_t i, std::size_t j) const {
   // The sum of both turns first: it does not depend on which is which.
   const double turning =
       members_[i].rim_m * std::abs(p.spin) + members_[j].rim_m * std::abs(q.spin);
-  return std::hypot(p.vx - q.vx, p.vy - q.vy) + turning;
+  return plane_length(p.vx - q.vx, p.vy - q.vy) + turning;
 }
 
 bool SceneRun::lists(std::size_t i, std::size_t j) const {

@@ -17,7 +17,7 @@ constexpr auto no_pair = static_cast<std::uint32_t>(-1);
 constexpr double rest_mps = 0.02;
 
 double rim_speed(const PlanarBody& body, double rim_m) {
-  return std::hypot(body.vx, body.vy) + rim_m * std::abs(body.spin);
+  return plane_length(body.vx, body.vy) + rim_m * std::abs(body.spin);
 }
 
 }  // namespace

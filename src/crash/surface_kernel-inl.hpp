@@ -14,6 +14,7 @@
 #include "crash/surface_kernel.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -74,47 +75,112 @@ inline void begin_block(const PressQuery& q, const PieceBlock& block, const Piec
   }
 }
 
+/// How the block's pieces give way themselves.
+inline void bend_block(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
+                       PieceCurves& curves) {
+  for (std::size_t h = 0; h < block_pieces; h += 8) {
+    CrushCurves c = crush_curves(q.pusher->response, block.band, load(rows.x.data() + h),
+                                 load(rows.y.data() + h), -load(rows.normal_x.data() + h),
+                                 -load(rows.normal_y.data() + h));
+    c.shorten(load(rows.thickness_m.data() + h));
+    store(c.yield, curves.yield.data() + h);
+    store(c.slope, curves.slope.data() + h);
+    store(c.length, curves.length.data() + h);
+    store(c.hardening, curves.hardening.data() + h);
+    store(c.hardening_length, curves.hardening_length.data() + h);
+    store(c.rigid, curves.rigid.data() + h);
+  }
+}
+
+HWY_INLINE CrushCurves load_curves(const PieceCurves& curves, std::size_t first) {
+  return {load(curves.yield.data() + first),
+          load(curves.slope.data() + first),
+          load(curves.length.data() + first),
+          load(curves.hardening.data() + first),
+          load(curves.hardening_length.data() + first),
+          load(curves.rigid.data() + first)};
+}
+
+/// Centres and extents of eight boxes in the other body's axes, m.
+struct CarriedBoxes {
+  F8 x, y, reach_x, reach_y;
+};
+
+HWY_INLINE CarriedBoxes carry_boxes(const Carrier& to, const BlockGroup& group) {
+  const F8 own_x = load(group.x.data());
+  const F8 own_y = load(group.y.data());
+  const F8 half_x = load(group.half_x.data());
+  const F8 half_y = load(group.half_y.data());
+  const F8 c = all(std::abs(to.c));
+  const F8 s = all(std::abs(to.s));
+  CarriedBoxes at;
+  at.x = all(to.c) * own_x - all(to.s) * own_y + all(to.x);
+  at.y = all(to.s) * own_x + all(to.c) * own_y + all(to.y);
+  at.reach_x = c * half_x + s * half_y;
+  at.reach_y = s * half_x + c * half_y;
+  return at;
+}
+
+/// Which of them come nearer than `near_m` to a band's bounds.
+HWY_INLINE M8 are_near(const CarriedBoxes& at, const BandBounds& bounds, float near_m) {
+  const F8 reach_x = at.reach_x + all(near_m);
+  const F8 reach_y = at.reach_y + all(near_m);
+  return both(
+      both(less(all(bounds.min_x), at.x + reach_x), less(at.x - reach_x, all(bounds.max_x))),
+      both(less(all(bounds.min_y), at.y + reach_y), less(at.y - reach_y, all(bounds.max_y))));
+}
+
+/// Which of a group's blocks have pieces that may press within the next `near_m` of travel.
+HWY_INLINE std::uint32_t may_press(const PressQuery& q, const BlockGroup& group, float near_m) {
+  constexpr float turns = 0.25F;  // sine of how far a normal may turn until the next list
+  const Carrier& to = q.to;
+  const CarriedBoxes at = carry_boxes(to, group);
+  const M8 close = are_near(at, q.pressed->vehicle->silhouettes.bands[group.band], near_m);
+  if (bits(close) == 0) return 0;
+  // Pieces that face away from where they go do not press: the cosine between velocity and any
+  // normal of the block's cone is at most that to the mean normal plus the cone's sine.
+  const F8 own_nx = load(group.normal_x.data());
+  const F8 own_ny = load(group.normal_y.data());
+  const F8 nx = all(to.c) * own_nx - all(to.s) * own_ny;
+  const F8 ny = all(to.s) * own_nx + all(to.c) * own_ny;
+  const F8 vx = all(to.vx) - all(to.spin) * at.y;
+  const F8 vy = all(to.vy) + all(to.spin) * at.x;
+  const F8 size = load(group.half_x.data()) + load(group.half_y.data());
+  const F8 speed = square_root(vx * vx + vy * vy) + all(std::abs(to.spin)) * size;
+  const F8 sine = load(group.sine.data()) + all(turns);
+  return bits(both(close, at_most(-sine * speed, vx * nx + vy * ny)));
+}
+
 inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
   // A piece that lies this deep inside the other body at the start never presses, nor does one that
   // is found inside later without having been followed there.
   constexpr float inside_m = 0.05F;
-  constexpr float turns = 0.25F;  // sine of how far a normal may turn until the next list
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
-  const Silhouettes& target = q.pressed->vehicle->silhouettes;
-  const Carrier& to = q.to;
   const float allowed_m = near.begins() ? inside_m : 0.0F;
   near.count = 0;
-  near.pieces = 0;
   ++near.list;
-  for (std::size_t i = 0; i < own.blocks.size(); ++i) {
-    const PieceBlock& block = own.blocks[i];
-    if (target.along_x[block.band].count == 0) continue;
-    const float x = to.c * block.x - to.s * block.y + to.x;
-    const float y = to.s * block.x + to.c * block.y + to.y;
-    const float reach = block.radius_m + near_m;
-    if (x < target.min_x - reach || x > target.max_x + reach || y < target.min_y - reach ||
-        y > target.max_y + reach) {
-      continue;
+  for (std::size_t g = 0; g < own.groups.size(); ++g) {
+    const BlockGroup& group = own.groups[g];
+    const std::uint32_t listed = may_press(q, group, near_m);
+    if (listed == 0) continue;
+    NearGroup& entry = near.groups[near.count++];
+    entry = {static_cast<std::uint32_t>(g), static_cast<std::uint8_t>(listed), 0};
+    for (std::uint32_t left = listed; left != 0; left &= left - 1U) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      const std::size_t i = group.first + lane;
+      // Not in the list before this one: nothing is known of the way it came.
+      if (near.listed[i] + 1 != near.list) {
+        const bool known = near.listed[i] > near.begun && near.listed[i] <= near.resumed;
+        begin_block(q, own.blocks[i], own.rows[i], allowed_m, known, near.states[i]);
+        if (!q.pusher->response.rigid) {
+          bend_block(q, own.blocks[i], own.rows[i], near.curves[i]);
+        }
+      }
+      near.listed[i] = near.list;
+      const float* const way = near.states[i].way.data();
+      if (bits(less(all(0.0F), maximum(load(way), load(way + 8)))) == 0) continue;
+      entry.followed = static_cast<std::uint8_t>(entry.followed | 1U << lane);
     }
-    // Pieces that face away from where they go do not press: the cosine between velocity and any
-    // normal of the block's cone is at most that to the mean normal plus the cone's sine.
-    const float nx = to.c * block.normal_x - to.s * block.normal_y;
-    const float ny = to.s * block.normal_x + to.c * block.normal_y;
-    const float vx = to.vx - to.spin * y;
-    const float vy = to.vy + to.spin * x;
-    const float speed = std::sqrt(vx * vx + vy * vy) + std::abs(to.spin) * block.radius_m;
-    if (block.cosine > 0.0F) {
-      const float sine = std::sqrt(std::max(0.0F, 1.0F - block.cosine * block.cosine));
-      if (vx * nx + vy * ny < -(sine + turns) * speed) continue;
-    }
-    // Not in the list before this one: nothing is known of the way it came.
-    if (near.listed[i] + 1 != near.list) {
-      const bool known = near.listed[i] > near.begun && near.listed[i] <= near.resumed;
-      begin_block(q, block, own.rows[i], allowed_m, known, near.states[i]);
-    }
-    near.listed[i] = near.list;
-    near.blocks[near.count++] = static_cast<std::uint32_t>(i);
-    near.pieces += block.count;
   }
 }
 
@@ -176,6 +242,7 @@ struct PressingPieces {
   CarriedPieces at;  ///< in the pressed body's axes
   M8 where;          ///< lanes that count
   const PieceRows* rows = nullptr;
+  const PieceCurves* curves = nullptr;
   float* way = nullptr;    ///< see PieceStates
   float* ahead = nullptr;  ///< see PieceStates
   std::size_t band = 0;
@@ -190,8 +257,9 @@ public:
         other_(query.pusher->response),
         target_(query.pressed->vehicle->silhouettes) {}
 
-  /// Adds the forces of those of the pieces that lie inside the pressed body.
-  template <bool both_yield> HWY_INLINE void press(const PressingPieces& p);
+  /// Adds the forces of those of the pieces that lie inside the pressed body; false where none
+  /// does.
+  template <bool both_yield> HWY_INLINE bool press(const PressingPieces& p);
   void store_sums(PressTotals& totals, PassSums& sums, PassRecord& record) const;
 
 private:
@@ -206,7 +274,7 @@ private:
   std::size_t highest_band_ = 0;
 };
 
-template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& p) {
+template <bool both_yield> HWY_INLINE bool Presser::press(const PressingPieces& p) {
   // A step inwards from the surface over which the pressure rises to the yield pressure, m: paint,
   // cladding, gaps.
   constexpr float soft_m = 0.012F;
@@ -229,7 +297,7 @@ template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& 
   Depths d = depths_at(target_, p.band, x, y);
   F8 least = d.least();
   const M8 where = both(p.where, less(zero, least));
-  if (bits(where) == 0) return;
+  if (bits(where) == 0) return false;
   lowest_band_ = std::min(lowest_band_, p.band);
   highest_band_ = std::max(highest_band_, p.band);
   // Lanes that do not count are given numbers that keep everything finite.
@@ -276,9 +344,8 @@ template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& 
   const F8 own_nx = load(p.rows->normal_x.data() + p.first);
   const F8 own_ny = load(p.rows->normal_y.data() + p.first);
   if constexpr (both_yield) {
-    CrushCurves others = crush_curves(other_, p.band, own_x, own_y, -own_nx, -own_ny);
-    others.shorten(load(p.rows->thickness_m.data() + p.first));
-    const SharedCrush shared = share_crush(own, others, depth);
+    const CrushCurves others = load_curves(*p.curves, p.first);
+    const SharedCrush shared = share_crush(own, others, depth, where);
     force = shared.force;
     own_depth = shared.depth_a;
     const F8 rest = depth - own_depth;
@@ -352,6 +419,7 @@ template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& 
         maximum(s.intrusion_other,
                 intrusion(inside_compartment(other_, back_x, back_y, -own_nx), other_crush));
   }
+  return true;
 }
 
 /// Under this force reach counts in proportion: a door has to bear 10 kN in the mean of its first
@@ -391,40 +459,66 @@ inline void Presser::store_sums(PressTotals& totals, PassSums& sums, PassRecord&
   grow(other_bounds_, record.other);
 }
 
+/// Moves the pieces of a block, and presses those that advance into what they have not been in.
+/// False where none presses.
+template <bool both_yield>
+HWY_INLINE bool press_block(const PressQuery& q, std::size_t block, NearPieces& near,
+                            Presser& presser, PressTotals& totals) {
+  constexpr float rounding_m = 1e-4F;
+  const Silhouettes& own = q.pusher->vehicle->silhouettes;
+  const F8 step = all(static_cast<float>(q.settings->step_s));
+  const BandBounds& target = q.pressed->vehicle->silhouettes.bands[own.blocks[block].band];
+  const PieceRows& rows = own.rows[block];
+  PieceStates& states = near.states[block];
+  near.pieces += own.blocks[block].count;
+  bool presses = false;
+  for (std::size_t h = 0; h < own.blocks[block].count; h += 8) {
+    PressingPieces p;
+    p.at = carry_pieces(q.to, load(rows.x.data() + h), load(rows.y.data() + h),
+                        load(rows.normal_x.data() + h), load(rows.normal_y.data() + h));
+    const F8 before = load(states.s.data() + h);
+    const F8 furthest = load(states.furthest.data() + h);
+    const F8 after = before + p.at.advance * step;
+    store(after, states.s.data() + h);
+    store(maximum(after, furthest), states.furthest.data() + h);
+    // Positive where the piece advances and has not gone back.
+    const F8 fresh = minimum(p.at.advance, before - furthest + all(rounding_m));
+    p.where = both(both(less(all(0.0F), fresh), less(all(target.min_x), p.at.x)),
+                   both(less(p.at.x, all(target.max_x)),
+                        both(less(all(target.min_y), p.at.y), less(p.at.y, all(target.max_y)))));
+    if (bits(p.where) == 0) continue;
+    totals.approaching = true;
+    p.rows = &rows;
+    p.curves = &near.curves[block];
+    p.way = states.way.data() + h;
+    p.ahead = states.ahead.data() + h;
+    p.band = own.blocks[block].band;
+    p.first = h;
+    if (presser.press<both_yield>(p)) presses = true;
+  }
+  return presses;
+}
+
 template <bool both_yield>
 inline void press_all(const PressQuery& q, NearPieces& near, PressTotals& totals, PassSums& sums,
                       PassRecord& record) {
-  constexpr float rounding_m = 1e-4F;
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
   const Silhouettes& target = q.pressed->vehicle->silhouettes;
-  const F8 step = all(static_cast<float>(q.settings->step_s));
   Presser presser(q);
+  near.pieces = 0;
   for (std::size_t i = 0; i < near.count; ++i) {
-    const std::uint32_t block = near.blocks[i];
-    const PieceRows& rows = own.rows[block];
-    PieceStates& states = near.states[block];
-    for (std::size_t h = 0; h < block_pieces; h += 8) {
-      PressingPieces p;
-      p.at = carry_pieces(q.to, load(rows.x.data() + h), load(rows.y.data() + h),
-                          load(rows.normal_x.data() + h), load(rows.normal_y.data() + h));
-      const F8 before = load(states.s.data() + h);
-      const F8 furthest = load(states.furthest.data() + h);
-      const F8 after = before + p.at.advance * step;
-      store(after, states.s.data() + h);
-      store(maximum(after, furthest), states.furthest.data() + h);
-      // Positive where the piece advances and has not gone back.
-      const F8 fresh = minimum(p.at.advance, before - furthest + all(rounding_m));
-      p.where = both(both(less(all(0.0F), fresh), less(all(target.min_x), p.at.x)),
-                     both(less(p.at.x, all(target.max_x)),
-                          both(less(all(target.min_y), p.at.y), less(p.at.y, all(target.max_y)))));
-      if (bits(p.where) == 0) continue;
-      totals.approaching = true;
-      p.rows = &rows;
-      p.way = states.way.data() + h;
-      p.ahead = states.ahead.data() + h;
-      p.band = own.blocks[block].band;
-      p.first = h;
-      presser.press<both_yield>(p);
+    NearGroup& entry = near.groups[i];
+    const BlockGroup& group = own.groups[entry.group];
+    std::uint32_t moved = entry.listed;
+    if (moved != entry.followed) {
+      const M8 inside = are_near(carry_boxes(q.to, group), target.bands[group.band], 0.0F);
+      moved = (moved & bits(inside)) | entry.followed;
+    }
+    for (; moved != 0; moved &= moved - 1U) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(moved));
+      if (press_block<both_yield>(q, group.first + lane, near, presser, totals)) {
+        entry.followed = static_cast<std::uint8_t>(entry.followed | 1U << lane);
+      }
     }
   }
   presser.store_sums(totals, sums, record);

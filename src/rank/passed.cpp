@@ -9,6 +9,9 @@
 namespace crashrank::detail {
 namespace {
 
+// Far above the rounding of coordinates below a kilometre, far below anything that matters.
+constexpr double margin_m = 1e-6;
+
 struct BoxD {
   Eigen::Vector3d center;
   Eigen::Vector3d half;
@@ -20,38 +23,45 @@ BoxD to_double(const Box& box) {
   return {0.5 * (low + high), 0.5 * (high - low)};
 }
 
-bool overlap(const BoxD& a, const BoxD& b) {
-  return ((a.center - b.center).cwiseAbs().array() <= (a.half + b.half).array()).all();
-}
-
-// A box whose points move on chords between two poses, seen from the other body.
+// The boxes of one tree, whose points move on chords between two poses, in the frame of another.
 class SweptBoxes {
 public:
-  SweptBoxes(const AabbTree& tree, const Pose& first, const Pose& last)
-      : first_{first.rotation * tree.axes, first.translation},
-        last_{last.rotation * tree.axes, last.translation} {}
+  SweptBoxes(const AabbTree& tree, const Pose& first, const Pose& last, const AabbTree& other)
+      : first_(in_frame(tree, first, other)), last_(in_frame(tree, last, other)) {}
 
-  BoxD operator()(const Box& box) const {
+  Box operator()(const Box& box) const {
     const BoxD local = to_double(box);
     const BoxD a = at(first_, local);
     const BoxD b = at(last_, local);
-    const Eigen::Vector3d low = (a.center - a.half).cwiseMin(b.center - b.half);
-    const Eigen::Vector3d high = (a.center + a.half).cwiseMax(b.center + b.half);
-    return {0.5 * (low + high), 0.5 * (high - low)};
+    Box swept;
+    swept.min = rounded((a.center - a.half).cwiseMin(b.center - b.half), -1.0);
+    swept.max = rounded((a.center + a.half).cwiseMax(b.center + b.half), 1.0);
+    return swept;
   }
 
 private:
-  static BoxD at(const Pose& pose, const BoxD& box) {
-    return {pose.rotation * box.center + pose.translation,
-            pose.rotation.cwiseAbs() * box.half + Eigen::Vector3d::Constant(margin_m)};
+  static Pose in_frame(const AabbTree& tree, const Pose& pose, const AabbTree& other) {
+    return {other.axes.transpose() * pose.rotation * tree.axes,
+            other.axes.transpose() * pose.translation};
   }
-
-  // Far above the rounding of coordinates below a kilometre, far below anything that matters.
-  static constexpr double margin_m = 1e-6;
+  static BoxD at(const Pose& pose, const BoxD& box) {
+    return {pose.rotation * box.center + pose.translation, pose.rotation.cwiseAbs() * box.half};
+  }
+  // Outwards by the margin and by more than a conversion rounds.
+  static Eigen::Vector3f rounded(const Eigen::Vector3d& x, double sign) {
+    constexpr double rounding = 1e-7;
+    const Eigen::Array3d out = margin_m + rounding * x.cwiseAbs().array();
+    return (x.array() + sign * out).cast<float>();
+  }
 
   Pose first_;
   Pose last_;
 };
+
+bool overlap(const Box& a, const Box& b) {
+  return a.min.x() <= b.max.x() && b.min.x() <= a.max.x() && a.min.y() <= b.max.y() &&
+         b.min.y() <= a.max.y() && a.min.z() <= b.max.z() && b.min.z() <= a.max.z();
+}
 
 // A segment in the frame of a tree's boxes.
 struct Segment {
@@ -60,7 +70,6 @@ struct Segment {
 };
 
 bool may_touch(const Segment& s, const Box& node) {
-  constexpr double margin_m = 1e-6;
   const BoxD box = to_double(node);
   const Eigen::Vector3d apart = s.center - box.center;
   const Eigen::Vector3d reach = s.half.cwiseAbs();
@@ -93,31 +102,52 @@ bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree&
   return false;
 }
 
-// `hint` is the leaf that the path before this one crossed, if any: neighbours often cross it too.
+// Whether a path crosses a triangle below one of the nodes from `begin` on, which it takes from the
+// list.
 bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree& tree,
-             std::vector<std::uint32_t>& stack, std::uint32_t& hint) {
+             std::size_t begin, std::vector<std::uint32_t>& nodes) {
   const Segment segment{tree.axes.transpose() * (0.5 * (p + q)),
                         tree.axes.transpose() * (0.5 * (q - p))};
-  if (!may_touch(segment, tree.nodes[0].box)) return false;
-  if (tree.nodes[hint].is_leaf() && may_touch(segment, tree.nodes[hint].box) &&
-      crosses(p, q, tree, tree.nodes[hint])) {
-    return true;
-  }
-  stack.assign(1, 0);
-  while (!stack.empty()) {
-    const std::uint32_t index = stack.back();
-    const Node& node = tree.nodes[index];
-    stack.pop_back();
-    if (node.is_leaf()) {
-      if (!crosses(p, q, tree, node)) continue;
-      hint = index;
+  while (nodes.size() > begin) {
+    const Node& node = tree.nodes[nodes.back()];
+    nodes.pop_back();
+    if (!may_touch(segment, node.box)) continue;
+    if (!node.is_leaf()) {
+      nodes.push_back(node.first + 1);
+      nodes.push_back(node.first);
+    } else if (crosses(p, q, tree, node)) {
+      nodes.resize(begin);
       return true;
-    }
-    for (const std::uint32_t child : {node.first + 1, node.first}) {
-      if (may_touch(segment, tree.nodes[child].box)) stack.push_back(child);
     }
   }
   return false;
+}
+
+// Behind `near`: of the nodes in [begin, end) those that a box overlaps, in place of larger ones
+// their children.
+void list_near(const AabbTree& tree, const Box& box, std::uint32_t begin, std::uint32_t end,
+               std::vector<std::uint32_t>& near) {
+  const auto size = [](const Box& b) { return (b.max - b.min).squaredNorm(); };
+  const float own = size(box);
+  near.resize(end);
+  for (std::uint32_t k = begin; k < end; ++k) {
+    const Node& node = tree.nodes[near[k]];
+    if (!overlap(box, node.box)) continue;
+    if (node.is_leaf() || size(node.box) <= own) {
+      near.push_back(near[k]);
+      continue;
+    }
+    for (const std::uint32_t child : {node.first, node.first + 1}) {
+      if (overlap(box, tree.nodes[child].box)) near.push_back(child);
+    }
+  }
+}
+
+// Whether all triangles of a leaf are in the set.
+bool holds(const TriangleSet& set, const AabbTree& tree, const Node& leaf) {
+  const auto* const first = tree.order.data() + leaf.first;
+  return std::all_of(first, first + leaf.count,
+                     [&](std::uint32_t triangle) { return set.contains(triangle); });
 }
 
 }  // namespace
@@ -128,29 +158,39 @@ std::uint64_t add_passed(const Body& moving, const Pose& first, const Pose& last
   const TriangleMesh& mesh = moving.model->mesh;
   const AabbTree& tree = moving.model->tree;
   const AabbTree& other = fixed.model->tree;
-  const BoxD target{fixed.center_m, fixed.half_axes_m.cwiseAbs().rowwise().sum()};
-  const SweptBoxes swept(tree, first, last);
+  const SweptBoxes swept(tree, first, last, other);
   scratch.path.assign(mesh.vertices.size(), Path::unknown);
   std::uint64_t followed = 0;
-  std::uint32_t hint = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  // A path lies in the swept boxes of all leaves that hold its corner: it crosses no triangle but
+  // below the nodes that any one of them overlaps.
   const auto crossing = [&](std::uint32_t vertex) {
     Path& path = scratch.path[vertex];
     if (path == Path::unknown) {
       ++followed;
       const Eigen::Vector3d p = carry(first, mesh.vertices[vertex]);
       const Eigen::Vector3d q = carry(last, mesh.vertices[vertex]);
-      path = crosses(p, q, other, scratch.fixed_stack, hint) ? Path::crossing : Path::clear;
+      for (std::size_t k = begin; k < end; ++k) scratch.near.push_back(scratch.near[k]);
+      path = crosses(p, q, other, end, scratch.near) ? Path::crossing : Path::clear;
     }
     return path == Path::crossing;
   };
-  scratch.moving_stack.assign(1, 0);
-  while (!scratch.moving_stack.empty()) {
-    const Node& node = tree.nodes[scratch.moving_stack.back()];
-    scratch.moving_stack.pop_back();
-    if (!overlap(swept(node.box), target)) continue;
+  scratch.near.assign(1, 0);
+  scratch.visits.assign(1, {0, 0, 1});
+  while (!scratch.visits.empty()) {
+    const PassedScratch::Visit visit = scratch.visits.back();
+    scratch.visits.pop_back();
+    const Node& node = tree.nodes[visit.node];
+    if (node.is_leaf() && holds(set, tree, node)) continue;
+    list_near(other, swept(node.box), visit.begin, visit.end, scratch.near);
+    begin = visit.end;
+    end = scratch.near.size();
+    if (end == begin) continue;
     if (!node.is_leaf()) {
-      scratch.moving_stack.push_back(node.first + 1);
-      scratch.moving_stack.push_back(node.first);
+      const auto last_near = static_cast<std::uint32_t>(end);
+      scratch.visits.push_back({node.first + 1, visit.end, last_near});
+      scratch.visits.push_back({node.first, visit.end, last_near});
       continue;
     }
     for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {

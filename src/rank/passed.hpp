@@ -11,9 +11,15 @@ namespace crashrank::detail {
 /// Memory that following paths reuses.
 struct PassedScratch {
   enum class Path : std::uint8_t { unknown, clear, crossing };
+  /// A node of the moving body's tree, and what its parent comes near, as a range of `near`.
+  struct Visit {
+    std::uint32_t node = 0;
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+  };
   std::vector<Path> path;  ///< by vertex
-  std::vector<std::uint32_t> moving_stack;
-  std::vector<std::uint32_t> fixed_stack;
+  std::vector<Visit> visits;
+  std::vector<std::uint32_t> near;  ///< nodes of the fixed body's tree
 };
 
 /// Adds the triangles of `moving` that the surface of `fixed` has passed through: those of which a

@@ -17,6 +17,8 @@ struct Refined {
   RankedCandidate told;
   bool stuck = false;  ///< a question about it stayed undecided: no step follows
   Contact first;       ///< from which its crash is simulated
+  /// Pieces of outline that the simulation of its crash has moved so far.
+  std::uint64_t simulated = 0;
 
   bool open() const noexcept { return !told.known && !stuck; }
 };
@@ -26,7 +28,8 @@ struct RefineQuery {
   const Scene& scene;
   const ScoreBounds& bounds;
   const Candidate& candidate;
-  /// The step may end once the score is proved to exceed this.
+  /// The step may end once the score is proved to exceed this. If it is finite, who is first is to
+  /// be decided, and a crash is simulated a part at a time.
   double give_up_above;
   const Watch& watch;
 };

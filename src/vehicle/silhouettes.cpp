@@ -68,42 +68,69 @@ Silhouette sample(const Profile& profile, std::size_t band, bool over_x, float l
   return s;
 }
 
-PieceBlock make_block(const Profile& profile, std::size_t band, std::uint32_t first,
-                      std::uint32_t count) {
-  PieceBlock block;
-  block.first = first;
-  block.count = static_cast<std::uint16_t>(count);
-  block.band = static_cast<std::uint16_t>(band);
+/// Puts a block into a place of its group.
+void add_to_group(const Profile& profile, const PieceBlock& block, std::size_t lane,
+                  BlockGroup& group) {
   float low_x = std::numeric_limits<float>::max();
   float low_y = low_x;
   float high_x = -low_x;
   float high_y = -low_x;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    const OutlinePiece& piece = profile.pieces[i];
-    low_x = std::min(low_x, piece.x);
-    high_x = std::max(high_x, piece.x);
-    low_y = std::min(low_y, piece.y);
-    high_y = std::max(high_y, piece.y);
-    block.normal_x += piece.normal_x;
-    block.normal_y += piece.normal_y;
+  float normal_x = 0.0F;
+  float normal_y = 0.0F;
+  const OutlinePiece* const first = profile.pieces.data() + block.first;
+  const OutlinePiece* const last = first + block.count;
+  for (const OutlinePiece* piece = first; piece != last; ++piece) {
+    low_x = std::min(low_x, piece->x);
+    high_x = std::max(high_x, piece->x);
+    low_y = std::min(low_y, piece->y);
+    high_y = std::max(high_y, piece->y);
+    normal_x += piece->normal_x;
+    normal_y += piece->normal_y;
   }
-  block.x = 0.5F * (low_x + high_x);
-  block.y = 0.5F * (low_y + high_y);
-  block.radius_m = 0.5F * std::hypot(high_x - low_x, high_y - low_y);
-  const float length = std::hypot(block.normal_x, block.normal_y);
-  if (!(length > 1e-3F)) {
-    block.normal_x = block.normal_y = 0.0F;
-    return block;
+  group.x[lane] = 0.5F * (low_x + high_x);
+  group.y[lane] = 0.5F * (low_y + high_y);
+  group.half_x[lane] = 0.5F * (high_x - low_x);
+  group.half_y[lane] = 0.5F * (high_y - low_y);
+  group.sine[lane] = 2.0F;
+  const float length = std::hypot(normal_x, normal_y);
+  if (!(length > 1e-3F)) return;
+  normal_x /= length;
+  normal_y /= length;
+  group.normal_x[lane] = normal_x;
+  group.normal_y[lane] = normal_y;
+  float cosine = 1.0F;
+  for (const OutlinePiece* piece = first; piece != last; ++piece) {
+    cosine = std::min(cosine, piece->normal_x * normal_x + piece->normal_y * normal_y);
   }
-  block.normal_x /= length;
-  block.normal_y /= length;
-  block.cosine = 1.0F;
-  for (std::uint32_t i = first; i < first + count; ++i) {
-    const OutlinePiece& piece = profile.pieces[i];
-    block.cosine =
-        std::min(block.cosine, piece.normal_x * block.normal_x + piece.normal_y * block.normal_y);
+  if (cosine > 0.0F) group.sine[lane] = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine));
+}
+
+/// Groups of a band's blocks, which are the last.
+void add_groups(const Profile& profile, std::size_t first_block, Silhouettes& s) {
+  constexpr std::size_t lanes = 8;
+  for (std::size_t i = first_block; i < s.blocks.size(); i += lanes) {
+    BlockGroup group;
+    group.first = static_cast<std::uint32_t>(i);
+    group.band = s.blocks[i].band;
+    group.half_x.fill(BlockGroup::empty);
+    group.half_y.fill(BlockGroup::empty);
+    const std::size_t count = std::min(lanes, s.blocks.size() - i);
+    for (std::size_t k = 0; k < count; ++k) add_to_group(profile, s.blocks[i + k], k, group);
+    s.groups.push_back(group);
   }
-  return block;
+}
+
+BandBounds bounds_of(const Silhouettes& s, std::size_t band) {
+  BandBounds bounds;
+  const auto grow = [&](const Silhouette& of, float& least, float& greatest) {
+    for (std::uint32_t i = of.first; i < of.first + of.count; ++i) {
+      least = std::min(least, s.nodes[i].least_m);
+      greatest = std::max(greatest, s.nodes[i].greatest_m);
+    }
+  };
+  grow(s.along_x[band], bounds.min_x, bounds.max_x);
+  grow(s.along_y[band], bounds.min_y, bounds.max_y);
+  return bounds;
 }
 
 /// Greatest less least value at a coordinate; 0 beside the outline.
@@ -164,11 +191,15 @@ Silhouettes make_silhouettes(const Profile& profile) {
   for (std::size_t band = 0; band < profile_bands; ++band) {
     s.along_x[band] = sample(profile, band, false, s.min_y, s.max_y, step, s.nodes);
     s.along_y[band] = sample(profile, band, true, s.min_x, s.max_x, step, s.nodes);
+    s.bands[band] = bounds_of(s, band);
     constexpr auto most = static_cast<std::uint32_t>(block_pieces);
+    const std::size_t first_block = s.blocks.size();
     for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += most) {
-      s.blocks.push_back(make_block(profile, band, i, std::min(most, profile.first[band + 1] - i)));
+      const std::uint32_t count = std::min(most, profile.first[band + 1] - i);
+      s.blocks.push_back({i, static_cast<std::uint16_t>(count), static_cast<std::uint16_t>(band)});
       s.rows.push_back(make_rows(profile, s, s.blocks.back()));
     }
+    add_groups(profile, first_block, s);
   }
   return s;
 }

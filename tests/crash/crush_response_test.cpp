@@ -65,7 +65,9 @@ struct SharedCrush {
 };
 
 HWY_ATTR SharedCrush share_crush(const CrushCurve& a, const CrushCurve& b, float depth) {
-  const lanes::SharedCrush shared = lanes::share_crush(a.eight(), b.eight(), lanes::all(depth));
+  const lanes::M8 everywhere = lanes::less(lanes::all(0.0F), lanes::all(1.0F));
+  const lanes::SharedCrush shared =
+      lanes::share_crush(a.eight(), b.eight(), lanes::all(depth), everywhere);
   return {any_lane(shared.force), any_lane(shared.depth_a)};
 }
 

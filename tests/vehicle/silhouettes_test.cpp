@@ -80,15 +80,9 @@ TEST(Silhouettes, BlocksCoverAllPiecesAndConesHoldAllNormals) {
       ASSERT_LE(block.count, 16U);
       ASSERT_GE(block.first, profile->first[block.band]);
       ASSERT_LE(block.first + block.count, profile->first[block.band + 1U]);
-      narrow += block.cosine > 0.0F ? 1U : 0U;
       for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
         const OutlinePiece& piece = profile->pieces[i];
         ++covered[i];
-        ASSERT_LE(std::hypot(piece.x - block.x, piece.y - block.y), block.radius_m + 1e-5F);
-        const float cosine = piece.normal_x * block.normal_x + piece.normal_y * block.normal_y;
-        if (block.cosine > -1.0F) {
-          ASSERT_GE(cosine, block.cosine - 1e-6F) << name;
-        }
         ASSERT_GE(piece.x, s.min_x);
         ASSERT_LE(piece.x, s.max_x);
         ASSERT_GE(piece.y, s.min_y);
@@ -96,6 +90,35 @@ TEST(Silhouettes, BlocksCoverAllPiecesAndConesHoldAllNormals) {
       }
     }
     for (const int times : covered) ASSERT_EQ(times, 1) << name;
+    std::size_t grouped = 0;
+    for (const BlockGroup& group : s.groups) {
+      const BandBounds& bounds = s.bands[group.band];
+      // Silhouettes are read on nodes.
+      const float node_m = 1.0F / s.along_x[group.band].nodes_per_m;
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        if (group.half_x[lane] < 0.0F) continue;
+        const PieceBlock& block = s.blocks[group.first + lane];
+        ++grouped;
+        ASSERT_EQ(block.band, group.band) << name;
+        narrow += group.sine[lane] < 1.0F ? 1U : 0U;
+        for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
+          const OutlinePiece& piece = profile->pieces[i];
+          ASSERT_LE(std::abs(piece.x - group.x[lane]), group.half_x[lane] + 1e-5F) << name;
+          ASSERT_LE(std::abs(piece.y - group.y[lane]), group.half_y[lane] + 1e-5F) << name;
+          const float cosine =
+              piece.normal_x * group.normal_x[lane] + piece.normal_y * group.normal_y[lane];
+          if (group.sine[lane] < 1.0F) {
+            ASSERT_GE(cosine, std::sqrt(1.0F - group.sine[lane] * group.sine[lane]) - 1e-4F)
+                << name;
+          }
+          ASSERT_GE(piece.x, bounds.min_x - node_m) << name;
+          ASSERT_LE(piece.x, bounds.max_x + node_m) << name;
+          ASSERT_GE(piece.y, bounds.min_y - node_m) << name;
+          ASSERT_LE(piece.y, bounds.max_y + node_m) << name;
+        }
+      }
+    }
+    ASSERT_EQ(grouped, s.blocks.size()) << name;
     std::printf("%s: %zu pieces in %zu blocks, %zu of them with a cone\n", name,
                 profile->pieces.size(), s.blocks.size(), narrow);
     EXPECT_GT(narrow, 0U) << name;

@@ -29,17 +29,26 @@ struct SilhouetteNode {
 /// Most pieces of a block.
 inline constexpr std::size_t block_pieces = 16;
 
-/// Up to `block_pieces` consecutive pieces of an outline, with a circle around them and a cone
-/// around their normals.
+/// Up to `block_pieces` consecutive pieces of an outline.
 struct PieceBlock {
-  float x = 0.0F;           ///< centre of the circle, m
-  float y = 0.0F;           ///< m
-  float radius_m = 0.0F;    ///< m
-  float normal_x = 0.0F;    ///< mean of the normals, unit; zero where they cancel
-  float normal_y = 0.0F;    ///< see `normal_x`
-  float cosine = -1.0F;     ///< least cosine between a normal and their mean
   std::uint32_t first = 0;  ///< piece
   std::uint16_t count = 0;  ///< pieces
+  std::uint16_t band = 0;   ///< height band
+};
+
+/// Up to eight consecutive blocks of one band by field, for vector units: boxes around them and
+/// cones around their normals. Those beyond the group's count are empty.
+struct alignas(64) BlockGroup {
+  static constexpr float empty = -1e9F;
+  std::array<float, 8> x{};         ///< centre of the box, m
+  std::array<float, 8> y{};         ///< m
+  std::array<float, 8> half_x{};    ///< half its length, m
+  std::array<float, 8> half_y{};    ///< and width, m
+  std::array<float, 8> normal_x{};  ///< mean of the normals, unit; zero where they cancel
+  std::array<float, 8> normal_y{};  ///< see `normal_x`
+  /// Sine of the greatest angle between a normal and their mean, 2 from a right angle on.
+  std::array<float, 8> sine{};
+  std::uint32_t first = 0;  ///< block
   std::uint16_t band = 0;   ///< height band
 };
 
@@ -60,6 +69,14 @@ struct alignas(64) PieceRows {
 /// behind it than what is pressed from the front.
 inline constexpr float flank_share = 0.65F;
 
+/// Box around the silhouettes of a band, m; empty where the band has none.
+struct BandBounds {
+  float min_x = 1e9F;
+  float max_x = -1e9F;
+  float min_y = 1e9F;
+  float max_y = -1e9F;
+};
+
 /// What contacts read of a profile besides its pieces: the depth of a point below the front, rear
 /// and flanks of the body, by height band, and blocks of pieces. Holes between the silhouettes of a
 /// band are taken to be filled; a body that gives way is a vehicle or a person, whose outline has
@@ -67,9 +84,11 @@ inline constexpr float flank_share = 0.65F;
 struct Silhouettes {
   std::array<Silhouette, profile_bands> along_x{};  ///< x of front and rear over y
   std::array<Silhouette, profile_bands> along_y{};  ///< y of left and right over x
+  std::array<BandBounds, profile_bands> bands{};    ///< around both
   std::vector<SilhouetteNode> nodes;                ///< of all
   std::vector<PieceBlock> blocks;                   ///< by rising band
   std::vector<PieceRows> rows;                      ///< of the blocks
+  std::vector<BlockGroup> groups;                   ///< of the blocks
   float min_x = 0.0F;                               ///< bounds of all outlines, m
   float max_x = 0.0F;                               ///< m
   float min_y = 0.0F;                               ///< m
