@@ -79,7 +79,7 @@ void SceneRun::list_near() {
   // Before the next list none that is left out comes so near as to press.
   const double needed_m = live_m + 2.0 * options_.rolling_step_s * fastest_mps_;
   for (const std::uint32_t i : chain_) {
-    if (members_[i].state != State::rests && members_[i].slack_m < needed_m) list_near(i);
+    if (members_[i].slack_m < needed_m) list_near(i);
   }
 }
 

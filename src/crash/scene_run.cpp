@@ -157,16 +157,20 @@ void SceneRun::set_wheels(std::size_t i) {
   m.wheels = wheels_after(*body.footing, options_.after, body.steering_rad, body.brake, m.damaged);
 }
 
-/// Every pair of which one is in the chain and moves, once.
+/// Every pair of which one is in the chain and one moves, once.
 template <typename Each> void SceneRun::each_near_pair(Each each) {
   // By index: what is touched in it joins the chain.
   for (std::size_t c = 0; c < chain_.size(); ++c) {
     const std::size_t i = chain_[c];
     const Member& m = members_[i];
-    if (!moves(i)) continue;
     for (std::size_t k = 0; k < m.near; ++k) {
       const std::size_t j = near_[i * most_near + k];
-      if (j < i && members_[j].in_chain && moves(j) && lists(j, i)) continue;
+      if (moves(i)) {
+        if (j < i && members_[j].in_chain && moves(j) && lists(j, i)) continue;
+      } else if (!moves(j) || members_[j].in_chain) {
+        // What rests is still in the way of what keeps its plan; all else that moves lists it.
+        continue;
+      }
       each(i, j);
     }
   }
@@ -312,7 +316,6 @@ void SceneRun::step() {
   now_s_ += 0.5 * step_s;
   for (const std::uint32_t i : chain_) {
     place(i);
-    if (!moves(i)) continue;
     for (std::size_t k = 0; k < members_[i].near; ++k) place(near_[i * most_near + k]);
   }
   open_contacts();

@@ -229,6 +229,37 @@ TEST(SceneRun, OnlyTheChainOfTheFirstBodyActs) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(run.touched(i));
 }
 
+/// What has come to rest in the chain is hit by what keeps its plan, as soon as they meet.
+TEST(SceneRun, TrafficHitsWhatRests) {
+  // A motorcycle brushes a lorry that stands and slides on; a saloon comes from behind.
+  constexpr double speed_mps = 20.0;
+  const Vehicle& lorry = named("truck");
+  const Vehicle& saloon = named("sedan");
+  constexpr double away_m = 60.0;
+  Stage stage;
+  stage.add(named("motorcycle"), flat_pose(-8, 1.45, 0.0), 25.0);
+  stage.add(lorry, flat_pose(0, 0, 0.0), 0.0);
+  stage.add(saloon, flat_pose(-away_m, 0, 0.0), speed_mps);
+  const double gap_m = away_m + static_cast<double>(lorry.silhouettes.min_x) -
+                       static_cast<double>(saloon.silhouettes.max_x);
+  SceneRun run;
+  run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+  bool rested = false;
+  while (run.advance(1)) {
+    const detail::PlanarBody& b = run.body(1);
+    rested = rested || (run.touched(1) && !run.touched(2) && b.vx == 0.0 && b.vy == 0.0);
+  }
+  ASSERT_TRUE(rested);
+  const SceneContact* hit = nullptr;
+  for (const SceneContact& contact : run.contacts()) {
+    if (hit == nullptr && contact.a == 1 && contact.b == 2) hit = &contact;
+  }
+  ASSERT_NE(hit, nullptr);
+  // Outlines are pieces of 0.05 m, steps take 0.06 m of travel.
+  EXPECT_NEAR(hit->begin_s, gap_m / speed_mps, 0.15 / speed_mps);
+  EXPECT_NEAR(hit->given_b.velocity.linear_mps.x(), speed_mps, 1e-9);
+}
+
 TEST(SceneRun, MirrorsTo) {
   constexpr std::uint64_t seed = 403;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
