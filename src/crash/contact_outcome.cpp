@@ -32,6 +32,13 @@ BodyContact ContactRun::describe(bool is_first) const {
     const PlanarForce& taken = is_first ? taken_first_ : taken_second_;
     result.delta_v_mps = now.inverse_mass * Vector3d(own.x - taken.x, own.y - taken.y, 0.0);
     result.delta_yaw_rate_radps = now.inverse_inertia * (own.moment - taken.moment);
+    const Undergone& undergone = is_first ? of_first_ : of_second_;
+    const double change_mps = result.delta_v_mps.norm();
+    if (undergone.shared && change_mps > undergone.most_mps) {
+      const double share = undergone.most_mps / change_mps;
+      result.delta_v_mps *= share;
+      result.delta_yaw_rate_radps *= share;
+    }
     const PlanarBody& last = acts_ ? end : now;
     result.after.linear_mps = Vector3d(last.vx, last.vy, given.velocity.linear_mps.z());
     result.after.angular_radps.z() = last.spin;

@@ -97,6 +97,7 @@ void ContactRun::begin_here(const ContactBody& given_first, const ContactBody& g
   start_first_ = end_first_ = motion_of(first_);
   start_second_ = end_second_ = motion_of(second());
   record_.begin(start_first_, start_second_);
+  of_first_ = of_second_ = {};
   time_s_ = -0.5 * step_s_;
 }
 
@@ -390,6 +391,13 @@ void ContactRun::take_back(bool from_first, double share) {
   taken.x += share * pushed_s_ * f.x;
   taken.y += share * pushed_s_ * f.y;
   taken.moment += share * pushed_s_ * f.moment;
+}
+
+void ContactRun::undergo(bool first, const Eigen::Vector2d& change_mps, bool shared) {
+  Undergone& body = first ? of_first_ : of_second_;
+  body.now_mps += change_mps;
+  body.shared = body.shared || shared;
+  if (presses()) body.most_mps = std::max(body.most_mps, body.now_mps.norm());
 }
 
 void ContactRun::end_step() {

@@ -91,6 +91,10 @@ public:
   Eigen::Vector2d step_change_mps(bool of_first) const;
   /// The share in [0, 1] of that which something else took at the same time: no change of velocity.
   void take_back(bool from_first, double share);
+  /// All contacts together changed the first or the second body's velocity so in this step, m/s;
+  /// `shared`: others pressed on it, too. Each contact's change of velocity is no larger than the
+  /// greatest that its body has undergone since it began: what others hold against it is none.
+  void undergo(bool first, const Eigen::Vector2d& change_mps, bool shared);
   /// Once the bodies have moved to the end of the step.
   void end_step();
   bool over() const noexcept { return over_; }
@@ -154,6 +158,12 @@ private:
     double bend = 0.0;
     void add(const PlanarBody& body, const PlanarForce& f);
   };
+  /// Change of a body's velocity by all contacts, m/s.
+  struct Undergone {
+    Eigen::Vector2d now_mps = Eigen::Vector2d::Zero();
+    double most_mps = 0.0;  ///< greatest after a step with a force
+    bool shared = false;    ///< others pressed on it at the same time
+  };
   /// Relative velocity where the force of a step acts.
   struct AtForce {
     double closing_mps = 0.0;  ///< against the force, positive while the bodies approach
@@ -199,6 +209,8 @@ private:
   double pushed_s_ = 0.0;         ///< how long it acted in this step
   PlanarForce taken_first_;       ///< impulses on both, see `take_back`
   PlanarForce taken_second_;
+  Undergone of_first_;
+  Undergone of_second_;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;

@@ -306,6 +306,32 @@ void SceneRun::drive_on_road(std::size_t i, double step_s) {
   });
 }
 
+void SceneRun::press() {
+  for (const std::uint32_t i : chain_) {
+    const PlanarBody& b = motion_of(i);
+    members_[i].pressing = 0;
+    members_[i].before_mps = Eigen::Vector2d(b.vx, b.vy);
+  }
+  const auto each_side = [&](auto&& each) {
+    for (const std::uint32_t k : live_) {
+      ContactRun& run = runs_[k];
+      each(run, true, run.first());
+      each(run, false, run.second());
+    }
+  };
+  each_side([&](const ContactRun& run, bool /*first*/, std::size_t i) {
+    if (run.presses()) ++members_[i].pressing;
+  });
+  for (const std::uint32_t k : live_) runs_[k].press();
+  each_side([&](ContactRun& run, bool first, std::size_t i) {
+    const Member& m = members_[i];
+    if (m.state != State::free) return;
+    const PlanarBody& b = motion_of(i);
+    run.undergo(first, Eigen::Vector2d(b.vx, b.vy) - m.before_mps,
+                m.pressing > (run.presses() ? 1 : 0));
+  });
+}
+
 void SceneRun::step() {
   list_near();
   const double step_s = next_step_s();
@@ -331,7 +357,7 @@ void SceneRun::step() {
     touch(run.first());
     for (const std::uint32_t pair : run.pairs()) touch(memory_.pairs[pair].second);
   }
-  for (const std::uint32_t k : live_) runs_[k].press();
+  press();
   for (const std::uint32_t i : chain_) {
     Member& m = members_[i];
     if (m.state != State::free) continue;

@@ -114,10 +114,12 @@ private:
   struct Member {
     State state = State::fixed;
     bool in_chain = false;
-    bool pressed = false;      ///< in this step
-    std::uint8_t damaged = 0;  ///< wheels, see `wheels_after`
-    Pose pose;                 ///< when it was touched, or where it is fixed
-    PlanarBody start;          ///< then
+    bool pressed = false;       ///< in this step
+    std::uint8_t pressing = 0;  ///< contacts that press on it in this step
+    Eigen::Vector2d before_mps = Eigen::Vector2d::Zero();  ///< velocity before their forces
+    std::uint8_t damaged = 0;                              ///< wheels, see `wheels_after`
+    Pose pose;         ///< when it was touched, or where it is fixed
+    PlanarBody start;  ///< then
     double rim_m = 0.0;
     double box_x = 0.0;  ///< middle of the outlines' box from the centre of mass, body axes, m
     double box_y = 0.0;
@@ -154,6 +156,7 @@ private:
   void tell(const ContactRun& run, const ContactOutcome& outcome, bool swapped);
   void tell_pressed(const ContactRun& run, SceneContact& told) const;
   void lock_damaged_wheels(std::size_t i, const Box& damaged);
+  void press();
   void drive_on_road(std::size_t i, double step_s);
   void settle();
   void step();

@@ -260,6 +260,98 @@ TEST(SceneRun, TrafficHitsWhatRests) {
   EXPECT_NEAR(hit->given_b.velocity.linear_mps.x(), speed_mps, 1e-9);
 }
 
+/// Velocities of all bodies after each step.
+struct Log {
+  std::vector<double> time_s;
+  std::vector<std::vector<Vector3d>> velocity_mps;
+
+  void add(const SceneRun& run, std::size_t bodies) {
+    time_s.push_back(run.now_s());
+    velocity_mps.emplace_back();
+    for (std::size_t i = 0; i < bodies; ++i) {
+      velocity_mps.back().emplace_back(run.body(i).vx, run.body(i).vy, 0.0);
+    }
+  }
+  /// The greatest change of a body's velocity from what it is before a time to what it is until
+  /// another, m/s.
+  double greatest_change_mps(std::size_t body, double begin_s, double end_s) const {
+    std::size_t k = 0;
+    while (k + 1 < time_s.size() && time_s[k + 1] < begin_s) ++k;
+    const Vector3d before = velocity_mps[k][body];
+    double greatest = 0.0;
+    for (; k < time_s.size(); ++k) {
+      greatest = std::max(greatest, (velocity_mps[k][body] - before).norm());
+      if (time_s[k] > end_s) break;
+    }
+    return greatest;
+  }
+};
+
+/// No contact of a body that others hold changes its velocity by more than its motion shows.
+TEST(SceneRun, ASqueezedBodyUndergoesItsOwnMotion) {
+  // A lorry drives into a saloon that stands before a wall.
+  const Vehicle& lorry = named("truck");
+  const Vehicle& saloon = named("sedan");
+  constexpr double speed_mps = 10.0;
+  constexpr double gap_m = 0.02;
+  Stage stage;
+  const auto front = [](const Vehicle& v) { return static_cast<double>(v.silhouettes.max_x); };
+  stage.add(lorry, flat_pose(-front(lorry) + static_cast<double>(saloon.silhouettes.min_x), 0, 0),
+            speed_mps);
+  stage.add(saloon, flat_pose(0, 0, 0), 0.0);
+  stage.add(named("wall"), flat_pose(front(saloon) + gap_m, 0, 0), 0.0);
+  SceneRun run;
+  run.begin(stage.ready(false), 0, 1, 0.0, Vector3d::Zero(), {});
+  Log log;
+  log.add(run, 3);
+  while (run.advance(1)) log.add(run, 3);
+  log.add(run, 3);
+  double impulse = 0.0;
+  for (const SceneContact& contact : run.contacts()) {
+    const bool first = contact.a == 1;
+    if (!first && contact.b != 1) continue;
+    const BodyContact& car = first ? contact.outcome.a : contact.outcome.b;
+    const double seen =
+        log.greatest_change_mps(1, contact.begin_s, contact.begin_s + contact.outcome.duration_s);
+    EXPECT_LE(car.delta_v_mps.norm(), seen + 1e-6);
+    impulse = std::max(impulse, car.impulse_ns.norm() / saloon.mass_kg);
+  }
+  // The force's impulse is far larger than what the car's velocity changes by.
+  EXPECT_GT(impulse, 4.0 * speed_mps);
+  EXPECT_LT(log.greatest_change_mps(1, 0.0, 30.0), 1.5 * speed_mps);
+}
+
+TEST(SceneRun, ContactsInPilesChangeNoVelocityMoreThanIsSeen) {
+  constexpr std::uint32_t seed = 404;
+  std::printf("seed %u\n", seed);
+  Random random(seed);
+  std::size_t squeezed = 0;
+  std::size_t contacts = 0;
+  for (int round = 0; round < 60; ++round) {
+    Stage stage = pile(random, 6, true);
+    SceneRun run;
+    run.begin(stage.ready(false), 0, 1, 0.0, Vector3d::Zero(), {});
+    Log log;
+    log.add(run, 6);
+    while (run.advance(1)) log.add(run, 6);
+    log.add(run, 6);
+    for (const SceneContact& contact : run.contacts()) {
+      ++contacts;
+      for (const bool first : {true, false}) {
+        const std::size_t body = first ? contact.a : contact.b;
+        if (run.body(body).inverse_mass == 0.0) continue;
+        const BodyContact& side = first ? contact.outcome.a : contact.outcome.b;
+        const double seen = log.greatest_change_mps(body, contact.begin_s,
+                                                    contact.begin_s + contact.outcome.duration_s);
+        EXPECT_LE(side.delta_v_mps.norm(), seen + 1e-6) << "round " << round;
+        if (side.impulse_ns.norm() * run.body(body).inverse_mass > seen + 1e-6) ++squeezed;
+      }
+    }
+  }
+  std::printf("%zu contacts, %zu sides held by others\n", contacts, squeezed);
+  EXPECT_GT(squeezed, 5U);
+}
+
 TEST(SceneRun, MirrorsTo) {
   constexpr std::uint64_t seed = 403;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
