@@ -54,9 +54,9 @@ BodyContact ContactRun::describe(bool is_first) const {
         is_first ? state_->pairs[k].in_second : state_->pairs[k].in_first;
     result.damaged.grow(own_side.own);
     result.damaged.grow(other_side.other);
-    result.intrusion_m =
-        std::max(result.intrusion_m,
-                 static_cast<double>(std::max(own_side.intrusion_own, other_side.intrusion_other)));
+    const BodyPair& pair = state_->pairs[k];
+    const double earlier_m = is_first ? pair.reached_first_m : pair.reached_second_m;
+    result.intrusion_m = std::max(result.intrusion_m, pair.reach_m(is_first) - earlier_m);
   }
   return result;
 }

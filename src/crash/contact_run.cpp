@@ -40,7 +40,16 @@ void BodyPair::begin(std::size_t a, std::size_t b) {
   of_first.begin();
   of_second.begin();
   faded_until_s = -1e9;
+  in_first = {};
+  in_second = {};
+  reached_first_m = reached_second_m = 0.0;
   meet_again(left_at_step = 0);
+}
+
+double BodyPair::reach_m(bool of_first_body) const {
+  const PassRecord& own = of_first_body ? in_first : in_second;
+  const PassRecord& other = of_first_body ? in_second : in_first;
+  return static_cast<double>(std::max(own.intrusion_own, other.intrusion_other));
 }
 
 void BodyPair::meet_again(std::uint64_t step) {
@@ -48,6 +57,8 @@ void BodyPair::meet_again(std::uint64_t step) {
     of_first.resume();
     of_second.resume();
   }
+  reached_first_m = std::max(reached_first_m, reach_m(true));
+  reached_second_m = std::max(reached_second_m, reach_m(false));
   in_first = {};
   in_second = {};
   on_second = {};

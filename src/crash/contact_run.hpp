@@ -27,6 +27,8 @@ struct BodyPair {
   PlanarForce since_rebound;       ///< impulse on the second, about the origin
   PlanarForce impulse_on_second;   ///< in the whole contact, about its centre of mass
   bool pressed = false;            ///< it bore a force
+  double reached_first_m = 0.0;    ///< into the first's compartment in their earlier contacts
+  double reached_second_m = 0.0;   ///< and into the second's
   std::uint64_t left_at_step = 0;  ///< of the scene, when their last contact was over
   double faded_until_s = -1e9;     ///< of the scene: see SceneContact::goes_on
 
@@ -34,6 +36,8 @@ struct BodyPair {
   void begin(std::size_t a, std::size_t b);
   /// A further contact begins in a scene's step: what was crushed stays crushed.
   void meet_again(std::uint64_t step);
+  /// Greatest reach into the first's or the second's compartment in this contact, m.
+  double reach_m(bool of_first_body) const;
 };
 
 }  // namespace detail

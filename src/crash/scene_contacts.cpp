@@ -73,7 +73,7 @@ void add_body(const BodyContact& more, BodyContact& whole) {
   whole.after = more.after;
   whole.crush_depth_m = std::max(whole.crush_depth_m, more.crush_depth_m);
   whole.crush_energy_j += more.crush_energy_j;
-  whole.intrusion_m = std::max(whole.intrusion_m, more.intrusion_m);
+  whole.intrusion_m += more.intrusion_m;
   whole.damaged.grow(more.damaged);
 }
 

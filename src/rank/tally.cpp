@@ -28,7 +28,14 @@ void extend(BodyEvent& event, const Scene& scene, const ContactEffect& effect, s
   event.delta_v_mps += own.delta_v_mps;
   event.impulse_ns += own.impulse_ns;
   event.yaw_radps += own.yaw_radps;
-  event.intrusion_m = std::max(event.intrusion_m, own.intrusion_m);
+  // A contact's intrusion is what it adds to that of earlier ones of the two.
+  const std::size_t intruder = effect.sides[1 - side].body;
+  if (own.intrusion_m > 0.0 || intruder == event.intruder) {
+    if (intruder != event.intruder) event.intruded_m = 0.0;
+    event.intruder = intruder;
+    event.intruded_m += own.intrusion_m;
+    event.intrusion_m = std::max(event.intrusion_m, event.intruded_m);
+  }
   if (effect.closing_mps < event.closing_mps) return;
   event.closing_mps = effect.closing_mps;
   event.reduced_kg = reduced_mass_kg(body_of(scene, own.body), other);

@@ -63,7 +63,9 @@ struct BodyEvent {
   double closing_mps = 0.0;  ///< greatest
   double reduced_kg = 0.0;   ///< of the contact with that
   double leading_edge_m = 0.0;
-  double intrusion_m = 0.0;  ///< greatest
+  double intrusion_m = 0.0;         ///< greatest of one other body
+  std::size_t intruder = ego_body;  ///< body of the last contact that intruded
+  double intruded_m = 0.0;          ///< by that one since it last took turns
   /// Greatest of its contacts, each alone and after those before it: a further contact that takes
   /// delta-v back heals nobody.
   double risk = 0.0;

@@ -352,6 +352,34 @@ TEST(SceneRun, ContactsInPilesChangeNoVelocityMoreThanIsSeen) {
   EXPECT_GT(squeezed, 5U);
 }
 
+/// What two bodies crushed counts in the contact that crushed it: none reaches far into a
+/// compartment without the energy for it.
+TEST(SceneRun, NoContactIntrudesWithoutEnergy) {
+  constexpr std::uint32_t seed = 405;
+  // A force under 10 kN counts in proportion to it; two thirds for what the other body takes.
+  constexpr double least_force_n = 3e3;
+  constexpr double scratch_m = 0.03;
+  std::printf("seed %u\n", seed);
+  Random random(seed);
+  std::size_t intruding = 0;
+  for (int round = 0; round < 100; ++round) {
+    Stage stage = pile(random, 6, true);
+    SceneRun run;
+    run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+    run_to_end(run);
+    for (const SceneContact& contact : run.contacts()) {
+      for (const BodyContact* side : {&contact.outcome.a, &contact.outcome.b}) {
+        if (side->intrusion_m > 0.0) ++intruding;
+        EXPECT_LE(side->intrusion_m, scratch_m + side->crush_energy_j / least_force_n)
+            << "round " << round << ", " << contact.a << " " << contact.b << " at "
+            << contact.begin_s;
+      }
+    }
+  }
+  std::printf("%zu intrude\n", intruding);
+  EXPECT_GT(intruding, 50U);
+}
+
 TEST(SceneRun, MirrorsTo) {
   constexpr std::uint64_t seed = 403;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));

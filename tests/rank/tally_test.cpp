@@ -159,6 +159,26 @@ TEST(Tally, AContactThatTakesDeltaVBackHealsNobody) {
   }
 }
 
+/// A contact's intrusion is what it adds to that of earlier ones of the two.
+TEST(Tally, IntrusionsByOneBodyAddUpInAnEvent) {
+  const Scene scene = scene_of(Measure::harm);
+  const auto intruding = [](std::size_t by, double begin_s, double intrusion_m) {
+    ContactEffect e = effect(ego_body, by, begin_s, begin_s + 0.05, {-5, 0, 0});
+    e.sides[0].intrusion_m = intrusion_m;
+    return e;
+  };
+  const auto reached = [&](const std::vector<ContactEffect>& effects) {
+    return tally_of(scene, effects).event(ego_body).intrusion_m;
+  };
+  const ContactEffect first = intruding(0, 1.0, 0.2);
+  EXPECT_DOUBLE_EQ(reached({first, intruding(0, 1.1, 0.1)}), 0.3);
+  EXPECT_DOUBLE_EQ(reached({first, intruding(0, 1.1, 0.0)}), 0.2);
+  // Two bodies reach as far as the one that reaches further.
+  EXPECT_DOUBLE_EQ(reached({first, intruding(1, 1.1, 0.25)}), 0.25);
+  // A later event begins with none.
+  EXPECT_DOUBLE_EQ(reached({first, intruding(0, 2.0, 0.1)}), 0.1);
+}
+
 TEST(Tally, WithoutOccupantsNobodyIsHarmed) {
   Scene scene = scene_of(Measure::harm);
   scene.ego.occupants = 0.0;

@@ -53,8 +53,10 @@ struct BodyContact {
   double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
   double crush_depth_m = 0.0;   ///< greatest, m
   double crush_energy_j = 0.0;  ///< taken by its deformation, J
-  double intrusion_m = 0.0;     ///< greatest reach into the passenger compartment, m
-  Box damaged;                  ///< bounds of the pressed outline, body coordinates; may be empty
+  /// Greatest reach into the passenger compartment, m; in a scene what it exceeds that of earlier
+  /// contacts of the two by.
+  double intrusion_m = 0.0;
+  Box damaged;  ///< bounds of the pressed outline, body coordinates; may be empty
 };
 
 /// Where both bodies are at a time of a contact.

@@ -72,7 +72,7 @@ struct BodyOutcome {
   double crush_energy_j = 0.0;  ///< turned into its deformation, J
   double ees_mps = 0.0;         ///< energy-equivalent speed, m/s
   double crush_m = 0.0;         ///< deepest, m
-  double intrusion_m = 0.0;     ///< into the passengers' cage, m
+  double intrusion_m = 0.0;     ///< into the compartment, beyond earlier ones of the two, m
   double harm = 0.0;            ///< persons, as weighted; measure harm only
   std::string cdc;              ///< collision deformation classification, SAE J224
 };
