@@ -41,6 +41,9 @@ struct CrushResponse {
     hardening = static_cast<float>(strength.hardening_npm2);
     hardening_length = static_cast<float>(strength.hardening_length_m);
     rigid_slope = static_cast<float>(strength.rigid_npm2);
+    while (cabin_band < profile_bands && profile_edges_m[cabin_band] < strength.core.floor_m) {
+      ++cabin_band;
+    }
     for (std::size_t band = 0; band < profile_bands; ++band) {
       share[band] = static_cast<float>(
           factor * strength.share_of_band(profile_edges_m[band], profile_edges_m[band + 1]));
@@ -62,6 +65,7 @@ struct CrushResponse {
   float hardening_length = 0.0F;
   float rigid_slope = 0.0F;
   std::array<float, profile_bands> share{};  ///< of the strength, by height band
+  std::size_t cabin_band = 0;               ///< lowest height band of the compartment
   bool rigid = false;
 };
 

@@ -10,6 +10,7 @@
 
 #include "collide/lanes-inl.hpp"
 #include "crash/crush_curves-inl.hpp"
+#include "crash/piece_lists-inl.hpp"
 #include "crash/silhouette_depths-inl.hpp"
 #include "crash/surface_kernel.hpp"
 
@@ -21,9 +22,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace crashrank::detail::HWY_NAMESPACE {
-
-/// A piece that never presses has advanced so far, which no step changes.
-inline constexpr float never = -1e9F;
 
 /// Eight pieces in the pressed body's axes.
 struct CarriedPieces {
@@ -41,147 +39,6 @@ HWY_INLINE CarriedPieces carry_pieces(const Carrier& to, F8 x, F8 y, F8 normal_x
   at.normal_y = s * normal_x + c * normal_y;
   at.advance = (all(to.vx) - spin * at.y) * at.normal_x + (all(to.vy) + spin * at.x) * at.normal_y;
   return at;
-}
-
-/// Begins to follow a block's pieces; those that lie too deep inside never press. Of what they
-/// crushed in an earlier contact of the two, `known`, they press no deeper part again: as far as
-/// they had advanced along their normals, and no further than they had travelled inside.
-inline void begin_block(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
-                        float allowed_m, bool known, PieceStates& states) {
-  const Silhouettes& target = q.pressed->vehicle->silhouettes;
-  const PieceStates earlier = states;
-  states = {};
-  for (std::size_t h = 0; h < block_pieces; h += 8) {
-    const F8 x = load(rows.x.data() + h);
-    const F8 y = load(rows.y.data() + h);
-    const F8 at_x = all(q.to.c) * x - all(q.to.s) * y + all(q.to.x);
-    const F8 at_y = all(q.to.s) * x + all(q.to.c) * y + all(q.to.y);
-    const F8 least = depths_at(target, block.band, at_x, at_y).least();
-    store(select(less(all(allowed_m), least), all(never), all(0.0F)), states.s.data() + h);
-    if (!known) continue;
-    const F8 crushed = minimum(load(earlier.way.data() + h), load(earlier.furthest.data() + h));
-    const M8 any = less(all(0.0F), crushed);
-    // From where it is now: the way to the surface first.
-    store(select(any, crushed + positive(-least), all(0.0F)), states.furthest.data() + h);
-    store(select(any, all(0.0F), load(states.s.data() + h)), states.s.data() + h);
-    store(load(earlier.way.data() + h), states.way.data() + h);
-    store(load(earlier.ahead.data() + h), states.ahead.data() + h);
-  }
-  std::fill(states.s.begin() + block.count, states.s.end(), never);
-  if (q.settings->neighbours.size() < 2) return;
-  for (std::size_t k = 0; k < block.count; ++k) {
-    const OutlinePiece& piece = q.pusher->vehicle->profile->pieces[block.first + k];
-    if (is_hidden(*q.pusher, piece, block.band, *q.settings)) states.s[k] = never;
-  }
-}
-
-/// How the block's pieces give way themselves.
-inline void bend_block(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
-                       PieceCurves& curves) {
-  for (std::size_t h = 0; h < block_pieces; h += 8) {
-    CrushCurves c = crush_curves(q.pusher->response, block.band, load(rows.x.data() + h),
-                                 load(rows.y.data() + h), -load(rows.normal_x.data() + h),
-                                 -load(rows.normal_y.data() + h));
-    c.shorten(load(rows.thickness_m.data() + h));
-    store(c.yield, curves.yield.data() + h);
-    store(c.slope, curves.slope.data() + h);
-    store(c.length, curves.length.data() + h);
-    store(c.hardening, curves.hardening.data() + h);
-    store(c.hardening_length, curves.hardening_length.data() + h);
-    store(c.rigid, curves.rigid.data() + h);
-  }
-}
-
-HWY_INLINE CrushCurves load_curves(const PieceCurves& curves, std::size_t first) {
-  return {load(curves.yield.data() + first),
-          load(curves.slope.data() + first),
-          load(curves.length.data() + first),
-          load(curves.hardening.data() + first),
-          load(curves.hardening_length.data() + first),
-          load(curves.rigid.data() + first)};
-}
-
-/// Centres and extents of eight boxes in the other body's axes, m.
-struct CarriedBoxes {
-  F8 x, y, reach_x, reach_y;
-};
-
-HWY_INLINE CarriedBoxes carry_boxes(const Carrier& to, const BlockGroup& group) {
-  const F8 own_x = load(group.x.data());
-  const F8 own_y = load(group.y.data());
-  const F8 half_x = load(group.half_x.data());
-  const F8 half_y = load(group.half_y.data());
-  const F8 c = all(std::abs(to.c));
-  const F8 s = all(std::abs(to.s));
-  CarriedBoxes at;
-  at.x = all(to.c) * own_x - all(to.s) * own_y + all(to.x);
-  at.y = all(to.s) * own_x + all(to.c) * own_y + all(to.y);
-  at.reach_x = c * half_x + s * half_y;
-  at.reach_y = s * half_x + c * half_y;
-  return at;
-}
-
-/// Which of them come nearer than `near_m` to a band's bounds.
-HWY_INLINE M8 are_near(const CarriedBoxes& at, const BandBounds& bounds, float near_m) {
-  const F8 reach_x = at.reach_x + all(near_m);
-  const F8 reach_y = at.reach_y + all(near_m);
-  return both(
-      both(less(all(bounds.min_x), at.x + reach_x), less(at.x - reach_x, all(bounds.max_x))),
-      both(less(all(bounds.min_y), at.y + reach_y), less(at.y - reach_y, all(bounds.max_y))));
-}
-
-/// Which of a group's blocks have pieces that may press within the next `near_m` of travel.
-HWY_INLINE std::uint32_t may_press(const PressQuery& q, const BlockGroup& group, float near_m) {
-  constexpr float turns = 0.25F;  // sine of how far a normal may turn until the next list
-  const Carrier& to = q.to;
-  const CarriedBoxes at = carry_boxes(to, group);
-  const M8 close = are_near(at, q.pressed->vehicle->silhouettes.bands[group.band], near_m);
-  if (bits(close) == 0) return 0;
-  // Pieces that face away from where they go do not press: the cosine between velocity and any
-  // normal of the block's cone is at most that to the mean normal plus the cone's sine.
-  const F8 own_nx = load(group.normal_x.data());
-  const F8 own_ny = load(group.normal_y.data());
-  const F8 nx = all(to.c) * own_nx - all(to.s) * own_ny;
-  const F8 ny = all(to.s) * own_nx + all(to.c) * own_ny;
-  const F8 vx = all(to.vx) - all(to.spin) * at.y;
-  const F8 vy = all(to.vy) + all(to.spin) * at.x;
-  const F8 size = load(group.half_x.data()) + load(group.half_y.data());
-  const F8 speed = square_root(vx * vx + vy * vy) + all(std::abs(to.spin)) * size;
-  const F8 sine = load(group.sine.data()) + all(turns);
-  return bits(both(close, at_most(-sine * speed, vx * nx + vy * ny)));
-}
-
-inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
-  // A piece that lies this deep inside the other body at the start never presses, nor does one that
-  // is found inside later without having been followed there.
-  constexpr float inside_m = 0.05F;
-  const Silhouettes& own = q.pusher->vehicle->silhouettes;
-  const float allowed_m = near.begins() ? inside_m : 0.0F;
-  near.count = 0;
-  ++near.list;
-  for (std::size_t g = 0; g < own.groups.size(); ++g) {
-    const BlockGroup& group = own.groups[g];
-    const std::uint32_t listed = may_press(q, group, near_m);
-    if (listed == 0) continue;
-    NearGroup& entry = near.groups[near.count++];
-    entry = {static_cast<std::uint32_t>(g), static_cast<std::uint8_t>(listed), 0};
-    for (std::uint32_t left = listed; left != 0; left &= left - 1U) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      const std::size_t i = group.first + lane;
-      // Not in the list before this one: nothing is known of the way it came.
-      if (near.listed[i] + 1 != near.list) {
-        const bool known = near.listed[i] > near.begun && near.listed[i] <= near.resumed;
-        begin_block(q, own.blocks[i], own.rows[i], allowed_m, known, near.states[i]);
-        if (!q.pusher->response.rigid) {
-          bend_block(q, own.blocks[i], own.rows[i], near.curves[i]);
-        }
-      }
-      near.listed[i] = near.list;
-      const float* const way = near.states[i].way.data();
-      if (bits(less(all(0.0F), maximum(load(way), load(way + 8)))) == 0) continue;
-      entry.followed = static_cast<std::uint8_t>(entry.followed | 1U << lane);
-    }
-  }
 }
 
 /// Sums of eight lanes.
@@ -404,20 +261,27 @@ template <bool both_yield> HWY_INLINE bool Presser::press(const PressingPieces& 
   const auto intrusion = [&](F8 inside, F8 crush) {
     return select(where, closing * minimum(inside, crush), zero);
   };
+  // What ploughs along a flank moves its own surface back no further than to that flank.
+  constexpr float least_normal = 1e-3F;
+  const F8 out_x = select(rearwards, d.front, d.rear) / maximum(absolute(nx), all(least_normal));
+  const F8 out_y = side / maximum(absolute(ny), all(least_normal));
+  const F8 moved_back = minimum(other_depth, minimum(out_x, out_y));
   s.depth_own = maximum(s.depth_own, select(where, own_crush, zero));
   own_bounds_.grow(where, px, py);
-  s.intrusion_own =
-      maximum(s.intrusion_own, intrusion(inside_compartment(own_, px, py, nx), own_crush));
+  if (p.band >= own_.cabin_band) {
+    const F8 inside = inside_compartment(own_, x - moved_back * nx, y - moved_back * ny, nx);
+    s.intrusion_own = maximum(s.intrusion_own, intrusion(inside, own_crush));
+  }
   if constexpr (both_yield) {
     const F8 other_crush = other_depth / (own_nx * own_nx + flank * own_ny * own_ny);
     s.power_other = s.power_other + power * (one - own_share);
     s.depth_other = maximum(s.depth_other, select(where, other_crush, zero));
     other_bounds_.grow(where, own_x, own_y);
-    const F8 back_x = own_x - other_depth * own_nx;
-    const F8 back_y = own_y - other_depth * own_ny;
-    s.intrusion_other =
-        maximum(s.intrusion_other,
-                intrusion(inside_compartment(other_, back_x, back_y, -own_nx), other_crush));
+    if (p.band >= other_.cabin_band) {
+      const F8 inside = inside_compartment(other_, own_x - moved_back * own_nx,
+                                           own_y - moved_back * own_ny, -own_nx);
+      s.intrusion_other = maximum(s.intrusion_other, intrusion(inside, other_crush));
+    }
   }
   return true;
 }

@@ -149,6 +149,8 @@ CrushStrength strength_of(const Vehicle& v, const Box& box) {
       strength.core.cage_front_m = shape.front_x_m - before_cab_m;
       strength.core.cage_rear_m = v.kind == BodyKind::truck ? strength.core.cage_front_m - cab_m
                                                             : shape.rear_x_m + before_cab_m;
+      // A lorry's cab stands on its frame.
+      if (v.kind == BodyKind::truck) strength.core.floor_m = 1.0;
       strength.low_m = 0.4;
       strength.high_m = 1.2;
       strength.front.length_m = 0.5;

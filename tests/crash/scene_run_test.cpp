@@ -408,5 +408,24 @@ TEST(SceneRun, MirrorsTo) {
   EXPECT_LT(percentile(off, 0.5), 0.02);
 }
 
+/// Two cars that meet with less overlap than their compartments' walls are thick intrude nowhere.
+TEST(SceneRun, AShallowOverlapIntrudesNoDeeperThanItIs) {
+  const Vehicle& saloon = named("sedan");
+  const double half_m = 0.5 * static_cast<double>(saloon.silhouettes.width_m());
+  for (const double aside_m : {1.6, 1.7}) {
+    Stage stage;
+    stage.add(saloon, flat_pose(0, 0, 0.0), 17.0);
+    stage.add(saloon, flat_pose(8, aside_m, detail::pi), 0.0);
+    SceneRun run;
+    run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+    run_to_end(run);
+    ASSERT_GT(run.contacts().size(), 0U);
+    const double reach_m =
+        std::max(0.0, saloon.strength.core.cage_half_width_m + half_m - aside_m) + 0.05;
+    EXPECT_LE(run.contacts()[0].outcome.a.intrusion_m, reach_m);
+    EXPECT_LE(run.contacts()[0].outcome.b.intrusion_m, reach_m);
+  }
+}
+
 }  // namespace
 }  // namespace crashrank

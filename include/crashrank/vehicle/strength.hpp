@@ -24,6 +24,8 @@ struct CrushCore {
   double cage_half_width_m = std::numeric_limits<double>::infinity();   ///< of the compartment, m
   double cage_front_m = 0.0;  ///< where the compartment begins, x, m
   double cage_rear_m = 0.0;   ///< where it ends, x, m
+  /// Height of its floor over the ground, m: what is crushed below intrudes nowhere.
+  double floor_m = 0.0;
   /// Rigid parts between the rails before the compartment, along x, m: what they are pushed by
   /// comes off the free crush length of the front and reaches the compartment.
   double engine_m = 0.0;
