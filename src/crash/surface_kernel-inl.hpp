@@ -238,9 +238,14 @@ template <bool both_yield> HWY_INLINE bool Presser::press(const PressingPieces& 
   const F8 rubbing = friction * normal * minimum(maximum(slides, -one), one);
   const F8 fx = normal * nx - rubbing * ny;
   const F8 fy = normal * ny + rubbing * nx;
-  // The surfaces meet where the pusher's own crush has moved them back to.
-  const F8 px = x - other_depth * nx;
-  const F8 py = y - other_depth * ny;
+  // The surfaces meet where the pusher's own crush has moved them back to, and no further than to
+  // the flank of what it ploughs along.
+  constexpr float least_normal = 1e-3F;
+  const F8 out_x = select(rearwards, d.front, d.rear) / maximum(absolute(nx), all(least_normal));
+  const F8 out_y = side / maximum(absolute(ny), all(least_normal));
+  const F8 moved_back = minimum(other_depth, minimum(out_x, out_y));
+  const F8 px = x - moved_back * nx;
+  const F8 py = y - moved_back * ny;
   const F8 power = normal * advance;
   LaneSums& s = sums_;
   s.force_x = s.force_x + fx;
@@ -261,15 +266,10 @@ template <bool both_yield> HWY_INLINE bool Presser::press(const PressingPieces& 
   const auto intrusion = [&](F8 inside, F8 crush) {
     return select(where, closing * minimum(inside, crush), zero);
   };
-  // What ploughs along a flank moves its own surface back no further than to that flank.
-  constexpr float least_normal = 1e-3F;
-  const F8 out_x = select(rearwards, d.front, d.rear) / maximum(absolute(nx), all(least_normal));
-  const F8 out_y = side / maximum(absolute(ny), all(least_normal));
-  const F8 moved_back = minimum(other_depth, minimum(out_x, out_y));
   s.depth_own = maximum(s.depth_own, select(where, own_crush, zero));
   own_bounds_.grow(where, px, py);
   if (p.band >= own_.cabin_band) {
-    const F8 inside = inside_compartment(own_, x - moved_back * nx, y - moved_back * ny, nx);
+    const F8 inside = inside_compartment(own_, px, py, nx);
     s.intrusion_own = maximum(s.intrusion_own, intrusion(inside, own_crush));
   }
   if constexpr (both_yield) {
