@@ -79,4 +79,40 @@ inline Stage pile(Random& random, std::size_t count, bool fixed_too) {
   return stage;
 }
 
+/// A fast body behind a row of others, which are pushed into each other. The last may be fixed.
+inline Stage row(Random& random, std::size_t count) {
+  Stage stage;
+  const auto movable = static_cast<std::uint32_t>(company().movable.size());
+  const auto all = static_cast<std::uint32_t>(company().size());
+  double x = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    // The first is a car or a lorry.
+    const std::size_t what = i == 0           ? random.below(3)
+                             : i + 1 == count ? random.below(all)
+                                              : random.below(movable);
+    const Vehicle& v = company().any(what).vehicle;
+    const double yaw = random.uniform(-0.3, 0.3);
+    const double rear = static_cast<double>(v.silhouettes.min_x);
+    const double front = static_cast<double>(v.silhouettes.max_x);
+    const double slack = 0.3 * static_cast<double>(v.silhouettes.width_m());
+    x -= rear - slack;
+    const double y = i == 0 ? 0.0 : random.uniform(-0.8, 0.8);
+    const double fast = i == 0 ? random.uniform(8, 35) : random.uniform(0, 5);
+    stage.add(v, flat_pose(x, y, yaw), v.movable() ? fast : 0.0);
+    x += front + slack + random.uniform(0.5, 4.0);
+  }
+  return stage;
+}
+
+/// Options with the steps that the scene takes by itself, times a factor.
+inline detail::SceneOptions with_steps(double factor) {
+  detail::SceneOptions options;
+  options.contact.travel_m *= factor;
+  options.contact.shortest_s *= factor;
+  options.contact.longest_s *= factor;
+  options.contact.speed_change *= factor;
+  options.rolling_step_s *= factor;
+  return options;
+}
+
 }  // namespace crashrank::test
