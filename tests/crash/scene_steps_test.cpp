@@ -94,6 +94,8 @@ TEST(SceneSteps, HalvedStepsChangeChainsLittle) {
     print_shares("  greatest of a scene's bodies", worst);
     print_shares("  dissipated energy, relative", energies);
     print_shares("  resting place of a body, m", places);
+    EXPECT_LT(percentile(delta_v, 0.5), 0.01);
+    EXPECT_LT(percentile(energies, 0.9), 0.05);
   }
 }
 
