@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace crashrank::detail {
 namespace {
@@ -137,9 +139,18 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
         "give the ego's model a mass"};
   }
   scene.ego = make_body(models[ego->model], ego->mass_kg, {});
-  Result<Vehicle> own = vehicle_of(scenario.models[ego->model], models[ego->model]);
-  if (!own) return own.error();
-  scene.ego.vehicle = std::move(*own);
+  // By model: its outline takes milliseconds to cut, and many actors share one.
+  std::vector<std::optional<Vehicle>> described(models.size());
+  const auto describe = [&](std::size_t model, Vehicle& vehicle) -> Status {
+    if (!described[model]) {
+      Result<Vehicle> made = vehicle_of(scenario.models[model], models[model]);
+      if (!made) return made.error();
+      described[model] = std::move(*made);
+    }
+    vehicle = *described[model];
+    return Success{};
+  };
+  if (Status own = describe(ego->model, scene.ego.vehicle); !own) return own.error();
   scene.ego.footing = footing_of(scene.ego.vehicle);
   scene.grip = scenario.grip;
   scene.ego.occupants = scenario.ego.occupants;
@@ -154,10 +165,8 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     }
     result.actors.push_back(*body);
     scene.actors.push_back(make_body(models[body->model], body->mass_kg, std::move(*motion)));
-    Result<Vehicle> vehicle = vehicle_of(scenario.models[body->model], models[body->model]);
-    if (!vehicle) return vehicle.error();
     Body& added = scene.actors.back();
-    added.vehicle = std::move(*vehicle);
+    if (Status own = describe(body->model, added.vehicle); !own) return own.error();
     if (added.vehicle.movable()) added.footing = footing_of(added.vehicle);
     added.occupants = actor.occupants;
   }

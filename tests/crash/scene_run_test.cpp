@@ -1,6 +1,7 @@
 #include "crash/scene_run.hpp"
 
 #include "crash/contact_checks.hpp"
+#include "crash/scene_cases.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +16,7 @@
 namespace crashrank {
 namespace {
 
-using detail::Footing;
-using detail::SceneBody;
 using detail::SceneContact;
-using detail::SceneOptions;
 using detail::SceneRun;
 using Eigen::Vector3d;
 using test::company;
@@ -26,55 +24,12 @@ using test::ContactDraw;
 using test::ContactScene;
 using test::flat_pose;
 using test::for_random_contacts;
+using test::named;
 using test::percentile;
+using test::pile;
 using test::Random;
-
-/// Bodies of a scene with what they refer to.
-struct Stage {
-  std::vector<Motion> plans;
-  std::vector<Footing> footings;
-  std::vector<const Vehicle*> vehicles;
-  std::vector<SceneBody> bodies;
-
-  void add(const Vehicle& vehicle, const Motion& plan) {
-    vehicles.push_back(&vehicle);
-    plans.push_back(plan);
-  }
-  void add(const Vehicle& vehicle, const Pose& pose, double speed_mps) {
-    const Vector3d velocity = speed_mps * pose.rotation.col(0);
-    add(vehicle, Motion(FreeMotion{pose, {velocity, Vector3d::Zero()}}));
-  }
-  void add(const ContactBody& body) {
-    add(*body.vehicle, Motion(FreeMotion{body.pose, body.velocity}));
-  }
-  /// On a road, or on ice without any.
-  View<const SceneBody> ready(bool road, double brake = 0.7) {
-    bodies.clear();
-    footings.clear();
-    for (const Vehicle* v : vehicles) footings.push_back(detail::footing_of(*v));
-    for (std::size_t i = 0; i < plans.size(); ++i) {
-      SceneBody body;
-      body.vehicle = vehicles[i];
-      body.plan = &plans[i];
-      body.footing = road ? &footings[i] : nullptr;
-      body.brake = brake;
-      bodies.push_back(body);
-    }
-    return {bodies.data(), bodies.size()};
-  }
-};
-
-void run_to_end(SceneRun& run) {
-  while (run.advance(1000)) {
-  }
-}
-
-const Vehicle& named(const char* name) {
-  for (std::size_t i = 0; i < company().size(); ++i) {
-    if (company().any(i).name == name) return company().any(i).vehicle;
-  }
-  throw std::runtime_error(name);
-}
+using test::run_to_end;
+using test::Stage;
 
 TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
   std::vector<double> changes;
@@ -110,23 +65,6 @@ TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
   // Centres of mass are rounded elsewhere, which may turn a piece's float the other way.
   EXPECT_LT(percentile(changes, 0.99), 1e-12);
   EXPECT_LT(percentile(changes, 1.0), 1e-3);
-}
-
-/// Bodies thrown at each other from all around, at least two of them movable.
-Stage pile(Random& random, std::size_t count, bool fixed_too) {
-  Stage stage;
-  const auto movable = static_cast<std::uint32_t>(company().movable.size());
-  const auto all = static_cast<std::uint32_t>(company().size());
-  for (std::size_t i = 0; i < count; ++i) {
-    const double round = 2.0 * detail::pi * static_cast<double>(i) / static_cast<double>(count);
-    const double away = random.uniform(9, 14);
-    const Pose pose = flat_pose(away * std::cos(round), away * std::sin(round),
-                                round + detail::pi + random.uniform(-0.25, 0.25));
-    const std::size_t what = i > 1 && fixed_too ? random.below(all) : random.below(movable);
-    const bool moves = what < movable;
-    stage.add(company().any(what).vehicle, pose, moves ? random.uniform(3, 30) : 0.0);
-  }
-  return stage;
 }
 
 struct Totals {

@@ -3,8 +3,8 @@
 #include "crashrank/rank/rank.hpp"
 
 #include "oracle/random.hpp"
-#include "oracle/shipped_models.hpp"
 #include "rank/scenes.hpp"
+#include "rank/shipped_cast.hpp"
 
 #include "crash/scene_run.hpp"
 
@@ -30,13 +30,6 @@ namespace {
 using Eigen::Vector3d;
 using scenes::box_mesh;
 using scenes::Scene;
-
-TriangleMesh shipped(const std::string& name) {
-  Result<TriangleMesh> mesh =
-      oracle::read_obj(std::string(CRASHRANK_MODEL_FOLDER "/") + name + ".obj");
-  EXPECT_TRUE(mesh.ok());
-  return mesh.ok() ? std::move(*mesh) : TriangleMesh{};
-}
 
 bool holds(const BodyDamage& damage, std::size_t triangle) {
   return std::binary_search(damage.triangles.begin(), damage.triangles.end(),
@@ -234,7 +227,7 @@ TEST(Damage, HoldsAllPairsAtTheFurthestAndTheLastPose) {
 // states, to within an outline's piece, and deeper the faster.
 TEST(Damage, ReachesAsDeepAsTheSimulatedCrush) {
   constexpr double piece_m = 0.05;
-  const TriangleMesh car = shipped("sedan");
+  const TriangleMesh car = scenes::shipped_mesh("sedan");
   const double front_m = static_cast<double>(car.bounds().max.x());
   double before = 0.0;
   double area_before = 0.0;

@@ -2,11 +2,13 @@
 
 #include "crashrank/rank/ranker.hpp"
 
+#include "oracle/random.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace crashrank {
@@ -39,6 +41,51 @@ TEST(Fault, AHundredThousandCandidatesAreRanked) {
   ASSERT_EQ(result.ranking.size(), 100'000U);
   EXPECT_TRUE(result.complete);
   EXPECT_EQ(*result.ranking.back().score, 0.0);
+}
+
+/// A thousand cars, posts and walls in one pile before the ego.
+Scene thousand_in_a_pile(double around_m) {
+  Scene scene = car_and_wall(0.0);
+  scene.scenario.actors.clear();
+  scene.scenario.models[0].kind = BodyKind::car;
+  scene.scenario.models[1].kind = BodyKind::car;
+  scene.add_model("post", box_mesh({0.1F, 0.1F, 1.0F}), BodyKind::pole);
+  scene.add_model("person", box_mesh({0.2F, 0.25F, 0.9F}), BodyKind::pedestrian);
+  oracle::Random random(451);
+  for (std::size_t i = 0; i < scenario_limits::actors; ++i) {
+    scene.add_actor(std::to_string(i), 1 + i % 3, 12.0 + random.real(0.0, around_m),
+                    random.real(-0.5, 0.5) * around_m, random.real(-3.0, 3.0));
+  }
+  scene.scenario.ego.speed_mps = 20.0;
+  scene.scenario.horizon_s = 2.0;
+  scene.add_candidate("on", 0.0);
+  return scene;
+}
+
+TEST(Fault, AThousandActorsInOnePileAreRanked) {
+  for (const double around_m : {0.5, 30.0}) {
+    for (const double grip : {0.8, scenario_limits::min_grip}) {
+      Scene scene = thousand_in_a_pile(around_m);
+      scene.scenario.grip = grip;
+      for (const Measure measure : {Measure::harm, Measure::delta_v, Measure::energy}) {
+        scene.scenario.harm.intervals = false;
+        const RankResult result = scene.ranked(measure);
+        ASSERT_EQ(result.ranking.size(), 1U);
+        const CandidateResult& on = result.ranking.front();
+        EXPECT_TRUE(on.collides);
+        ASSERT_TRUE(on.score.has_value());
+        EXPECT_TRUE(std::isfinite(*on.score));
+        EXPECT_GT(*on.score, 0.0);
+        // No step is shorter than an eighth of a millisecond, no scene longer than 30 s.
+        EXPECT_LE(result.work.crash_steps, 240'002U);
+        EXPECT_LE(on.contacts.size() + on.further.size(), 65U);
+        if (measure != Measure::harm) continue;
+        std::printf("1,000 actors within %.1f m, grip %.2f: %llu steps, %zu contacts, %s\n",
+                    around_m, grip, static_cast<unsigned long long>(result.work.crash_steps),
+                    on.contacts.size() + on.further.size(), on.crowded ? "crowded" : "");
+      }
+    }
+  }
 }
 
 TEST(Fault, ACandidateThatDoesNotMoveIsHitOrNot) {

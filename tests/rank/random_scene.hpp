@@ -46,13 +46,22 @@ inline TriangleMesh round_mesh(float radius, float height, std::uint32_t sides) 
   return mesh;
 }
 
-/// Traffic of every kind around an ego, from cheap bodies of 12 to 500 triangles.
-inline Scene traffic(std::uint64_t seed) {
-  oracle::Random random(seed);
+/// Places of `add_cast`'s models in a scene.
+enum CastModel : std::size_t {
+  ego_model,
+  car_model,
+  truck_model,
+  person_model,
+  two_wheeler_model,
+  pole_model,
+  wall_model,
+};
+
+/// The models of random traffic: cheap bodies of 12 to 500 triangles.
+inline void add_cast(oracle::Random& random, Scene& scene) {
   const auto real = [&random](double low, double high) {
     return static_cast<float>(random.real(low, high));
   };
-  Scene scene;
   const auto car = [&] {
     if (random.chance(0.5)) {
       return wedge_mesh(real(3.2, 5.0), real(1.5, 2.0), real(1.2, 1.6), real(0.5, 1.0));
@@ -69,6 +78,13 @@ inline Scene traffic(std::uint64_t seed) {
   scene.add_model("cyclist", wedge_mesh(1.8F, 0.5F, 1.6F, 1.2F), BodyKind::bicycle, 90.0);
   scene.add_model("pole", round_mesh(0.15F, 5.0F, 10), BodyKind::pole);
   scene.add_model("wall", box_mesh({6.0F, 0.2F, 1.0F}, 1, {0.0F, 0.0F, 1.0F}), BodyKind::building);
+}
+
+/// Traffic of every kind around an ego, from cheap bodies of 12 to 500 triangles.
+inline Scene traffic(std::uint64_t seed) {
+  oracle::Random random(seed);
+  Scene scene;
+  add_cast(random, scene);
   scene.scenario.ego.speed_mps = random.real(5, 30);
   scene.scenario.horizon_s = random.real(1.5, 3.0);
   scene.scenario.grid = CandidateGrid{3, 5};
@@ -79,11 +95,62 @@ inline Scene traffic(std::uint64_t seed) {
     const double aside = random.real(-1, 1) * random.real(0, 12);
     ScenarioActor& actor = scene.add_actor("actor " + std::to_string(i), model, ahead, aside,
                                            random.real(-3.14, 3.14));
-    if (model >= 5) continue;
-    actor.speed_mps = random.real(0, model >= 3 ? 5 : 20);
+    if (model >= pole_model) continue;
+    actor.speed_mps = random.real(0, model >= person_model ? 5 : 20);
     actor.acceleration_mps2 = random.real(-4, 2);
     actor.yaw_rate_radps = random.real(-0.3, 0.3);
   }
+  return scene;
+}
+
+/// A queue of every kind on three lanes before a scene's fast ego: what it hits is pushed into
+/// others. The scene has the models of `CastModel`.
+inline void add_queue(oracle::Random& random, Scene& scene) {
+  scene.scenario.ego.speed_mps = random.real(10, 35);
+  scene.scenario.horizon_s = 4.0;
+  constexpr double lane_m = 3.2;
+  constexpr double end_m = 55.0;
+  const double begin_m = random.real(10, 25);
+  int number = 0;
+  for (int lane = -1; lane <= 1; ++lane) {
+    double x = begin_m + random.real(0, 6);
+    while (x < end_m) {
+      const double kind = random.real(0, 1);
+      CastModel model = car_model;
+      double half_length_m = 2.4;
+      if (kind < 0.12) {
+        model = truck_model;
+        half_length_m = 6.0;
+      } else if (kind < 0.24) {
+        model = two_wheeler_model;
+        half_length_m = 1.2;
+      } else if (kind < 0.38) {
+        model = person_model;
+        half_length_m = 0.4;
+      } else if (kind < 0.44) {
+        model = pole_model;
+        half_length_m = 0.3;
+      } else if (kind < 0.47) {
+        model = wall_model;
+        half_length_m = 6.0;
+      }
+      x += half_length_m + random.real(0.5, 5.0);
+      ScenarioActor& actor =
+          scene.add_actor("actor " + std::to_string(number++), model, x,
+                          lane_m * lane + random.real(-0.5, 0.5), random.real(-0.2, 0.2));
+      x += half_length_m;
+      if (model < pole_model) actor.speed_mps = random.real(0, model == person_model ? 2 : 6);
+    }
+  }
+}
+
+/// A queue from cheap bodies, and six candidates.
+inline Scene congestion(std::uint64_t seed) {
+  oracle::Random random(seed);
+  Scene scene;
+  add_cast(random, scene);
+  add_queue(random, scene);
+  scene.scenario.grid = CandidateGrid{2, 3};
   return scene;
 }
 

@@ -30,7 +30,8 @@ struct Case {
   std::vector<Candidate> candidates;
   std::vector<double> scores;  ///< by candidate
 
-  Case(std::uint64_t seed, Measure measure) : scene(scenes::traffic(seed)) {
+  Case(std::uint64_t seed, Measure measure) : Case(scenes::traffic(seed), measure) {}
+  Case(scenes::Scene ranked_scene, Measure measure) : scene(std::move(ranked_scene)) {
     plain = scene.ranked(options_of(measure));
     candidates = plain.candidates;
     scores.assign(candidates.size(), -1.0);

@@ -1,5 +1,6 @@
 #include "crashrank/rank/ranker.hpp"
 
+#include "campaign.hpp"
 #include "rank/ranker_case.hpp"
 #include "rank/scenes.hpp"
 
@@ -10,7 +11,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -20,15 +20,11 @@ namespace {
 
 using scenes::Scene;
 using scenes::traffic;
+using test::wished;
 
 constexpr std::array<Measure, 7> measures{
     Measure::harm,     Measure::delta_v, Measure::energy,   Measure::closing_energy,
     Measure::polygons, Measure::area,    Measure::intrusion};
-
-std::uint64_t wished(const char* variable, std::uint64_t otherwise) {
-  const char* const wish = std::getenv(variable);
-  return wish != nullptr ? std::strtoull(wish, nullptr, 10) : otherwise;
-}
 
 /// How many scenes a property is tried on, the seed of the first, and how often the work on each is
 /// cut: campaigns say so in CRASHRANK_RANKER_SCENES, CRASHRANK_RANKER_SEED, CRASHRANK_RANKER_CUTS.
@@ -99,9 +95,7 @@ struct Widths {
   }
 };
 
-void cut_everywhere(std::uint64_t seed, Measure measure, std::uint64_t cuts, Widths& widths) {
-  SCOPED_TRACE(std::string(measure_name(measure)) + ", seed " + std::to_string(seed));
-  const Case c(seed, measure);
+void cut_everywhere(const Case& c, Measure measure, std::uint64_t cuts, Widths& widths) {
   Ranker ranker = c.ranker(measure);
   const std::uint64_t all = ranker.rank(c.candidates).effort.work;
   std::vector<ScoreInterval> last(c.candidates.size(), {0.0, INFINITY});
@@ -146,7 +140,8 @@ TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
   Widths widths;
   const std::uint64_t scenes = scenes_to_try(30);
   for (std::uint64_t i = 0; i < scenes; ++i) {
-    cut_everywhere(seed + i, Measure::harm, cuts, widths);
+    SCOPED_TRACE("seed " + std::to_string(seed + i));
+    cut_everywhere(Case(seed + i, Measure::harm), Measure::harm, cuts, widths);
     if (HasFatalFailure()) return;
   }
   ASSERT_FALSE(widths.shares[0].empty());
@@ -161,11 +156,40 @@ TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
   EXPECT_LT(widths.median(1), 0.2);
 }
 
+TEST(RankerProperty, IntervalsHoldWhereOneCrashLeadsToOthers) {
+  const std::uint64_t seed = first_seed(1500);
+  const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 8);
+  const std::uint64_t scenes = scenes_to_try(6);
+  Widths widths;
+  std::size_t chains = 0;
+  std::size_t contacts = 0;
+  std::size_t crowded = 0;
+  for (std::uint64_t i = 0; i < scenes; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed + i));
+    // Every measure that is simulated, in turn.
+    const Measure measure = measures[i % 4 == 3 ? 1 + i / 4 % 3 : 0];
+    const Case c(scenes::congestion(seed + i), measure);
+    for (const CandidateResult& result : c.plain.ranking) {
+      chains += result.further.empty() ? 0U : 1U;
+      contacts += result.contacts.size() + result.further.size();
+      crowded += result.crowded ? 1U : 0U;
+    }
+    cut_everywhere(c, measure, cuts, widths);
+    if (HasFatalFailure()) return;
+  }
+  std::printf(
+      "%llu scenes from seed %llu: %zu candidates with a chain, %zu contacts, %zu crowded\n",
+      static_cast<unsigned long long>(scenes), static_cast<unsigned long long>(seed), chains,
+      contacts, crowded);
+  EXPECT_GT(chains, 2 * scenes);
+}
+
 TEST(RankerProperty, IntervalsHoldForEveryMeasure) {
   Widths widths;
   for (const Measure measure : measures) {
     for (std::uint64_t seed = 5000; seed < 5003; ++seed) {
-      cut_everywhere(seed, measure, 8, widths);
+      SCOPED_TRACE(std::string(measure_name(measure)) + ", seed " + std::to_string(seed));
+      cut_everywhere(Case(seed, measure), measure, 8, widths);
       if (HasFatalFailure()) return;
     }
   }

@@ -1,6 +1,6 @@
 #include "crash/random.hpp"
-#include "oracle/shipped_models.hpp"
 #include "rank/scenes.hpp"
+#include "rank/shipped_cast.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,13 +26,6 @@ constexpr std::array<Kind, 4> kinds{{{"sedan", BodyKind::car},
                                      {"hatch", BodyKind::car},
                                      {"truck", BodyKind::truck},
                                      {"motorcycle", BodyKind::motorcycle}}};
-
-TriangleMesh shipped(const char* name) {
-  Result<TriangleMesh> mesh =
-      oracle::read_obj(std::string(CRASHRANK_MODEL_FOLDER "/") + name + ".obj");
-  EXPECT_TRUE(mesh.ok());
-  return mesh.ok() ? std::move(*mesh) : TriangleMesh{};
-}
 
 /// Poses of a body that is at (x, y) at one second and drives and turns evenly before and after.
 std::vector<TimedPose> drive(double x, double y, double yaw, double speed_mps, double yaw_rate) {
@@ -102,14 +94,7 @@ TEST(Roles, ExchangingEgoAndOtherChangesNoBitOfTheFirstContact) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   std::vector<Model> models;
-  for (const Kind& kind : kinds) {
-    Result<Model> model = make_model(shipped(kind.name));
-    ASSERT_TRUE(model.ok());
-    Result<Profile> profile = make_profile(model->mesh);
-    ASSERT_TRUE(profile.ok());
-    model->profile = std::make_shared<const Profile>(std::move(*profile));
-    models.push_back(std::move(*model));
-  }
+  for (const Kind& kind : kinds) models.push_back(scenes::shipped_model(kind.name));
   int met = 0;
   int twins = 0;
   for (int i = 0; i < cases; ++i) {

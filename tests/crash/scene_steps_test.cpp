@@ -1,0 +1,169 @@
+#include "campaign.hpp"
+#include "crash/contact_checks.hpp"
+#include "crash/scene_cases.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using detail::SceneContact;
+using detail::SceneRun;
+using test::percentile;
+using test::Random;
+using test::run_to_end;
+using test::Stage;
+
+/// What a scene does to each of its bodies.
+struct SceneEnd {
+  std::vector<double> delta_v_mps;     ///< sum over its contacts
+  std::vector<Eigen::Vector2d> place;  ///< of the centre of mass, where it rests
+  double energy_j = 0.0;               ///< dissipated in contacts
+  std::size_t contacts = 0;
+};
+
+SceneEnd end_of(const Stage& stage, const SceneRun& run) {
+  SceneEnd end;
+  end.delta_v_mps.assign(stage.plans.size(), 0.0);
+  for (const SceneContact& c : run.contacts()) {
+    end.delta_v_mps[c.a] += c.outcome.a.delta_v_mps.norm();
+    end.delta_v_mps[c.b] += c.outcome.b.delta_v_mps.norm();
+    end.energy_j += c.outcome.dissipated_j;
+  }
+  end.contacts = run.contacts().size();
+  for (std::size_t i = 0; i < stage.plans.size(); ++i) {
+    end.place.emplace_back(run.body(i).x, run.body(i).y);
+  }
+  return end;
+}
+
+void print_shares(const char* name, const std::vector<double>& values) {
+  std::printf("%s: p50 %.3g, p90 %.3g, p95 %.3g, p99 %.3g, most %.3g of %zu\n", name,
+              percentile(values, 0.5), percentile(values, 0.9), percentile(values, 0.95),
+              percentile(values, 0.99), percentile(values, 1.0), values.size());
+}
+
+// Campaigns set CRASHRANK_SCENE_COUNT and CRASHRANK_SCENE_SEED.
+TEST(SceneSteps, HalvedStepsChangeChainsLittle) {
+  const std::uint64_t seed = test::wished("CRASHRANK_SCENE_SEED", 421);
+  const std::uint64_t count = test::wished("CRASHRANK_SCENE_COUNT", 120);
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  for (const double factor : {1.0, 0.5}) {
+    Random random(seed);
+    SceneRun run;
+    std::vector<double> delta_v;
+    std::vector<double> worst;
+    std::vector<double> places;
+    std::vector<double> energies;
+    std::size_t other_contacts = 0;
+    std::size_t contacts = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      Stage stage = test::row(random, 3 + random.below(5));
+      const double closing = stage.plans[0].velocity_at(0.0).linear_mps.norm();
+      const View<const detail::SceneBody> bodies = stage.ready(true);
+      run.begin(bodies, 0, 1, 0.0, Eigen::Vector3d::Zero(), test::with_steps(factor));
+      run_to_end(run);
+      const SceneEnd p = end_of(stage, run);
+      run.begin(bodies, 0, 1, 0.0, Eigen::Vector3d::Zero(), test::with_steps(0.5 * factor));
+      run_to_end(run);
+      const SceneEnd q = end_of(stage, run);
+      contacts += p.contacts;
+      other_contacts += p.contacts != q.contacts ? 1U : 0U;
+      if (p.contacts == 0 && q.contacts == 0) continue;
+      double most = 0.0;
+      for (std::size_t k = 0; k < p.place.size(); ++k) {
+        if (!(p.delta_v_mps[k] + q.delta_v_mps[k] > 0.0)) continue;
+        delta_v.push_back(std::abs(p.delta_v_mps[k] - q.delta_v_mps[k]) / closing);
+        places.push_back((p.place[k] - q.place[k]).norm());
+        most = std::max(most, delta_v.back());
+      }
+      worst.push_back(most);
+      energies.push_back(std::abs(p.energy_j - q.energy_j) / std::max(p.energy_j, q.energy_j));
+    }
+    std::printf(
+        "steps %.2g against %.2g: %zu contacts, their number differs in %zu of %zu scenes\n",
+        factor, 0.5 * factor, contacts, other_contacts, worst.size());
+    print_shares("  delta-v of a body over closing speed", delta_v);
+    print_shares("  greatest of a scene's bodies", worst);
+    print_shares("  dissipated energy, relative", energies);
+    print_shares("  resting place of a body, m", places);
+    EXPECT_LT(percentile(delta_v, 0.5), 0.01);
+    EXPECT_LT(percentile(energies, 0.9), 0.05);
+  }
+}
+
+/// Box that holds all velocities of a body's centre of mass so far.
+struct VelocityRange {
+  Eigen::Array2d low = Eigen::Array2d::Constant(1e9);
+  Eigen::Array2d high = Eigen::Array2d::Constant(-1e9);
+
+  void add(const detail::PlanarBody& b) {
+    const Eigen::Array2d v(b.vx, b.vy);
+    low = low.min(v);
+    high = high.max(v);
+  }
+  double diagonal() const { return (high - low).matrix().norm(); }
+};
+
+// What presses on a body from two sides at a time gives each contact an impulse that the other
+// takes: none of the two is a change of the body's velocity. Prints how often that happens.
+TEST(SceneSteps, DeltaVOfContactsAgainstTheBodysOwnVelocities) {
+  const std::uint64_t seed = test::wished("CRASHRANK_SCENE_SEED", 422);
+  const std::uint64_t count = test::wished("CRASHRANK_SCENE_COUNT", 120);
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  Random random(seed);
+  SceneRun run;
+  std::size_t sides = 0;
+  std::size_t beyond = 0;
+  std::size_t goes_on = 0;
+  std::size_t scenes_beyond = 0;
+  std::size_t scenes = 0;
+  double most_mps = 0.0;
+  double most_range_mps = 0.0;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Stage stage = test::row(random, 3 + random.below(5));
+    run.begin(stage.ready(true), 0, 1, 0.0, Eigen::Vector3d::Zero(), {});
+    std::vector<VelocityRange> ranges(stage.plans.size());
+    bool going = true;
+    while (going) {
+      for (std::size_t k = 0; k < ranges.size(); ++k) ranges[k].add(run.body(k));
+      going = run.advance(1);
+    }
+    for (std::size_t k = 0; k < ranges.size(); ++k) ranges[k].add(run.body(k));
+    bool any = false;
+    for (const SceneContact& c : run.contacts()) {
+      goes_on += c.goes_on ? 1U : 0U;
+      for (const bool of_a : {true, false}) {
+        const std::size_t body = of_a ? c.a : c.b;
+        if (!stage.vehicles[body]->movable()) continue;
+        const double told = (of_a ? c.outcome.a : c.outcome.b).delta_v_mps.norm();
+        const double range = ranges[body].diagonal();
+        ++sides;
+        if (told < 1.1 * range + 0.1) continue;
+        ++beyond;
+        any = true;
+        if (told < most_mps) continue;
+        most_mps = told;
+        most_range_mps = range;
+      }
+    }
+    scenes += run.contacts().empty() ? 0U : 1U;
+    scenes_beyond += any ? 1U : 0U;
+  }
+  std::printf(
+      "%zu of %zu delta-v of one contact, in %zu of %zu scenes, exceed by over 10 %% all that the "
+      "body's velocity ever changed by; the greatest is %.1f m/s against %.1f m/s; %zu contacts go "
+      "on where an earlier one ended\n",
+      beyond, sides, scenes_beyond, scenes, most_mps, most_range_mps, goes_on);
+  EXPECT_GT(sides, count);
+}
+
+}  // namespace
+}  // namespace crashrank
