@@ -7,6 +7,7 @@
 #include "crashrank/report/escape.hpp"
 #include "crashrank/report/table.hpp"
 #include "crashrank/tree/model_file.hpp"
+#include "report/orientation.hpp"
 
 #include <fmt/format.h>
 
@@ -83,7 +84,20 @@ std::string to_text(const Compiled& compiled) {
   return text;
 }
 
-Json to_json(const std::string& file, const ImportedMesh& imported) {
+/// What a person would do with a mesh that is as large as a vehicle and seems turned; empty for
+/// others. `model_file`: its frame cannot be changed by options here.
+std::string orientation_hint(const MeshQuality& quality, const ImportTransform& transform,
+                             bool model_file) {
+  if (!detail::has_vehicle_size(quality.extent_m)) return {};
+  const auto turned = detail::guess_orientation(quality.extent_m, transform);
+  if (!turned) return {};
+  return fmt::format(
+      "if this is a vehicle it lies {}; {} with --forward {} --up {} (or the opposite of that "
+      "--forward, which the size does not show)",
+      turned->lies, model_file ? "compile its mesh again" : "read it", turned->forward, turned->up);
+}
+
+Json to_json(const std::string& file, const ImportedMesh& imported, const std::string& hint) {
   const TriangleMesh& mesh = imported.mesh;
   const MeshQuality& quality = imported.quality;
   Json parts = Json::array();
@@ -91,11 +105,15 @@ Json to_json(const std::string& file, const ImportedMesh& imported) {
     parts.push_back({{"name", part.name}, {"triangles", part.triangle_count}});
   }
   const Eigen::Vector3d& extent = quality.extent_m;
+  const Box bounds = mesh.bounds();
   return {{"file", file},
           {"triangles", mesh.size()},
           {"vertices", mesh.vertices.size()},
           {"parts", std::move(parts)},
           {"extent_m", {extent.x(), extent.y(), extent.z()}},
+          {"min_m", {bounds.min.x(), bounds.min.y(), bounds.min.z()}},
+          {"max_m", {bounds.max.x(), bounds.max.y(), bounds.max.z()}},
+          {"orientation_hint", hint.empty() ? Json(nullptr) : Json(hint)},
           {"area_m2", quality.area_m2},
           {"degenerate_triangles", quality.degenerate_triangles},
           {"duplicate_triangles", quality.duplicate_triangles},
@@ -105,7 +123,8 @@ Json to_json(const std::string& file, const ImportedMesh& imported) {
           {"warnings", imported.warnings}};
 }
 
-std::string to_text(const std::string& file, const ImportedMesh& imported, bool colours) {
+std::string to_text(const std::string& file, const ImportedMesh& imported, const std::string& hint,
+                    bool colours) {
   const TriangleMesh& mesh = imported.mesh;
   const MeshQuality& quality = imported.quality;
   std::string text =
@@ -113,6 +132,11 @@ std::string to_text(const std::string& file, const ImportedMesh& imported, bool 
                   escape_terminal(file), mesh.size(), mesh.vertices.size(), quality.extent_m.x(),
                   quality.extent_m.y(), quality.extent_m.z(), quality.area_m2,
                   quality.watertight ? "watertight" : "not watertight");
+  const Box bounds = mesh.bounds();
+  text += fmt::format("  x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} m\n",
+                      bounds.min.x(), bounds.max.x(), bounds.min.y(), bounds.max.y(),
+                      bounds.min.z(), bounds.max.z());
+  if (!hint.empty()) text += "  hint: " + hint + "\n";
   text += fmt::format("  {} degenerate, {} duplicate, {} dropped triangles\n",
                       quality.degenerate_triangles, quality.duplicate_triangles,
                       imported.dropped_triangles);
@@ -155,11 +179,14 @@ int run(const Options& options) {
       if (failed == exit_usage) return failed;
       continue;
     }
+    const ImportTransform transform =
+        compiled ? compiled->stored.transform : *options.mesh.transform();
+    const std::string hint = orientation_hint(imported->quality, transform, compiled.has_value());
     if (options.json) {
-      files.push_back(to_json(file, *imported));
+      files.push_back(to_json(file, *imported, hint));
       if (compiled) files.back()["model"] = to_json(*compiled);
     } else {
-      print(to_text(file, *imported, colours_wanted()));
+      print(to_text(file, *imported, hint, colours_wanted()));
       if (compiled) print(to_text(*compiled));
     }
   }

@@ -91,7 +91,9 @@ Result<HarmOptions> read_harm(const Options& options, const Scenario& scenario) 
   return harm;
 }
 
-Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& trees) {
+/// Says what is to be warned of in the meshes, and adds it to `warnings`.
+Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& trees,
+                                       std::vector<std::string>& warnings) {
   const Result<BuildOptions> build = trees.build_options();
   if (!build) return build.error();
   ScenarioModelOptions how;
@@ -106,7 +108,10 @@ Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& 
     }
     Result<LoadedScenarioModel> read = load_scenario_model(wanted, how);
     if (!read) return read.error();
-    for (const std::string& warning : read->warnings) warn(wanted.path, warning);
+    for (const std::string& warning : read->warnings) {
+      warn(wanted.path, warning);
+      warnings.push_back(wanted.path + ": " + warning);
+    }
     add_stated_mass(read->stated, wanted);
     models.push_back(std::move(read->model));
     progress.update(models.size());
@@ -142,16 +147,20 @@ Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario
   return ranker->explain(*candidates, answer);
 }
 
-/// Tells on standard error what the table or the JSON says inside, for who reads the exit code.
-void tell_end(const Options& options, const RankResult& ranked, bool answered) {
+/// Says what is to be warned of in the options and the end of the ranking, and adds it.
+void warn_of_end(const Options& options, const RankResult& ranked, bool answered,
+                 std::vector<std::string>& warnings) {
+  const std::size_t before = warnings.size();
   if (options.engine_given && options.bounded()) {
-    warn("", "--policy and --depth have no part in an answer within a budget");
+    warnings.emplace_back("--policy and --depth have no part in an answer within a budget");
   }
-  if (answered) return;
-  const char* const why = options.bounded() ? "the budget ended before every score was known"
-                                            : "a search for a contact came to no end";
-  warn("", std::string(why) + ": a partial answer, its first place " +
-               (ranked.proved ? "proved" : "not proved"));
+  if (!answered) {
+    const char* const why = options.bounded() ? "the budget ended before every score was known"
+                                              : "a search for a contact came to no end";
+    warnings.push_back(std::string(why) + ": a partial answer, its first place " +
+                       (ranked.proved ? "proved" : "not proved"));
+  }
+  for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
 }
 
 int run(const Options& options) {
@@ -192,7 +201,8 @@ int run(const Options& options) {
   if (!options.damage_folder.empty()) {
     if (const Status sound = check_damage_folder(damage); !sound) return fail(sound.error());
   }
-  const Result<std::vector<Model>> models = load_models(*scenario, options.tree);
+  std::vector<std::string> warnings;
+  const Result<std::vector<Model>> models = load_models(*scenario, options.tree, warnings);
   if (!models) return fail(models.error());
   const Result<RankResult> ranked = options.bounded()
                                         ? rank_bounded(options, *scenario, *models, how)
@@ -210,20 +220,20 @@ int run(const Options& options) {
     const Status written = write_report(options.report, html_report(*scenario, *models, *ranked));
     if (!written) return fail(written.error());
   }
+  const bool answered = ranked->complete || (options.first_place && ranked->proved);
+  warn_of_end(options, *ranked, answered, warnings);
   // A page on standard output stands alone.
   if (options.json) {
-    print(ranking_json(*scenario, *models, *ranked));
+    print(ranking_json(*scenario, *models, *ranked, warnings));
   } else if (!is_standard(options.report)) {
     RankingTextOptions text;
     text.top = options.top;
     text.colours = colours_wanted();
     print(ranking_text(*scenario, *models, *ranked, text));
   }
-  const bool answered = ranked->complete || (options.first_place && ranked->proved);
-  for (const std::string& doubt : ranking_doubts(*scenario, *ranked)) {
+  for (const std::string& doubt : ranking_doubts(*scenario, *models, *ranked)) {
     warn(options.scenario, doubt);
   }
-  tell_end(options, *ranked, answered);
   return answered ? exit_done : exit_budget;
 }
 
