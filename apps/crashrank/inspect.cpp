@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "console.hpp"
+#include "interrupt.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
 
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -169,6 +171,14 @@ int run(const Options& options) {
   if (const Status single = one_standard_input(options.files); !single) return fail(single.error());
   int code = exit_done;
   Json files = Json::array();
+  std::mutex mutex;
+  const PartialAnswer partial([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    Interruption known{{},
+                       fmt::format("{} of {} files are read", files.size(), options.files.size())};
+    if (options.json) known.answer = json_text({{"files", files}});
+    return known;
+  });
   for (const std::string& file : options.files) {
     std::optional<Compiled> compiled;
     Result<ImportedMesh> imported = look_at(file, options.mesh, compiled);
@@ -183,6 +193,7 @@ int run(const Options& options) {
         compiled ? compiled->stored.transform : *options.mesh.transform();
     const std::string hint = orientation_hint(imported->quality, transform, compiled.has_value());
     if (options.json) {
+      const std::lock_guard<std::mutex> lock(mutex);
       files.push_back(to_json(file, *imported, hint));
       if (compiled) files.back()["model"] = to_json(*compiled);
     } else {
@@ -190,7 +201,7 @@ int run(const Options& options) {
       if (compiled) print(to_text(*compiled));
     }
   }
-  if (options.json) print_json({{"files", std::move(files)}});
+  if (options.json) print_json({{"files", files}});
   return code;
 }
 
@@ -201,6 +212,7 @@ void add_inspect(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("inspect", "Look a mesh or model file over before trusting it");
   command->add_option("MESH", options->files, "Mesh or model files; - is standard input")
+      ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "Answer in JSON");
   options->mesh.add_to(*command);
