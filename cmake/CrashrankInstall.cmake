@@ -110,6 +110,21 @@ if(CRASHRANK_BUILD_TOOLS)
     add_custom_target(manual ALL DEPENDS ${manual}.gz)
     install(FILES ${manual}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
   endif()
+
+  # Completion scripts, made by the program from its own options.
+  if(NOT CMAKE_CROSSCOMPILING)
+    set(completion ${CMAKE_CURRENT_BINARY_DIR}/completion)
+    add_custom_command(OUTPUT ${completion}/crashrank ${completion}/_crashrank
+      COMMAND ${CMAKE_COMMAND} -E make_directory ${completion}
+      COMMAND crashrank_cli completion bash > ${completion}/crashrank
+      COMMAND crashrank_cli completion zsh > ${completion}/_crashrank
+      DEPENDS crashrank_cli VERBATIM)
+    add_custom_target(completion ALL DEPENDS ${completion}/crashrank ${completion}/_crashrank)
+    install(FILES ${completion}/crashrank COMPONENT tools
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+    install(FILES ${completion}/_crashrank COMPONENT tools
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  endif()
 endif()
 
 if(PROJECT_IS_TOP_LEVEL)

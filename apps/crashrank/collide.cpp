@@ -2,8 +2,10 @@
 #include "console.hpp"
 #include "cost.hpp"
 #include "engine.hpp"
+#include "interrupt.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
+#include "options.hpp"
 #include "poses.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
@@ -19,6 +21,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -35,6 +38,7 @@ struct Options {
   std::string a;
   std::string b;
   MeshArguments mesh;
+  SecondMeshArguments mesh_b;
   TreeArguments tree;
   EngineArguments engine;
   std::vector<std::string> poses;
@@ -73,14 +77,16 @@ Status check(const Options& options) {
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return build.error();
   }
-  if (const Result<ImportTransform> transform = options.mesh.transform(); !transform) {
-    return transform.error();
+  for (const MeshArguments& mesh : {options.mesh, options.mesh_b.over(options.mesh)}) {
+    if (const Result<ImportTransform> transform = mesh.transform(); !transform) {
+      return transform.error();
+    }
   }
   return Success{};
 }
 
-Result<Body> load_one(const std::string& path, const Options& options) {
-  Result<LoadedBody> loaded = load_body(path, options.mesh, options.tree, true);
+Result<Body> load_one(const std::string& path, const MeshArguments& mesh, const Options& options) {
+  Result<LoadedBody> loaded = load_body(path, mesh, options.tree, true);
   if (!loaded) return loaded.error();
   return Body{std::move(loaded->stored.model), loaded->build_s};
 }
@@ -209,6 +215,18 @@ std::string to_text(const Options& options, const std::vector<Query>& queries, c
          fmt::format("{}, measured here ({}).\n", cost_text(cost), kernel_name(options.engine));
 }
 
+Interruption interrupted_after(const Options& options, const Body& a, const Body& b,
+                               const std::vector<Query>& queries, std::size_t all,
+                               const Cost& cost) {
+  Interruption known;
+  known.message = fmt::format("{} of {} queries are answered", queries.size(), all);
+  if (!options.pairs_file.empty()) known.message += "; the list of pairs is not written";
+  if (queries.empty() || is_standard(options.pairs_file)) return known;
+  known.answer = options.json ? json_text(to_json(options, a, b, queries, cost))
+                              : to_text(options, queries, cost);
+  return known;
+}
+
 int run(const Options& options) {
   if (const Status sound = check(options); !sound) return fail(sound.error());
   const std::vector<std::string> inputs{options.a, options.b, options.poses_file};
@@ -217,9 +235,9 @@ int run(const Options& options) {
   }
   const Result<std::vector<Pose>> poses = load_poses(options);
   if (!poses) return fail(poses.error());
-  const Result<Body> a = load_one(options.a, options);
+  const Result<Body> a = load_one(options.a, options.mesh, options);
   if (!a) return fail(a.error());
-  const Result<Body> b = load_one(options.b, options);
+  const Result<Body> b = load_one(options.b, options.mesh_b.over(options.mesh), options);
   if (!b) return fail(b.error());
   std::optional<OutputFile> pairs_out;
   if (!options.pairs_file.empty()) {
@@ -237,11 +255,17 @@ int run(const Options& options) {
   queries.reserve(poses->size());
   {
     Progress progress("colliding", poses->size());
+    std::mutex mutex;
+    const PartialAnswer partial([&] {
+      const std::lock_guard<std::mutex> lock(mutex);
+      return interrupted_after(options, *a, *b, queries, poses->size(), cost);
+    });
     for (const Pose& pose : *poses) {
       const Result<Query> query = ask(*engine, pose, options, pairs);
       if (!query) return fail(query.error());
+      if (pairs_out) write_pairs(*pairs_out, queries.size(), pairs);
+      const std::lock_guard<std::mutex> lock(mutex);
       queries.push_back(*query);
-      if (pairs_out) write_pairs(*pairs_out, queries.size() - 1, pairs);
       progress.update(queries.size());
     }
   }
@@ -271,26 +295,28 @@ void add_collide(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("collide", "Find the triangles of two bodies that touch, exactly");
-  command->add_option("A", options->a, "Mesh or model file of body A; - is standard input")
+  add_file(*command, "A", options->a, "Mesh or model file of body A; - is standard input")
       ->required();
-  command->add_option("B", options->b, "Mesh or model file of body B")->required();
+  add_file(*command, "B", options->b, "Mesh or model file of body B")->required();
   command
       ->add_option("--pose", options->poses,
                    "x,y,z,yaw_deg,pitch_deg,roll_deg of B in A, m and degrees; may be repeated")
+      ->type_name("SIX")
       ->type_size(1)
       ->allow_extra_args(false);
-  command->add_option("--poses", options->poses_file,
-                      "File with one row-major 4x4 matrix of B in A a line; - is standard input");
+  add_file(*command, "--poses", options->poses_file,
+           "File with one row-major 4x4 matrix of B in A a line; - is standard input");
   command->add_flag("--any", options->any,
                     "Stop at the first pair found; one thread does, whatever --workers");
-  command->add_option("--repeat", options->repeat, "Runs of each query; the median time is told")
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--pairs", options->pairs_file,
-                      "Write the pairs as CSV query,a,b, sorted; - is standard output");
+  add_count(*command, "--repeat", options->repeat,
+            "Runs of each query, of which the median time counts", 1, 1'000'000);
+  add_file(*command, "--pairs", options->pairs_file,
+           "Write the pairs as CSV query,a,b, sorted; - is standard output");
   command->add_flag("--json", options->json, "Answer in JSON");
   options->engine.add_to(*command);
   options->tree.add_to(*command);
   options->mesh.add_to(*command);
+  options->mesh_b.add_to(*command);
   command->footer(epilogue);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -1,8 +1,10 @@
 #include "command.hpp"
 #include "console.hpp"
+#include "interrupt.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
 #include "numbers.hpp"
+#include "options.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
@@ -12,6 +14,8 @@
 #include "crashrank/tree/model_file.hpp"
 
 #include <fmt/format.h>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -154,6 +158,7 @@ std::string to_text(const StatedMass& kept) {
 
 int run(const Options& options) {
   if (const Status sound = check_options(options); !sound) return fail(sound.error());
+  const PartialAnswer partial([&] { return Interruption{{}, options.output + " is not written"}; });
   Result<LoadedBody> body = load_body(options.mesh_file, options.mesh, options.tree, true);
   if (!body) return fail(body.error());
   StoredModel& stored = body->stored;
@@ -162,6 +167,9 @@ int run(const Options& options) {
   if (const Status sound = state_mass(options, stored.model.mesh.bounds(), stored.stated); !sound) {
     return fail(sound.error());
   }
+  // What save_model names its draft.
+  const UnfinishedFile draft(fmt::format("{}.{}.0", options.output, ::getpid()));
+  const Progress progress("writing " + escape_terminal(options.output));
   if (Status saved = save_model(stored, options.output, options.force); !saved) {
     Error error = saved.error();
     if (error.code == ErrorCode::usage && !options.force) {
@@ -197,18 +205,28 @@ void add_compile(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "compile", "Write a mesh and its trees as one checked file that loads at once");
-  command->add_option("MESH", options->mesh_file, "Mesh or model file; - is standard input")
+  add_file(*command, "MESH", options->mesh_file, "Mesh or model file; - is standard input")
       ->required();
-  command->add_option("-o,--output", options->output, "The model file to write")->required();
+  add_file(*command, "-o,--output", options->output, "The model file to write")->required();
   command
-      ->add_option("--mass-kg", options->mass_kg,
-                   "Mass of the body; scenarios that give none then use it")
+      ->add_option(
+          "--mass-kg", options->mass_kg,
+          fmt::format("Mass of the body; scenarios that give none then use it [{:g} to {:g} "
+                      "kg, default: not stated]",
+                      scenario_limits::min_mass_kg, scenario_limits::max_mass_kg))
+      ->type_name("KG")
       ->check(one_number("kg, such as 1450"));
-  command->add_option("--center-of-mass-m", options->center_of_mass_m,
-                      "Its centre of mass, x,y or x,y,z in body coordinates; likewise");
   command
-      ->add_option("--yaw-inertia-kgm2", options->yaw_inertia_kgm2,
-                   "Its yaw inertia about the centre of mass; likewise")
+      ->add_option("--center-of-mass-m", options->center_of_mass_m,
+                   "Its centre of mass, x,y or x,y,z in body coordinates; likewise")
+      ->type_name("X,Y,Z");
+  command
+      ->add_option(
+          "--yaw-inertia-kgm2", options->yaw_inertia_kgm2,
+          fmt::format("Its yaw inertia about the centre of mass; likewise [above 0, at most "
+                      "{:g} kg m2]",
+                      scenario_limits::yaw_inertia_kgm2))
+      ->type_name("KGM2")
       ->check(one_number("kg m2, such as 2200"));
   command->add_flag("--force", options->force, "Replace a file of that name");
   command->add_flag("--json", options->json, "Answer in JSON");

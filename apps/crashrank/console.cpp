@@ -1,27 +1,44 @@
 #include "console.hpp"
 
+#include "interrupt.hpp"
+
 #include "crashrank/report/escape.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <utility>
+#include <vector>
 
 namespace crashrank::cli {
 namespace {
 
+int write_error = 0;
+std::atomic<bool> answering{false};
+
+/// The terminal is one, and so is what is drawn on it.
+struct Shown {
+  std::mutex mutex;
+  std::vector<Progress*> all;
+  std::chrono::steady_clock::time_point next;
+  bool drawn = false;
+};
+Shown shown;
+
+}  // namespace
+
 void say(const std::string& text) {
+  Progress::clear();
   const std::string line = "crashrank: " + escape_terminal(text) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
-
-int write_error = 0;
-
-}  // namespace
 
 ExitCode exit_code(ErrorCode code) {
   switch (code) {
@@ -41,6 +58,7 @@ ExitCode exit_code(ErrorCode code) {
 }
 
 int fail(const Error& error) {
+  if (is_interrupted()) return exit_budget;
   say(error.message());
   return exit_code(error.code);
 }
@@ -49,7 +67,11 @@ void warn(const std::string& file, const std::string& text) {
   say("warning: " + (file.empty() ? text : file + ": " + text));
 }
 
+bool is_answering() { return answering; }
+
 void print(const std::string& data) {
+  Progress::clear();
+  answering = true;
   if (write_error != 0) return;
   if (std::fwrite(data.data(), 1, data.size(), stdout) != data.size()) write_error = errno;
 }
@@ -69,27 +91,47 @@ bool colours_wanted() {
   return isatty(STDOUT_FILENO) != 0 && !refused && !dumb;
 }
 
-Progress::Progress(std::string what, std::size_t total)
-    : what_(std::move(what)),
-      total_(total),
-      shown_(isatty(STDERR_FILENO) != 0),
-      next_(std::chrono::steady_clock::now() + std::chrono::milliseconds(300)) {}
-
-Progress::~Progress() {
-  if (drawn_) std::fputs("\r\x1b[K", stderr);
+Progress::Progress(std::string what, std::size_t total) : what_(std::move(what)), total_(total) {
+  const std::lock_guard<std::mutex> lock(shown.mutex);
+  shown.all.push_back(this);
 }
 
-void Progress::update(std::size_t done) {
-  if (!shown_ || total_ == 0) return;
-  const auto now = std::chrono::steady_clock::now();
-  if (now < next_) return;
-  next_ = now + std::chrono::milliseconds(100);
-  drawn_ = true;
+Progress::~Progress() {
+  {
+    const std::lock_guard<std::mutex> lock(shown.mutex);
+    shown.all.erase(std::remove(shown.all.begin(), shown.all.end(), this), shown.all.end());
+  }
+  clear();
+}
+
+std::string Progress::line() const {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  if (total_ == 0) return fmt::format("{} {:.0f} s", what_, seconds);
   constexpr std::size_t width = 30;
+  const std::size_t done = std::min<std::size_t>(done_, total_);
   const std::size_t filled = width * done / total_;
-  const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-  fmt::print(stderr, "\r{} [{}] {}/{}", what_, bar, done, total_);
+  return fmt::format("{} [{}{}] {}/{}", what_, std::string(filled, '#'),
+                     std::string(width - filled, '.'), done, total_);
+}
+
+void Progress::draw() {
+  constexpr std::chrono::milliseconds wait(300);
+  constexpr std::chrono::milliseconds pause(100);
+  const std::lock_guard<std::mutex> lock(shown.mutex);
+  if (shown.all.empty() || isatty(STDERR_FILENO) == 0) return;
+  const Progress& last = *shown.all.back();
+  const Clock::time_point now = Clock::now();
+  if (now < shown.next || now < last.start_ + wait) return;
+  shown.next = now + pause;
+  shown.drawn = true;
+  fmt::print(stderr, "\r{}\x1b[K", last.line());
   std::fflush(stderr);
+}
+
+void Progress::clear() {
+  const std::lock_guard<std::mutex> lock(shown.mutex);
+  if (shown.drawn) std::fputs("\r\x1b[K", stderr);
+  shown.drawn = false;
 }
 
 }  // namespace crashrank::cli

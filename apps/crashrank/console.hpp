@@ -2,6 +2,7 @@
 
 #include "crashrank/base/result.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <string>
@@ -19,7 +20,11 @@ enum ExitCode : int {
 
 ExitCode exit_code(ErrorCode code);
 
-/// Prints "crashrank: MESSAGE" on stderr, escaped, on one line, and returns its exit code.
+/// Prints "crashrank: TEXT" on stderr, escaped, on one line.
+void say(const std::string& text);
+
+/// The same with an error's message; returns its exit code. After an interruption, which has a
+/// message of its own, prints nothing and returns exit_budget.
 int fail(const Error& error);
 
 /// Prints "crashrank: warning: FILE: TEXT" on stderr, escaped, on one line.
@@ -34,22 +39,36 @@ int finish(int code);
 /// True when stdout is a terminal that wants colours (NO_COLOR unset or empty, TERM not dumb).
 bool colours_wanted();
 
-/// A bar on stderr, when that is a terminal; nothing otherwise. Redrawn ten times a second at most.
+/// Whether an answer has begun to go to stdout. Safe from any thread.
+bool is_answering();
+
+/// What takes long, on stderr when that is a terminal: a bar where there is a number to reach, else
+/// the time so far. The thread that waits for the command draws the one made last, from 0.3 s on.
 class Progress {
 public:
-  Progress(std::string what, std::size_t total);
+  explicit Progress(std::string what, std::size_t total = 0);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void update(std::size_t done);
+  /// Safe from any thread.
+  void update(std::size_t done) { done_ = done; }
+  /// One more is done. Safe from any thread.
+  void advance() { ++done_; }
+
+  /// Draws, ten times a second at most.
+  static void draw();
+  /// Takes away what is drawn.
+  static void clear();
 
 private:
+  using Clock = std::chrono::steady_clock;
+  std::string line() const;
+
   std::string what_;
   std::size_t total_;
-  bool shown_;
-  bool drawn_ = false;
-  std::chrono::steady_clock::time_point next_;
+  std::atomic<std::size_t> done_{0};
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace crashrank::cli

@@ -3,6 +3,7 @@
 #include "console.hpp"
 #include "streams.hpp"
 
+#include "crashrank/base/guarded.hpp"
 #include "crashrank/report/damage_model.hpp"
 #include "crashrank/report/escape.hpp"
 #include "crashrank/report/picture.hpp"
@@ -11,10 +12,15 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -34,6 +40,49 @@ struct Picked {
   std::string stem;  ///< of its files, with the folder
 };
 
+/// A body other than the ego, with its damage from all contacts of a candidate.
+struct HitBody {
+  std::size_t actor = 0;  ///< index into Scenario::actors
+  double time_s = 0.0;    ///< of its first contact
+  Pose pose;              ///< then
+  std::vector<std::uint32_t> triangles;
+};
+
+void merge(const std::vector<std::uint32_t>& more, std::vector<std::uint32_t>& whole) {
+  std::vector<std::uint32_t> both;
+  std::set_union(whole.begin(), whole.end(), more.begin(), more.end(), std::back_inserter(both));
+  whole = std::move(both);
+}
+
+void add_hit(std::size_t actor, double time_s, const BodyDamage& damage,
+             std::vector<HitBody>& bodies) {
+  auto body = std::find_if(bodies.begin(), bodies.end(),
+                           [actor](const HitBody& known) { return known.actor == actor; });
+  if (body == bodies.end()) {
+    bodies.push_back({actor, time_s, damage.pose, {}});
+    body = bodies.end() - 1;
+  } else if (time_s < body->time_s) {
+    body->time_s = time_s;
+    body->pose = damage.pose;
+  }
+  merge(damage.triangles, body->triangles);
+}
+
+/// Every body that is hit, by the ego or by others, in the order of their first contacts.
+std::vector<HitBody> hit_bodies(const CandidateResult& ranked) {
+  std::vector<HitBody> bodies;
+  for (const Contact& contact : ranked.contacts) {
+    add_hit(contact.actor, contact.time_of_impact_s, contact.other, bodies);
+  }
+  for (const FurtherContact& contact : ranked.further) {
+    add_hit(contact.a, contact.time_s, contact.damage_a, bodies);
+    add_hit(contact.b, contact.time_s, contact.damage_b, bodies);
+  }
+  std::stable_sort(bodies.begin(), bodies.end(),
+                   [](const HitBody& p, const HitBody& q) { return p.time_s < q.time_s; });
+  return bodies;
+}
+
 std::vector<Picked> pick(const DamageOptions& options, const RankResult& result) {
   std::vector<Picked> picked;
   for (std::size_t place = 0; place < result.ranking.size(); ++place) {
@@ -49,9 +98,10 @@ std::vector<Picked> pick(const DamageOptions& options, const RankResult& result)
 
 std::string ego_stem(const Picked& picked) { return picked.stem + "-ego"; }
 
-std::string other_stem(const Picked& picked, std::size_t contact, const Scenario& scenario) {
-  const ScenarioActor& actor = scenario.actors[picked.ranked->contacts[contact].actor];
-  return fmt::format("{}-{}-{}", picked.stem, contact + 1, escape_file_name(actor.name));
+std::string other_stem(const Picked& picked, std::size_t number, const HitBody& body,
+                       const Scenario& scenario) {
+  return fmt::format("{}-{}-{}", picked.stem, number + 1,
+                     escape_file_name(scenario.actors[body.actor].name));
 }
 
 Status check_file(const std::string& path, const OutputKind& kind, const DamageOptions& options) {
@@ -67,8 +117,9 @@ Status check_file(const std::string& path, const OutputKind& kind, const DamageO
 
 Status check_files(const Picked& picked, const Scenario& scenario, const DamageOptions& options) {
   std::vector<std::string> bodies{ego_stem(picked)};
-  for (std::size_t i = 0; i < picked.ranked->contacts.size(); ++i) {
-    bodies.push_back(other_stem(picked, i, scenario));
+  const std::vector<HitBody> others = hit_bodies(*picked.ranked);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    bodies.push_back(other_stem(picked, i, others[i], scenario));
   }
   for (const std::string& body : bodies) {
     if (Status sound = check_file(body + ".glb", glb_file, options); !sound) return sound;
@@ -87,11 +138,12 @@ Status write_file(const std::string& path, const OutputKind& kind, const std::st
   return out->close();
 }
 
-Status write_body(const std::string& stem, const TriangleMesh& mesh, const BodyDamage& damage) {
-  const Result<std::string> glb = damage_glb(mesh, damage.triangles);
+Status write_body(const std::string& stem, const TriangleMesh& mesh,
+                  const std::vector<std::uint32_t>& damaged) {
+  const Result<std::string> glb = damage_glb(mesh, damaged);
   if (!glb) return glb.error();
   if (Status written = write_file(stem + ".glb", glb_file, *glb); !written) return written;
-  return write_file(stem + ".ply", ply_file, damage_ply(mesh, damage.triangles));
+  return write_file(stem + ".ply", ply_file, damage_ply(mesh, damaged));
 }
 
 // Of a few places around the scene the one from which a small picture shows most damage; what
@@ -130,16 +182,17 @@ Status write_picture(const std::string& path, View<const PictureBody> bodies, do
 Status write_candidate(const Picked& picked, const Scenario& scenario, View<const Model> models) {
   const CandidateResult& ranked = *picked.ranked;
   const TriangleMesh& ego = models[scenario.ego.model].mesh;
-  if (Status written = write_body(ego_stem(picked), ego, ranked.ego); !written) {
+  if (Status written = write_body(ego_stem(picked), ego, ranked.ego.triangles); !written) {
     return written;
   }
   std::vector<PictureBody> bodies{{&ego, ranked.contacts.front().ego.pose, ranked.ego.triangles}};
-  for (std::size_t i = 0; i < ranked.contacts.size(); ++i) {
-    const Contact& contact = ranked.contacts[i];
-    const TriangleMesh& mesh = models[scenario.actors[contact.actor].model].mesh;
-    const std::string stem = other_stem(picked, i, scenario);
-    if (Status written = write_body(stem, mesh, contact.other); !written) return written;
-    bodies.push_back({&mesh, contact.other.pose, contact.other.triangles});
+  const std::vector<HitBody> others = hit_bodies(ranked);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const HitBody& body = others[i];
+    const TriangleMesh& mesh = models[scenario.actors[body.actor].model].mesh;
+    const std::string stem = other_stem(picked, i, body, scenario);
+    if (Status written = write_body(stem, mesh, body.triangles); !written) return written;
+    bodies.push_back({&mesh, body.pose, body.triangles});
   }
   const double side = azimuth_of_damage_deg(bodies.front());
   Status drawn = write_picture(ego_stem(picked) + ".png", {bodies.data(), 1}, side);
@@ -187,13 +240,30 @@ Status write_damage(const DamageOptions& options, const Scenario& scenario,
   if (!fs::is_directory(options.folder, ignored)) {
     return cannot_make(options.folder, failure.message());
   }
-  std::size_t written = 0;
+  // Files are the same for every number of threads; of errors the first candidate's counts.
   Progress progress("drawing", picked.size());
-  for (const Picked& one : picked) {
-    if (Status done = write_candidate(one, scenario, models); !done) return done;
-    progress.update(++written);
+  std::vector<Status> ends(picked.size(), Success{});
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < picked.size() && !failed; i = next++) {
+      ends[i] = detail::guarded([&] { return write_candidate(picked[i], scenario, models); });
+      if (!ends[i]) failed = true;
+      progress.advance();
+    }
+  };
+  std::vector<std::thread> threads;
+  threads.reserve(options.workers);
+  const std::size_t helpers = std::min<std::size_t>(options.workers, picked.size());
+  try {
+    while (threads.size() + 1 < helpers) threads.emplace_back(work);
+  } catch (const std::system_error&) {
+    // The system refuses more threads: those that there are do all.
   }
-  return Success{};
+  work();
+  for (std::thread& thread : threads) thread.join();
+  const auto bad = std::find_if(ends.begin(), ends.end(), [](const Status& end) { return !end; });
+  return bad == ends.end() ? Status(Success{}) : *bad;
 }
 
 }  // namespace crashrank::cli

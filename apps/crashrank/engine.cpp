@@ -1,5 +1,7 @@
 #include "engine.hpp"
 
+#include "options.hpp"
+
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 
@@ -68,26 +70,31 @@ Result<std::uint32_t> depth_from_text(const std::string& text) {
   return depth;
 }
 
-std::string policy_help() {
-  std::string text = "How a job finds its worker (default late-match):";
-  for (const Policy policy : all_policies()) text += std::string(" ") + policy_name(policy);
-  return text;
+std::vector<std::string> policy_names() {
+  std::vector<std::string> names;
+  for (const Policy policy : all_policies()) names.emplace_back(policy_name(policy));
+  return names;
+}
+
+CLI::Option* add_depth(CLI::App& command, std::string& depth) {
+  return command
+      .add_option("--depth", depth,
+                  "Distribution depth at which trees are cut, or auto [1 to 16, default auto]")
+      ->type_name("N");
 }
 
 void EngineArguments::add_to(CLI::App& command) {
   const std::string group = "Engine";
-  command
-      .add_option("--kernel", kernel, "fast (default: the vector unit of this processor) or scalar")
+  add_choice(command, "--kernel", kernel, "The vector unit of this processor (fast) or scalar",
+             {"fast", "scalar"})
       ->group(group);
-  command
-      .add_option("--workers", workers,
-                  "Threads that share a query; without them the calling thread does all")
-      ->check(CLI::Range(1U, max_workers))
+  add_count(command, "--workers", workers,
+            "Threads that share a query; without them the calling thread does all", 1, max_workers,
+            "none")
       ->group(group);
-  command.add_option("--policy", policy, policy_help())->group(group);
-  command
-      .add_option("--depth", depth, "Distribution depth at which trees are cut, 1 to 16, or auto")
+  add_choice(command, "--policy", policy, "How a job finds its worker", policy_names())
       ->group(group);
+  add_depth(command, depth)->group(group);
 }
 
 Status EngineArguments::check() const {

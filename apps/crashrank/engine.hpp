@@ -31,8 +31,11 @@ struct EngineArguments {
 /// "auto" is `auto_depth`. Errors: usage for what is no distribution depth.
 Result<std::uint32_t> depth_from_text(const std::string& text);
 
-/// What --policy can be told, for help texts.
-std::string policy_help();
+/// What --policy takes.
+std::vector<std::string> policy_names();
+
+/// Adds --depth.
+CLI::Option* add_depth(CLI::App& command, std::string& depth);
 
 /// One query's answer.
 struct Answer {

@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "console.hpp"
+#include "interrupt.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
 
@@ -7,10 +8,12 @@
 #include "crashrank/report/escape.hpp"
 #include "crashrank/report/table.hpp"
 #include "crashrank/tree/model_file.hpp"
+#include "report/orientation.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -83,7 +86,20 @@ std::string to_text(const Compiled& compiled) {
   return text;
 }
 
-Json to_json(const std::string& file, const ImportedMesh& imported) {
+/// What a person would do with a mesh that is as large as a vehicle and seems turned; empty for
+/// others. `model_file`: its frame cannot be changed by options here.
+std::string orientation_hint(const MeshQuality& quality, const ImportTransform& transform,
+                             bool model_file) {
+  if (!detail::has_vehicle_size(quality.extent_m)) return {};
+  const auto turned = detail::guess_orientation(quality.extent_m, transform);
+  if (!turned) return {};
+  return fmt::format(
+      "if this is a vehicle it lies {}; {} with --forward {} --up {} (or the opposite of that "
+      "--forward, which the size does not show)",
+      turned->lies, model_file ? "compile its mesh again" : "read it", turned->forward, turned->up);
+}
+
+Json to_json(const std::string& file, const ImportedMesh& imported, const std::string& hint) {
   const TriangleMesh& mesh = imported.mesh;
   const MeshQuality& quality = imported.quality;
   Json parts = Json::array();
@@ -91,11 +107,15 @@ Json to_json(const std::string& file, const ImportedMesh& imported) {
     parts.push_back({{"name", part.name}, {"triangles", part.triangle_count}});
   }
   const Eigen::Vector3d& extent = quality.extent_m;
+  const Box bounds = mesh.bounds();
   return {{"file", file},
           {"triangles", mesh.size()},
           {"vertices", mesh.vertices.size()},
           {"parts", std::move(parts)},
           {"extent_m", {extent.x(), extent.y(), extent.z()}},
+          {"min_m", {bounds.min.x(), bounds.min.y(), bounds.min.z()}},
+          {"max_m", {bounds.max.x(), bounds.max.y(), bounds.max.z()}},
+          {"orientation_hint", hint.empty() ? Json(nullptr) : Json(hint)},
           {"area_m2", quality.area_m2},
           {"degenerate_triangles", quality.degenerate_triangles},
           {"duplicate_triangles", quality.duplicate_triangles},
@@ -105,7 +125,8 @@ Json to_json(const std::string& file, const ImportedMesh& imported) {
           {"warnings", imported.warnings}};
 }
 
-std::string to_text(const std::string& file, const ImportedMesh& imported, bool colours) {
+std::string to_text(const std::string& file, const ImportedMesh& imported, const std::string& hint,
+                    bool colours) {
   const TriangleMesh& mesh = imported.mesh;
   const MeshQuality& quality = imported.quality;
   std::string text =
@@ -113,6 +134,11 @@ std::string to_text(const std::string& file, const ImportedMesh& imported, bool 
                   escape_terminal(file), mesh.size(), mesh.vertices.size(), quality.extent_m.x(),
                   quality.extent_m.y(), quality.extent_m.z(), quality.area_m2,
                   quality.watertight ? "watertight" : "not watertight");
+  const Box bounds = mesh.bounds();
+  text += fmt::format("  x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} m\n",
+                      bounds.min.x(), bounds.max.x(), bounds.min.y(), bounds.max.y(),
+                      bounds.min.z(), bounds.max.z());
+  if (!hint.empty()) text += "  hint: " + hint + "\n";
   text += fmt::format("  {} degenerate, {} duplicate, {} dropped triangles\n",
                       quality.degenerate_triangles, quality.duplicate_triangles,
                       imported.dropped_triangles);
@@ -145,6 +171,14 @@ int run(const Options& options) {
   if (const Status single = one_standard_input(options.files); !single) return fail(single.error());
   int code = exit_done;
   Json files = Json::array();
+  std::mutex mutex;
+  const PartialAnswer partial([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    Interruption known{{},
+                       fmt::format("{} of {} files are read", files.size(), options.files.size())};
+    if (options.json) known.answer = json_text({{"files", files}});
+    return known;
+  });
   for (const std::string& file : options.files) {
     std::optional<Compiled> compiled;
     Result<ImportedMesh> imported = look_at(file, options.mesh, compiled);
@@ -155,15 +189,19 @@ int run(const Options& options) {
       if (failed == exit_usage) return failed;
       continue;
     }
+    const ImportTransform transform =
+        compiled ? compiled->stored.transform : *options.mesh.transform();
+    const std::string hint = orientation_hint(imported->quality, transform, compiled.has_value());
     if (options.json) {
-      files.push_back(to_json(file, *imported));
+      const std::lock_guard<std::mutex> lock(mutex);
+      files.push_back(to_json(file, *imported, hint));
       if (compiled) files.back()["model"] = to_json(*compiled);
     } else {
-      print(to_text(file, *imported, colours_wanted()));
+      print(to_text(file, *imported, hint, colours_wanted()));
       if (compiled) print(to_text(*compiled));
     }
   }
-  if (options.json) print_json({{"files", std::move(files)}});
+  if (options.json) print_json({{"files", files}});
   return code;
 }
 
@@ -174,6 +212,7 @@ void add_inspect(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("inspect", "Look a mesh or model file over before trusting it");
   command->add_option("MESH", options->files, "Mesh or model files; - is standard input")
+      ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "Answer in JSON");
   options->mesh.add_to(*command);

@@ -1,12 +1,16 @@
 #include "command.hpp"
+#include "completion.hpp"
 #include "console.hpp"
+#include "interrupt.hpp"
 #include "numbers.hpp"
+#include "options.hpp"
 
 #include "base/nearest_word.hpp"
 #include "crashrank/base/library_version.hpp"
 
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -16,8 +20,10 @@ namespace {
 
 constexpr const char* epilogue =
     R"(Data goes to standard output, messages to standard error; - names a standard stream.
-Exit codes: 0 done, 1 internal failure, 2 usage, 3 bad input, 4 a budget ended it with a
-partial answer, or the memory.
+Exit codes: 0 done, 1 internal failure, 2 usage, 3 bad input, 4 a budget or Ctrl-C ended it
+with a partial answer, or the memory.
+
+crashrank help COMMAND prints the options of a command.
 
 Examples:
   crashrank inspect car.obj --json
@@ -65,7 +71,10 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
   std::string text = problem.what();
   text.resize(std::min(text.find('\n'), text.size()));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&problem) != nullptr) text = of_counts(text);
-  if (named == &app && (word == nullptr || word[0] != '-')) {
+  const std::vector<std::string> strangers = named->remaining();
+  if (named == &app && word != nullptr && word[0] == '-') {
+    text = "there is no option '" + std::string(word) + "' before a command";
+  } else if (named == &app) {
     std::vector<std::string> commands;
     for (const CLI::App* known : app.get_subcommands({})) commands.push_back(known->get_name());
     text =
@@ -73,7 +82,6 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
     text += "; choose " + listed(commands);
     if (word != nullptr) text += meant(word, commands);
   }
-  const std::vector<std::string> strangers = named->remaining();
   if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
     text = "not expected:";
     bool numbers = false;
@@ -103,7 +111,17 @@ Status no_empty_values(const CLI::App& command) {
   return Success{};
 }
 
+/// `crashrank help COMMAND` means `crashrank COMMAND --help`.
+std::vector<const char*> without_help_command(int argc, char** argv) {
+  std::vector<const char*> words(argv, argv + argc);
+  if (words.size() < 2 || std::string(words[1]) != "help") return words;
+  words.erase(words.begin() + 1);
+  words.push_back("--help");
+  return words;
+}
+
 int run(int argc, char** argv) {
+  const std::vector<const char*> words = without_help_command(argc, argv);
   CLI::App app("Ranks the crashes a vehicle can still choose, least harmful first.", "crashrank");
   app.set_version_flag("--version", std::string("crashrank ") + library_version());
   app.footer(epilogue);
@@ -115,13 +133,22 @@ int run(int argc, char** argv) {
   add_rank(app, action);
   add_sweep(app, action);
   add_validate(app, action);
+  add_completion(app, action);
+  app.formatter(help_formatter());
   for (CLI::App* command : app.get_subcommands({})) {
+    command->formatter(help_formatter());
     for (CLI::Option* option : command->get_options()) {
       if (option->get_items_expected_max() == 0) option->disable_flag_override();
     }
   }
+  const bool asks_help = argc > 1 && std::string(argv[1]) == "help";
+  const auto is_named = [&](const CLI::App* command) { return command->get_name() == words[1]; };
+  const std::vector<CLI::App*> commands = app.get_subcommands({});
+  if (asks_help && words.size() > 2 && std::none_of(commands.begin(), commands.end(), is_named)) {
+    return usage(app, CLI::ExtrasError("help", {words[1]}), words[1]);
+  }
   try {
-    app.parse(argc, argv);
+    app.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::CallForHelp&) {
     const auto named = app.get_subcommands();
     print(named.empty() ? app.help() : named.front()->help("crashrank"));
@@ -130,15 +157,38 @@ int run(int argc, char** argv) {
     print(app.version() + "\n");
     return finish(exit_done);
   } catch (const CLI::ParseError& problem) {
-    return usage(app, problem, argc > 1 ? argv[1] : nullptr);
+    return usage(app, problem, words.size() > 1 ? words[1] : nullptr);
   }
   if (const Status sound = no_empty_values(*app.get_subcommands().front()); !sound) {
     return fail(sound.error());
   }
-  return finish(action());
+  return finish(run_interruptible(action));
 }
 
 }  // namespace
+
+void add_completion(CLI::App& app, Action& action) {
+  const auto shell = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("completion", "Print a script that lets a shell complete command lines");
+  command->add_option("SHELL", *shell, "bash or zsh")
+      ->check(one_of({"bash", "zsh"}))
+      ->type_name("bash|zsh")
+      ->required();
+  command->footer(
+      "Installed packages bring both scripts. Without:\n"
+      "  bash: eval \"$(crashrank completion bash)\"\n"
+      "  zsh:  crashrank completion zsh > _crashrank, in a folder of fpath\n\n"
+      "Example:\n  crashrank completion bash > "
+      "~/.local/share/bash-completion/completions/crashrank");
+  command->callback([shell, &app, &action] {
+    action = [shell, &app] {
+      print(*shell == "zsh" ? zsh_completion(app) : bash_completion(app));
+      return int{exit_done};
+    };
+  });
+}
+
 }  // namespace crashrank::cli
 
 int main(int argc, char** argv) {

@@ -2,10 +2,14 @@
 
 #include "console.hpp"
 #include "numbers.hpp"
+#include "options.hpp"
 #include "streams.hpp"
 
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -35,6 +39,13 @@ void name_standard_input(std::string& text, const std::string& path) {
   }
 }
 
+/// As options take them.
+std::vector<std::string> axes() {
+  std::vector<std::string> names;
+  for (const auto& [name, axis] : axis_names) names.emplace_back(name);
+  return names;
+}
+
 /// "+x", "-x", "x" and so on.
 std::optional<Axis> parse_axis(std::string text) {
   if (text.size() == 1) text.insert(0, 1, '+');
@@ -44,39 +55,77 @@ std::optional<Axis> parse_axis(std::string text) {
   return std::nullopt;
 }
 
+/// Checked by `transform`, which takes "x" for "+x".
+void add_axis(CLI::App& command, const std::string& name, std::string& axis,
+              const std::string& what) {
+  command.add_option(name, axis, what)
+      ->type_name(fmt::format("{}", fmt::join(axes(), "|")))
+      ->group("Meshes");
+}
+
 }  // namespace
 
 void MeshArguments::add_to(CLI::App& command) {
   const std::string group = "Meshes";
-  command.add_option("--scale", scale, "Metres per file unit (default 1)")
+  command
+      .add_option("--scale", scale,
+                  fmt::format("Metres per file unit [{:g} to {:g}, default {:g}]",
+                              scenario_limits::min_scale, scenario_limits::max_scale, scale))
+      ->type_name("NUMBER")
       ->group(group)
       ->check(one_number("metres per file unit, such as 0.001"));
-  command.add_option("--up", up, "The file's axis that points up (default +z)")->group(group);
-  command.add_option("--forward", forward, "The file's axis that points forward (default +x)")
-      ->group(group);
+  add_axis(command, "--up", up, "The file's axis that points up [default " + up + "]");
+  add_axis(command, "--forward", forward,
+           "The file's axis that points forward [default " + forward + "]");
   command
-      .add_option("--origin", origin, "Point x,y,z in m, after turning and scaling, that becomes 0")
+      .add_option("--origin", origin,
+                  "Point in m, after turning and scaling, that becomes 0 [default " + origin + "]")
+      ->type_name("X,Y,Z")
       ->group(group);
   command.add_option("--format", format, "What standard input holds: obj, stl, ply, off, glb ...")
+      ->type_name("NAME")
       ->group(group);
+}
+
+void SecondMeshArguments::add_to(CLI::App& command) {
+  const std::string group = "Meshes";
+  command.add_option("--scale-b", scale, "The same for body B alone [default as --scale]")
+      ->type_name("NUMBER")
+      ->group(group)
+      ->check(one_number("metres per file unit, such as 0.001"));
+  add_axis(command, "--up-b", up, "The same for body B alone [default as --up]");
+  add_axis(command, "--forward-b", forward, "The same for body B alone [default as --forward]");
+}
+
+MeshArguments SecondMeshArguments::over(const MeshArguments& first) const {
+  MeshArguments second = first;
+  if (!scale && up.empty() && forward.empty()) return second;
+  second.suffix = "-b";
+  if (scale) second.scale = *scale;
+  if (!up.empty()) second.up = up;
+  if (!forward.empty()) second.forward = forward;
+  return second;
 }
 
 Result<ImportTransform> MeshArguments::transform() const {
   ImportTransform made;
   made.scale = scale;
   if (!(scale >= scenario_limits::min_scale && scale <= scenario_limits::max_scale)) {
-    return make_error(ErrorCode::usage, "--scale has to be a number from 1e-6 to 1e6",
+    return make_error(ErrorCode::usage, "--scale" + suffix + " has to be a number from 1e-6 to 1e6",
                       "give metres per file unit, such as 0.001 for millimetres");
   }
   const std::optional<Axis> up_axis = parse_axis(up);
   const std::optional<Axis> forward_axis = parse_axis(forward);
   if (!up_axis || !forward_axis) {
-    const std::string option = up_axis ? "--forward " + forward : "--up " + up;
-    return make_error(ErrorCode::usage, option + ": is no axis", "give +x, -x, +y, -y, +z or -z");
+    const std::string option =
+        up_axis ? "--forward" + suffix + " " + forward : "--up" + suffix + " " + up;
+    return make_error(ErrorCode::usage, option + ": is no axis",
+                      "give " + listed_with_or(axes()) + ", or x, y or z");
   }
   if (static_cast<int>(*up_axis) / 2 == static_cast<int>(*forward_axis) / 2) {
     return make_error(ErrorCode::usage,
-                      "--up " + up + " and --forward " + forward + " are the same axis",
+                      "--up" + suffix + " " + up + " and --forward" + suffix + " " + forward +
+                          " are the same axis",
                       "name both when one of them is not the default");
   }
   made.up = *up_axis;
@@ -148,8 +197,9 @@ Result<ImportedMesh> import_from(const Source& source, const MeshArguments& argu
   if (!transform) return transform.error();
   ImportOptions options;
   options.transform = *transform;
-  Result<ImportedMesh> imported = import_mesh(source.path(), options);
   const std::string shown = source.shown();
+  const Progress progress("reading " + escape_terminal(shown));
+  Result<ImportedMesh> imported = import_mesh(source.path(), options);
   if (!imported) {
     Error error = imported.error();
     error.file = shown;
@@ -226,6 +276,7 @@ Result<LoadedBody> load_body(const std::string& path, const MeshArguments& argum
   const Result<BuildOptions> build = trees.build_options();
   if (!build) return build.error();
   body.stored.transform = *arguments.transform();
+  const Progress progress("building trees of " + escape_terminal(source->shown()));
   const auto start = std::chrono::steady_clock::now();
   Result<Model> model = make_model(std::move(imported->mesh), *build);
   body.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

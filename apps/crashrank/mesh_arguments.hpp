@@ -16,6 +16,7 @@ namespace crashrank::cli {
 
 /// How a command's meshes are to be read, as its options say.
 struct MeshArguments {
+  std::string suffix;  ///< of the options' names: "-b" for the second of two bodies
   double scale = 1.0;
   std::string up = "+z";
   std::string forward = "+x";
@@ -29,6 +30,18 @@ struct MeshArguments {
   Result<ImportTransform> transform() const;
   /// Whether an option asks for other coordinates than the file's.
   bool given() const;
+};
+
+/// The same for the second of two bodies: what is not given is as for the first.
+struct SecondMeshArguments {
+  std::optional<double> scale;
+  std::string up;
+  std::string forward;
+
+  /// Adds --scale-b, --up-b and --forward-b.
+  void add_to(CLI::App& command);
+
+  MeshArguments over(const MeshArguments& first) const;
 };
 
 /// Reads one mesh, standard input for "-". Says every warning on stderr when `tell` is set.

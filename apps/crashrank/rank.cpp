@@ -2,7 +2,10 @@
 #include "console.hpp"
 #include "damage_folder.hpp"
 #include "engine.hpp"
+#include "interrupt.hpp"
 #include "mesh_arguments.hpp"
+#include "options.hpp"
+#include "quick_answer.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
@@ -16,11 +19,15 @@
 #include "crashrank/tree/model.hpp"
 #include "crashrank/tree/model_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -46,6 +53,7 @@ struct Options {
   std::uint64_t work_budget = std::numeric_limits<std::uint64_t>::max();
   bool first_place = false;
   bool engine_given = false;  ///< --policy or --depth
+  bool workers_given = false;
   TreeArguments tree;
 
   bool bounded() const {
@@ -58,7 +66,17 @@ struct Options {
 Result<Scenario> read_scenario(const Options& options) {
   ScenarioPaths paths;
   paths.allowed_folders = options.allowed_folders;
-  if (!is_standard(options.scenario)) return load_scenario_file(options.scenario, paths);
+  if (!is_standard(options.scenario)) {
+    Result<Scenario> scenario = load_scenario_file(options.scenario, paths);
+    if (!scenario && load_profile_file(options.scenario, {})) {
+      return Error{ErrorCode::bad_input,
+                   options.scenario,
+                   {},
+                   "is a profile, not a scenario",
+                   "name a scenario, and this file with --profile"};
+    }
+    return scenario;
+  }
   const Result<std::string> text = read_text("-", scenario_limits::file_bytes);
   if (!text) return text.error();
   return load_scenario(*text, "standard input", paths);
@@ -75,11 +93,23 @@ Error name_allow(Error error) {
   return error;
 }
 
+bool is_scenario(const std::string& path) {
+  const Result<std::string> text = read_text(path, scenario_limits::file_bytes);
+  return text && parse_scenario(*text, path);
+}
+
 /// The scenario's own, the profile over it, the command line over both.
 Result<HarmOptions> read_harm(const Options& options, const Scenario& scenario) {
   HarmOptions harm = scenario.harm;
   if (!options.profile.empty()) {
     const Result<HarmOptions> profile = load_profile_file(options.profile, harm);
+    if (!profile && is_scenario(options.profile)) {
+      return Error{ErrorCode::bad_input,
+                   options.profile,
+                   {},
+                   "is a scenario, not a profile",
+                   "name it without --profile; a profile is a file after data/profile.schema.json"};
+    }
     if (!profile) return profile.error();
     harm = *profile;
   }
@@ -91,7 +121,9 @@ Result<HarmOptions> read_harm(const Options& options, const Scenario& scenario) 
   return harm;
 }
 
-Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& trees) {
+/// Says what is to be warned of in the meshes, and adds it to `warnings`.
+Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& trees,
+                                       std::vector<std::string>& warnings) {
   const Result<BuildOptions> build = trees.build_options();
   if (!build) return build.error();
   ScenarioModelOptions how;
@@ -106,7 +138,10 @@ Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& 
     }
     Result<LoadedScenarioModel> read = load_scenario_model(wanted, how);
     if (!read) return read.error();
-    for (const std::string& warning : read->warnings) warn(wanted.path, warning);
+    for (const std::string& warning : read->warnings) {
+      warn(wanted.path, warning);
+      warnings.push_back(wanted.path + ": " + warning);
+    }
     add_stated_mass(read->stated, wanted);
     models.push_back(std::move(read->model));
     progress.update(models.size());
@@ -142,16 +177,20 @@ Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario
   return ranker->explain(*candidates, answer);
 }
 
-/// Tells on standard error what the table or the JSON says inside, for who reads the exit code.
-void tell_end(const Options& options, const RankResult& ranked, bool answered) {
+/// Says what is to be warned of in the options and the end of the ranking, and adds it.
+void warn_of_end(const Options& options, const RankResult& ranked, bool answered,
+                 std::vector<std::string>& warnings) {
+  const std::size_t before = warnings.size();
   if (options.engine_given && options.bounded()) {
-    warn("", "--policy and --depth have no part in an answer within a budget");
+    warnings.emplace_back("--policy and --depth have no part in an answer within a budget");
   }
-  if (answered) return;
-  const char* const why = options.bounded() ? "the budget ended before every score was known"
-                                            : "a search for a contact came to no end";
-  warn("", std::string(why) + ": a partial answer, its first place " +
-               (ranked.proved ? "proved" : "not proved"));
+  if (!answered) {
+    const char* const why = options.bounded() ? "the budget ended before every score was known"
+                                              : "a search for a contact came to no end";
+    warnings.push_back(std::string(why) + ": a partial answer, its first place " +
+                       (ranked.proved ? "proved" : "not proved"));
+  }
+  for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
 }
 
 int run(const Options& options) {
@@ -188,42 +227,59 @@ int run(const Options& options) {
       !sound) {
     return fail(sound.error());
   }
-  const DamageOptions damage{options.damage_folder, options.damage_top, inputs, options.report};
+  DamageOptions damage{options.damage_folder, options.damage_top, inputs, options.report};
+  damage.workers =
+      options.workers_given ? options.workers : std::max(1U, std::thread::hardware_concurrency());
   if (!options.damage_folder.empty()) {
     if (const Status sound = check_damage_folder(damage); !sound) return fail(sound.error());
   }
-  const Result<std::vector<Model>> models = load_models(*scenario, options.tree);
+  std::vector<std::string> warnings;
+  const Result<std::vector<Model>> models = load_models(*scenario, options.tree, warnings);
   if (!models) return fail(models.error());
-  const Result<RankResult> ranked = options.bounded()
-                                        ? rank_bounded(options, *scenario, *models, how)
-                                        : rank(*scenario, *models, how);
+  const auto text_of = [&](const RankResult& result, std::vector<std::string> more) {
+    if (options.json) return ranking_json(*scenario, *models, result, more);
+    // A page on standard output stands alone.
+    if (is_standard(options.report)) return std::string();
+    RankingTextOptions text;
+    text.top = options.top;
+    text.colours = colours_wanted();
+    return ranking_text(*scenario, *models, result, text);
+  };
+  const Result<RankResult> ranked = [&] {
+    const Progress progress("ranking");
+    QuickAnswer quick(*scenario, *models, how, [&](const RankResult& result) {
+      std::vector<std::string> more = warnings;
+      more.emplace_back("the ranking was interrupted: a partial answer");
+      return text_of(result, more);
+    });
+    const PartialAnswer partial([&] { return quick.tell(); });
+    return options.bounded() ? rank_bounded(options, *scenario, *models, how)
+                             : rank(*scenario, *models, how);
+  }();
   if (!ranked) {
     Error error = ranked.error();
     if (error.file.empty()) error.file = options.scenario;
     return fail(error);
   }
+  const bool answered = ranked->complete || (options.first_place && ranked->proved);
+  const PartialAnswer partial([&, so_far = warnings] {
+    return Interruption{text_of(*ranked, so_far),
+                        "the ranking is complete, files of --damage and --report are missing"};
+  });
   if (!options.damage_folder.empty()) {
     const Status written = write_damage(damage, *scenario, *models, *ranked);
     if (!written) return fail(written.error());
   }
   if (!options.report.empty()) {
+    const Progress progress("writing the report");
     const Status written = write_report(options.report, html_report(*scenario, *models, *ranked));
     if (!written) return fail(written.error());
   }
-  // A page on standard output stands alone.
-  if (options.json) {
-    print(ranking_json(*scenario, *models, *ranked));
-  } else if (!is_standard(options.report)) {
-    RankingTextOptions text;
-    text.top = options.top;
-    text.colours = colours_wanted();
-    print(ranking_text(*scenario, *models, *ranked, text));
-  }
-  const bool answered = ranked->complete || (options.first_place && ranked->proved);
-  for (const std::string& doubt : ranking_doubts(*scenario, *ranked)) {
+  warn_of_end(options, *ranked, answered, warnings);
+  print(text_of(*ranked, warnings));
+  for (const std::string& doubt : ranking_doubts(*scenario, *models, *ranked)) {
     warn(options.scenario, doubt);
   }
-  tell_end(options, *ranked, answered);
   return answered ? exit_done : exit_budget;
 }
 
@@ -244,82 +300,83 @@ void add_rank(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("rank", "Rank the crashes that a scenario leaves, least harmful first");
-  command
-      ->add_option("SCENARIO", options->scenario,
-                   "Scenario file; - is standard input, its meshes then relative to this folder")
+  add_file(*command, "SCENARIO", options->scenario,
+           "Scenario file; - is standard input, its meshes then relative to this folder")
       ->required();
-  command->add_option("--measure", options->measure,
-                      "What is compared: harm, delta-v, energy, intrusion, polygons, area or "
-                      "closing-energy (default: as the scenario says, else harm)");
-  command->add_option("--risk-model", options->risk_model,
-                      "Curves that harm is counted with: tum (default), malliaris-monfort, "
-                      "malliaris-rosen or joksch-monfort");
-  command->add_option("--profile", options->profile,
-                      "Whose harm counts for how much, and ranges of what is not known: a file "
-                      "after data/profile.schema.json, over what the scenario says");
+  add_choice(*command, "--measure", options->measure, "What is compared",
+             {"harm", "delta-v", "energy", "intrusion", "polygons", "area", "closing-energy"},
+             "as the scenario says, else harm");
+  add_choice(*command, "--risk-model", options->risk_model, "Curves that harm is counted with",
+             {"tum", "malliaris-monfort", "malliaris-rosen", "joksch-monfort"},
+             "as the scenario says, else tum");
+  add_file(*command, "--profile", options->profile,
+           "Whose harm counts for how much, and ranges of what is not known: a file after "
+           "data/profile.schema.json, over what the scenario says");
   command->add_flag("--json", options->json, "Answer in JSON, every candidate");
-  command->add_option("--top", options->top, "Candidates in the table, 0 for all (default 20)")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}));
-  command
-      ->add_option("--workers", options->workers,
-                   "Threads that share the work; the answer is the same (default 1)")
-      ->check(CLI::Range(1U, max_workers));
+  add_count(*command, "--top", options->top, "Candidates in the table, 0 for all", 0, 1'000'000);
+  const CLI::Option* const workers =
+      add_count(*command, "--workers", options->workers,
+                "Threads that share the work; the answer is the same. --damage uses all processors "
+                "unless told otherwise",
+                1, max_workers);
   command
       ->add_option(
           "--deadline-ms", options->deadline_ms,
           "Answer within this time, in what is known by then; counted from the call, "
           "meshes and trees being ready; ranges of what is not known are varied after it, and of a "
           "complete answer alone; polygons, area and intrusion end the candidate that they have "
-          "begun")
-      ->check(CLI::Range(0.0, 1e9))
-      ->check([](const std::string& text) {
-        return text.find_first_of("nN") == std::string::npos ? std::string()
-                                                             : "'" + text + "' is no time";
-      });
-  command
-      ->add_option("--work-budget", options->work_budget,
-                   "Answer in what is known after this many tests of boxes, triangles and "
-                   "facets; the same on every machine")
-      ->check(whole_number());
+          "begun [0 to 1e9, default: none]")
+      ->type_name("MS")
+      ->check(number_from(0.0, 1e9, "milliseconds"));
+  add_count(*command, "--work-budget", options->work_budget,
+            "Answer in what is known after this many tests of boxes, triangles and facets; the "
+            "same on every machine",
+            0, 999'999'999'999'999'999U, "none");
   command->add_flag(
       "--first-place", options->first_place,
       "Look closer only at those that can still be first, and answer when that is proved");
-  const CLI::Option* const policy = command->add_option("--policy", options->policy, policy_help());
-  const CLI::Option* const depth =
-      command->add_option("--depth", options->depth,
-                          "Distribution depth at which trees are cut, 1 to 16, or auto (default)");
+  const CLI::Option* const policy = add_choice(*command, "--policy", options->policy,
+                                               "How a job finds its worker", policy_names());
+  const CLI::Option* const depth = add_depth(*command, options->depth);
   // An unset variable of a script must not lose the answer, and a folder is no stream.
   const CLI::Validator named(
       [](const std::string& text) {
         return text.empty() || text == "-" ? "'" + text + "' names no folder" : std::string();
       },
-      "FOLDER", "named");
+      "", "named");
   command
       ->add_option("--damage", options->damage_folder,
                    "Folder for GLB, PLY and PNG of the bodies with their damage in red")
+      ->type_name("FOLDER")
       ->check(named);
-  command
-      ->add_option(
-          "--report", options->report,
-          "HTML page with table, plans, parts and a 3-D view of both bodies; - is standard "
-          "output, without the table")
+  add_file(*command, "--report", options->report,
+           "HTML page with table, plans, parts and a 3-D view of both bodies; - is standard "
+           "output, without the table")
       ->check([](const std::string& text) {
         return text.empty() ? std::string("names no file") : std::string();
       });
-  command
-      ->add_option("--damage-top", options->damage_top,
-                   "Colliding candidates written there, best first, 0 for all (default 5)")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}));
+  add_count(*command, "--damage-top", options->damage_top,
+            "Colliding candidates written there, best first, 0 for all", 0, 1'000'000);
+  const CLI::Validator folder(
+      [](const std::string& text) {
+        std::error_code ignored;
+        return std::filesystem::is_directory(text, ignored)
+                   ? std::string()
+                   : "'" + text + "' is no folder: name one that is there";
+      },
+      "", "folder");
   command
       ->add_option("--allow", options->allowed_folders,
                    "Another folder that meshes may be read from; may be repeated")
-      ->check(CLI::ExistingDirectory)
+      ->check(folder)
+      ->type_name("FOLDER")
       ->type_size(1)
       ->allow_extra_args(false);
   options->tree.add_to(*command);
   command->footer(epilogue);
-  command->callback([options, policy, depth, &action] {
+  command->callback([options, policy, depth, workers, &action] {
     options->engine_given = policy->count() > 0 || depth->count() > 0;
+    options->workers_given = workers->count() > 0;
     action = [options] { return run(*options); };
   });
 }

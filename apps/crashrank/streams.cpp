@@ -130,6 +130,7 @@ Result<StandardInputFile> StandardInputFile::receive(std::size_t limit,
                       "let TMPDIR name a folder that can be written to");
   }
   StandardInputFile received;
+  received.own_ = std::make_unique<UnfinishedFile>(own);
   received.path_.reset(new std::string((fs::path(own) / ("stdin." + extension)).string()));
   const File file(std::fopen(received.path().c_str(), "wbx"));
   if (!file) {
@@ -183,6 +184,10 @@ Result<OutputFile> OutputFile::open(const std::string& path, const OutputKind& k
   out.path_ = path;
   if (is_standard(path)) return out;
   if (const Status free = can_be_replaced(path, kind); !free) return free.error();
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored) || !fs::exists(path, ignored)) {
+    out.unfinished_ = std::make_unique<UnfinishedFile>(plain(path).string());
+  }
   const int links = kind.follow_links ? 0 : O_NOFOLLOW;
   const int descriptor =
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | links, 0666);
@@ -204,6 +209,7 @@ void OutputFile::write(const std::string& text) {
 Status OutputFile::close() {
   if (!file_) return Success{};  // `finish` speaks for standard output
   if (std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
+  unfinished_.reset();
   if (error_ == 0) return Success{};
   return file_error(ErrorCode::internal, path_, std::string("cannot write: ") + strerror(error_));
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "interrupt.hpp"
+
 #include "crashrank/base/result.hpp"
 
 #include <cstddef>
@@ -29,6 +31,7 @@ private:
   struct Remove {
     void operator()(const std::string* path) const;
   };
+  std::unique_ptr<UnfinishedFile> own_;
   std::unique_ptr<const std::string, Remove> path_;
 };
 
@@ -50,7 +53,7 @@ Status can_be_written(const std::string& path, const OutputKind& kind,
                       const std::vector<std::string>& inputs,
                       const std::string& folder_to_make = {});
 
-/// A text file being written, or standard output for "-".
+/// A file being written, or standard output for "-". An interruption removes it.
 class OutputFile {
 public:
   /// Errors: not_found; usage for a file of another kind.
@@ -65,7 +68,8 @@ private:
     void operator()(std::FILE* file) const;
   };
   std::string path_;
-  std::unique_ptr<std::FILE, Close> file_;  ///< empty for standard output
+  std::unique_ptr<UnfinishedFile> unfinished_;  ///< for a file that an interruption would cut
+  std::unique_ptr<std::FILE, Close> file_;      ///< empty for standard output
   int error_ = 0;
 };
 

@@ -1,7 +1,10 @@
 #include "command.hpp"
 #include "console.hpp"
+#include "engine.hpp"
+#include "interrupt.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
+#include "options.hpp"
 #include "poses.hpp"
 #include "streams.hpp"
 #include "sweep_plot.hpp"
@@ -14,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -31,6 +35,7 @@ struct Options {
   std::string a;
   std::string b;
   MeshArguments mesh;
+  SecondMeshArguments mesh_b;
   TreeArguments tree;
   std::string poses_file;
   std::string depths = "1:16";
@@ -131,8 +136,8 @@ Result<SweepOptions> sweep_options(const Options& options) {
   return how;
 }
 
-Result<Model> load_one(const std::string& path, const Options& options) {
-  Result<LoadedBody> loaded = load_body(path, options.mesh, options.tree, true);
+Result<Model> load_one(const std::string& path, const MeshArguments& mesh, const Options& options) {
+  Result<LoadedBody> loaded = load_body(path, mesh, options.tree, true);
   if (!loaded) return loaded.error();
   return std::move(loaded->stored.model);
 }
@@ -146,15 +151,35 @@ Json measured(const SweepRow& row, double value) {
   return row.end == DispatchEnd::ok ? Json(value) : Json(nullptr);
 }
 
-Json to_json(const SweepRow& row) {
+/// Where no job was handed out nothing was sped up.
+bool has_speedup(const SweepRow& row) { return row.end == DispatchEnd::ok && row.jobs > 0.0; }
+
+/// Threads cannot speed up more than the processors that they run on, nor virtual cores more than
+/// their number: what does is an effect of measuring.
+bool exceeds_cores(const SweepRow& row, const Sweep& sweep) {
+  const std::uint32_t threads = sweep.machine.processors + 1;  // the calling thread works, too
+  return has_speedup(row) &&
+         (row.speedup > std::min(sweep.processors, threads) || row.replayed_speedup > threads);
+}
+
+constexpr const char* excess_note =
+    "more than the number of processors: serial and dispatched runs met another speed of the "
+    "machine or other caches; raise --repeat";
+
+Json speedup_json(const SweepRow& row, double value) {
+  return has_speedup(row) ? Json(value) : Json(nullptr);
+}
+
+Json to_json(const SweepRow& row, const Sweep& sweep) {
   return {{"depth", row.depth},
           {"policy", policy_name(row.policy)},
           {"jobs", row.jobs},
           {"seconds", measured(row, row.seconds)},
           {"serial_seconds", row.serial_seconds},
-          {"speedup", measured(row, row.speedup)},
+          {"speedup", speedup_json(row, row.speedup)},
           {"replayed_seconds", measured(row, row.replayed_seconds)},
-          {"replayed_speedup", measured(row, row.replayed_speedup)},
+          {"replayed_speedup", speedup_json(row, row.replayed_speedup)},
+          {"speedup_note", exceeds_cores(row, sweep) ? Json(excess_note) : Json(nullptr)},
           {"relative_transfer", measured(row, row.relative_transfer)},
           {"replayed_relative_transfer", measured(row, row.replayed_relative_transfer)},
           {"transferred_bytes", measured(row, row.transferred_bytes)},
@@ -164,7 +189,7 @@ Json to_json(const SweepRow& row) {
 
 Json to_json(const Options& options, const Sweep& sweep) {
   Json rows = Json::array();
-  for (const SweepRow& row : sweep.rows) rows.push_back(to_json(row));
+  for (const SweepRow& row : sweep.rows) rows.push_back(to_json(row, sweep));
   const VirtualMachine& machine = sweep.machine;
   return {{"rows", std::move(rows)},
           {"a", options.a},
@@ -189,7 +214,7 @@ Json to_json(const Options& options, const Sweep& sweep) {
 std::string to_csv(const Sweep& sweep) {
   std::string text;
   for (const SweepRow& row : sweep.rows) {
-    const Json cells = to_json(row);
+    const Json cells = to_json(row, sweep);
     if (text.empty()) {
       for (const auto& [name, value] : cells.items()) text += (text.empty() ? "" : ",") + name;
       text += '\n';
@@ -222,14 +247,20 @@ std::string to_text(const Options& options, const Sweep& sweep) {
   const auto cell = [](const SweepRow& row, double value, int digits) {
     return row.end == DispatchEnd::ok ? fmt::format("{:.{}f}", value, digits) : std::string("-");
   };
+  const auto speedup = [&](const SweepRow& row, double value) {
+    if (!has_speedup(row)) return std::string("-");
+    return fmt::format("{:.2f}{}", value, exceeds_cores(row, sweep) ? "*" : "");
+  };
+  bool excess = false;
   for (const SweepRow& row : sweep.rows) {
+    excess = excess || exceeds_cores(row, sweep);
     table.add_row({std::to_string(row.depth), policy_name(row.policy),
                    fmt::format("{:.0f}", row.jobs), fmt::format("{:.1f}", row.serial_seconds * 1e6),
-                   cell(row, row.seconds * 1e6, 1), cell(row, row.speedup, 2),
-                   cell(row, row.replayed_speedup, 2), cell(row, row.relative_transfer, 3),
+                   cell(row, row.seconds * 1e6, 1), speedup(row, row.speedup),
+                   speedup(row, row.replayed_speedup), cell(row, row.relative_transfer, 3),
                    cell(row, row.replayed_relative_transfer, 3), status_of(row)});
   }
-  return table.text(colours_wanted()) +
+  return table.text(colours_wanted()) + (excess ? fmt::format("* {}\n", excess_note) : "") +
          fmt::format("{} workers on {} processors; replayed on {} virtual cores.\n",
                      options.workers, sweep.processors, options.workers);
 }
@@ -237,8 +268,10 @@ std::string to_text(const Options& options, const Sweep& sweep) {
 int run(const Options& options) {
   Result<SweepOptions> how = sweep_options(options);
   if (!how) return fail(how.error());
-  if (const Result<ImportTransform> transform = options.mesh.transform(); !transform) {
-    return fail(transform.error());
+  for (const MeshArguments& mesh : {options.mesh, options.mesh_b.over(options.mesh)}) {
+    if (const Result<ImportTransform> transform = mesh.transform(); !transform) {
+      return fail(transform.error());
+    }
   }
   const std::vector<std::string> inputs{options.a, options.b, options.poses_file};
   if (const Status sound = can_be_written(options.plot, svg_picture, inputs); !sound) {
@@ -246,13 +279,26 @@ int run(const Options& options) {
   }
   const Result<std::vector<Pose>> poses = read_poses(options.poses_file);
   if (!poses) return fail(poses.error());
-  const Result<Model> a = load_one(options.a, options);
+  const Result<Model> a = load_one(options.a, options.mesh, options);
   if (!a) return fail(a.error());
-  const Result<Model> b = load_one(options.b, options);
+  const Result<Model> b = load_one(options.b, options.mesh_b.over(options.mesh), options);
   if (!b) return fail(b.error());
-  const auto progress = std::make_shared<Progress>("sweeping", how->depths.size());
-  how->progress = [progress](std::size_t done, std::size_t) { progress->update(done); };
-  const Result<Sweep> swept = sweep(*a, *b, *poses, *how);
+  Result<Sweep> swept = Sweep{};
+  {
+    Progress progress("sweeping", how->depths.size());
+    std::atomic<std::size_t> depths_done{0};
+    how->progress = [&](std::size_t done, std::size_t) {
+      progress.update(done);
+      depths_done = done;
+    };
+    const PartialAnswer partial([&] {
+      return Interruption{{},
+                          fmt::format("{} of {} depths are measured; rows are complete after "
+                                      "the last one, so name fewer with --depths",
+                                      depths_done.load(), how->depths.size())};
+    });
+    swept = sweep(*a, *b, *poses, *how);
+  }
   if (!swept) return fail(swept.error());
   if (!options.plot.empty()) {
     Result<OutputFile> out = OutputFile::open(options.plot, svg_picture);
@@ -278,7 +324,9 @@ int run(const Options& options) {
 
 constexpr const char* epilogue =
     R"(Every pose is a query of its own with empty stores; --batch makes them one dispatch. A row's
-numbers are means over the poses. speedup is measured here; replayed_speedup is that of the recorded
+numbers are means over the poses. serial_seconds is measured at each depth, in turn with the
+dispatches that it is compared with. A row without jobs has no speedup; one above the number of
+processors is marked with the reason (speedup_note in JSON). speedup is measured here; replayed_speedup is that of the recorded
 jobs on as many virtual cores as workers, with wake-ups and copying charged as measured. A row whose
 cores ran out of memory has status out_of_memory, null (in CSV nothing) for what was cut short, and
 is a gap in the plot; the exit code is 0 all the same.
@@ -293,41 +341,40 @@ void add_sweep(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "sweep", "Compare the policies that hand a query's node pairs to cores, depth by depth");
-  command->add_option("A", options->a, "Mesh or model file of body A; - is standard input")
+  add_file(*command, "A", options->a, "Mesh or model file of body A; - is standard input")
       ->required();
-  command->add_option("B", options->b, "Mesh or model file of body B")->required();
-  command
-      ->add_option("--poses", options->poses_file,
-                   "File with one row-major 4x4 matrix of B in A a line; - is standard input")
+  add_file(*command, "B", options->b, "Mesh or model file of body B")->required();
+  add_file(*command, "--poses", options->poses_file,
+           "File with one row-major 4x4 matrix of B in A a line; - is standard input")
       ->required();
-  command->add_option("--depths", options->depths, "Distribution depths, FIRST:LAST or a list")
-      ->capture_default_str();
-  command->add_option("--policies", options->policies, "all, or a list separated by commas")
-      ->capture_default_str();
-  command->add_option("--workers", options->workers, "Worker threads, and virtual cores")
-      ->check(CLI::Range(1U, max_workers))
-      ->capture_default_str();
-  command->add_option("--buffer", options->buffer, "Jobs that are sent to a core en masse")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
-  command->add_option("--store", options->store, "private: cores copy parts; shared: they do not")
-      ->check(CLI::IsMember({"private", "shared"}))
-      ->capture_default_str();
   command
-      ->add_option("--memory", options->memory, "Bytes of each core's store; 0 (default): no limit")
-      ->check(whole_number());
+      ->add_option("--depths", options->depths,
+                   "Distribution depths, FIRST:LAST or a list [1 to 16, default 1:16]")
+      ->type_name("LIST");
+  command
+      ->add_option(
+          "--policies", options->policies,
+          "all, or a list with commas of " + listed_with_or(policy_names()) + " [default all]")
+      ->type_name("LIST");
+  add_count(*command, "--workers", options->workers, "Worker threads, and virtual cores", 1,
+            max_workers);
+  add_count(*command, "--buffer", options->buffer, "Jobs that are sent to a core together", 1,
+            65536);
+  add_choice(*command, "--store", options->store, "Cores copy parts (private) or do not (shared)",
+             {"private", "shared"});
+  add_count(*command, "--memory", options->memory, "Bytes of each core's store, 0 for no limit", 0,
+            999'999'999'999'999'999U);
   command->add_flag("--batch", options->batch, "All poses in one dispatch");
-  command->add_option("--kernel", options->kernel, "Engine that works on the jobs")
-      ->check(CLI::IsMember({"scalar", "fast"}))
-      ->capture_default_str();
-  command->add_option("--repeat", options->repeat, "Measurements; the median is told")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  command->add_option("--plot", options->plot, "Draw the curves into this SVG file");
+  add_choice(*command, "--kernel", options->kernel, "Engine that works on the jobs",
+             {"scalar", "fast"});
+  add_count(*command, "--repeat", options->repeat, "Measurements, of which the median counts", 1,
+            10000);
+  add_file(*command, "--plot", options->plot, "Draw the curves into this SVG file");
   command->add_flag("--json", options->json, "Answer in JSON");
   command->add_flag("--csv", options->csv, "Answer in CSV");
   options->tree.add_to(*command);
   options->mesh.add_to(*command);
+  options->mesh_b.add_to(*command);
   command->footer(epilogue);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

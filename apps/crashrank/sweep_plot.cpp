@@ -58,7 +58,8 @@ public:
   void draw(const Panel& panel) {
     double most = 0.0;
     for (const SweepRow& row : sweep_.rows) {
-      if (row.end == DispatchEnd::ok) most = std::max(most, panel.value(row, replayed_));
+      if (row.end == DispatchEnd::ok && row.jobs > 0.0)
+        most = std::max(most, panel.value(row, replayed_));
     }
     if (!(most > 0.0)) most = 1.0;
     const double step = tick_step(most);
@@ -126,7 +127,7 @@ private:
     };
     for (const SweepRow& row : sweep_.rows) {
       if (row.policy != style.policy) continue;
-      if (row.end != DispatchEnd::ok) {  // trimmed
+      if (row.end != DispatchEnd::ok || row.jobs == 0.0) {  // trimmed, or nothing to share
         flush();
         continue;
       }

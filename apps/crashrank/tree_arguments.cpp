@@ -1,8 +1,11 @@
 #include "tree_arguments.hpp"
 
+#include "options.hpp"
+
 #include <array>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace crashrank::cli {
 namespace {
@@ -24,18 +27,21 @@ template <class Table> auto find(const Table& table, const std::string& name) {
   return found;
 }
 
+template <class Table> std::vector<std::string> names(const Table& table) {
+  std::vector<std::string> all;
+  for (const auto& [known, value] : table) all.emplace_back(known);
+  return all;
+}
+
 }  // namespace
 
 void TreeArguments::add_to(CLI::App& command) {
   const std::string group = "Trees";
-  command
-      .add_option("--split", split,
-                  "How triangles are split: min-relative-segment (default), paper, sah, median")
-      ->group(group);
-  command
-      .add_option("--frame", frame,
-                  "Along what the boxes stand: world (default) or gaussian, the axes of the "
-                  "vertices' covariance")
+  add_choice(command, "--split", split, "How triangles are split", names(rules))->group(group);
+  add_choice(
+      command, "--frame", frame,
+      "Axes of the boxes: the body's (world) or those of its vertices' covariance (gaussian)",
+      names(frames))
       ->group(group);
 }
 

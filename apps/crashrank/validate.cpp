@@ -3,7 +3,9 @@
 #include "crash_test_pairs.hpp"
 #include "crash_test_rig.hpp"
 #include "crash_test_rows.hpp"
+#include "interrupt.hpp"
 #include "json.hpp"
+#include "options.hpp"
 #include "streams.hpp"
 #include "validate_pairs.hpp"
 
@@ -14,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -45,16 +48,20 @@ struct Outcome {
   }
 };
 
-Result<std::vector<Outcome>> run_all(const RigCar& car, const std::vector<CrashTestRow>& rows,
-                                     RigShape shape, Progress& progress, std::size_t done) {
-  std::vector<Outcome> outcomes;
-  for (const CrashTestRow& row : rows) {
-    Result<ContactOutcome> contact = run_crash_test(car, row.test, shape);
-    if (!contact) return contact.error();
-    outcomes.push_back({*contact});
-    progress.update(++done);
-  }
-  return outcomes;
+/// Of as many rows as have been run, which an interruption asks for.
+struct Outcomes {
+  std::mutex mutex;
+  std::vector<Outcome> list;
+};
+
+Status run_row(const RigCar& car, const CrashTestRow& row, RigShape shape, Progress& progress,
+               Outcomes& outcomes) {
+  Result<ContactOutcome> contact = run_crash_test(car, row.test, shape);
+  if (!contact) return contact.error();
+  const std::lock_guard<std::mutex> lock(outcomes.mutex);
+  outcomes.list.push_back({*contact});
+  progress.advance();
+  return Success{};
 }
 
 TestErrors errors_of(const std::vector<CrashTestRow>& rows, const std::vector<Outcome>& outcomes) {
@@ -128,48 +135,77 @@ std::string table_text(const std::vector<CrashTestRow>& rows, const std::vector<
   return text;
 }
 
+std::string barriers_text(const Options& options, const std::vector<CrashTestRow>& rows,
+                          const std::vector<Outcome>& outcomes, const std::vector<Outcome>& boxes) {
+  if (!options.json) return table_text(rows, outcomes, boxes);
+  Json entries = Json::array();
+  for (std::size_t i = 0; i < rows.size(); ++i) entries.push_back(row_json(rows[i], outcomes[i]));
+  Json document{{"rows", std::move(entries)}};
+  document["shape"] = options.boxes ? "boxes" : "meshes";
+  document.update(errors_of(rows, outcomes).json());
+  return json_text(document);
+}
+
+template <class T> std::vector<T> first_of(const std::vector<T>& all, std::size_t count) {
+  return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
 int run_barriers(const Options& options, const RigCar& car, const std::vector<CrashTestRow>& rows) {
-  const bool only_boxes = options.boxes;
-  const bool both = !options.json && !only_boxes;
+  const bool both = !options.json && !options.boxes;
   Progress progress("crashing", rows.size() * (both ? 2 : 1));
-  const Result<std::vector<Outcome>> outcomes =
-      run_all(car, rows, only_boxes ? RigShape::boxes : RigShape::meshes, progress, 0);
-  if (!outcomes) return fail(outcomes.error());
-  if (options.json) {
-    Json entries = Json::array();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      entries.push_back(row_json(rows[i], (*outcomes)[i]));
+  Outcomes outcomes;
+  Outcomes boxes;
+  const PartialAnswer partial([&] {
+    const std::lock_guard<std::mutex> lock(outcomes.mutex);
+    const std::lock_guard<std::mutex> lock_boxes(boxes.mutex);
+    const std::size_t done = both ? boxes.list.size() : outcomes.list.size();
+    Interruption known{{}, fmt::format("{} of {} tests are complete", done, rows.size())};
+    if (done == 0) return known;
+    known.answer = barriers_text(options, first_of(rows, done), first_of(outcomes.list, done),
+                                 first_of(both ? boxes.list : outcomes.list, done));
+    return known;
+  });
+  const RigShape shape = options.boxes ? RigShape::boxes : RigShape::meshes;
+  for (const CrashTestRow& row : rows) {
+    if (Status run = run_row(car, row, shape, progress, outcomes); !run) return fail(run.error());
+    if (!both) continue;
+    if (Status run = run_row(car, row, RigShape::boxes, progress, boxes); !run) {
+      return fail(run.error());
     }
-    Json document{{"rows", std::move(entries)}};
-    document["shape"] = only_boxes ? "boxes" : "meshes";
-    document.update(errors_of(rows, *outcomes).json());
-    print_json(document);
-    return exit_done;
   }
-  Result<std::vector<Outcome>> boxes =
-      both ? run_all(car, rows, RigShape::boxes, progress, rows.size()) : outcomes;
-  if (!boxes) return fail(boxes.error());
-  print(table_text(rows, *outcomes, *boxes));
+  print(barriers_text(options, rows, outcomes.list, both ? boxes.list : outcomes.list));
   return exit_done;
+}
+
+std::string pairs_answer(const Options& options, const std::vector<PairTest>& tests,
+                         const std::vector<PairOutcome>& outcomes) {
+  if (!options.json) return pairs_text(tests, outcomes);
+  Json document = pairs_json(tests, outcomes);
+  document["shape"] = options.boxes ? "boxes" : "meshes";
+  return json_text(document);
 }
 
 int run_pairs(const Options& options, const RigCar& car, const std::vector<PairTest>& tests) {
   const RigShape shape = options.boxes ? RigShape::boxes : RigShape::meshes;
   Progress progress("crashing", tests.size());
+  std::mutex mutex;
   std::vector<PairOutcome> outcomes;
+  const PartialAnswer partial([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    Interruption known{{},
+                       fmt::format("{} of {} tests are complete", outcomes.size(), tests.size())};
+    if (outcomes.empty()) return known;
+    known.answer = pairs_answer(options, first_of(tests, outcomes.size()), outcomes);
+    return known;
+  });
   for (const PairTest& test : tests) {
     Result<PairOutcome> outcome = run_pair_test(car, test, shape);
     if (!outcome) return fail_in(options.rows, outcome.error());
+    const std::lock_guard<std::mutex> lock(mutex);
     outcomes.push_back(std::move(*outcome));
-    progress.update(outcomes.size());
+    progress.advance();
   }
-  if (!options.json) {
-    print(pairs_text(tests, outcomes));
-    return exit_done;
-  }
-  Json document = pairs_json(tests, outcomes);
-  document["shape"] = options.boxes ? "boxes" : "meshes";
-  print_json(document);
+  print(pairs_answer(options, tests, outcomes));
   return exit_done;
 }
 
@@ -226,10 +262,9 @@ Examples:
 void add_validate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("validate", "Simulate measured crash tests from meshes");
-  command->add_option("ROWS", options->rows, "Table of tests; - is standard input")->required();
-  command->add_option("--car", options->car,
-                      "Mesh of the car, listed in models.json beside it (default: the shipped "
-                      "saloon)");
+  add_file(*command, "ROWS", options->rows, "Table of tests; - is standard input")->required();
+  add_file(*command, "--car", options->car,
+           "Mesh of the car, listed in models.json beside it [default: the shipped saloon]");
   command->add_flag("--json", options->json, "Answer in JSON");
   command->add_flag("--boxes", options->boxes, "Replace both bodies by their bounding boxes");
   command->footer(epilogue);

@@ -1,6 +1,7 @@
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "report/body_doubts.hpp"
 #include "report/ranking_words.hpp"
 
 #include <fmt/format.h>
@@ -15,23 +16,7 @@
 namespace crashrank {
 namespace {
 
-/// Things of one kind: how many there are, and words about the first few.
-struct Counted {
-  static constexpr std::size_t described = 3;
-  std::size_t count = 0;
-  std::string first;
-
-  void add(const std::string& words) {
-    if (count < described) first += (count == 0 ? "" : "; ") + words;
-    ++count;
-  }
-  std::string examples() const {
-    return count <= described ? first : fmt::format("{}; and {} more", first, count - described);
-  }
-  std::string many(const char* one, const char* more) const {
-    return count == 1 ? fmt::format("1 {}", one) : fmt::format("{} {}", count, more);
-  }
-};
+using detail::Counted;
 
 /// How far a candidate was followed: to its first contact; not at all where that is not known.
 double followed_s(const Scenario& scenario, const CandidateResult& ranked) {
@@ -179,13 +164,15 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
 
 }  // namespace
 
-std::vector<std::string> ranking_doubts(const Scenario& scenario, const RankResult& result) {
+std::vector<std::string> ranking_doubts(const Scenario& scenario, View<const Model> models,
+                                        const RankResult& result) {
   std::vector<std::string> doubts;
   doubt_speeds(result, doubts);
   doubt_crowds(result, doubts);
   doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_actors(scenario, doubts);
+  detail::doubt_bodies(scenario, models, result, doubts);
   doubt_keys(scenario, doubts);
   return doubts;
 }

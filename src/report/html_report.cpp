@@ -90,7 +90,7 @@ private:
         result_.complete ? "" : "are known to ", measure_name(result_.measure),
         escape_xml(measure_unit(result_.measure)), result_.elapsed_s * 1e3,
         result_.complete ? "" : "; the answer is partial");
-    for (const std::string& doubt : ranking_doubts(scenario_, result_)) {
+    for (const std::string& doubt : ranking_doubts(scenario_, models_, result_)) {
       out_ += "<p class='note'>Doubtful: " + escape_xml(doubt) + ".</p>\n";
     }
   }

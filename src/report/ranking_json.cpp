@@ -303,7 +303,12 @@ Json effort_json(const RankerEffort& effort) {
 }  // namespace
 
 std::string ranking_json(const Scenario& scenario, View<const Model> models,
-                         const RankResult& result) {
+                         const RankResult& result, View<const std::string> warnings) {
+  Json all_warnings = Json::array();
+  for (const std::string& warning : warnings) all_warnings.push_back(warning);
+  for (std::string& doubt : ranking_doubts(scenario, models, result)) {
+    all_warnings.push_back(std::move(doubt));
+  }
   Json in_race = Json::array();
   for (const std::size_t candidate : result.in_race) {
     in_race.push_back(result.candidates[candidate].name);
@@ -340,6 +345,7 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
                 {"proved", result.proved},
                 {"in_race", std::move(in_race)},
                 {"elapsed_s", result.elapsed_s},
+                {"warnings", std::move(all_warnings)},
                 {"ego", body_json(scenario, "ego", result.ego)},
                 {"actors", std::move(actors)},
                 {"work",

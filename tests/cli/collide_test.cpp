@@ -257,4 +257,38 @@ TEST(Collide, TheTableTellsTheModelledTimeBesideTheMeasuredOne) {
   EXPECT_EQ(run.out.find('\x1b'), std::string::npos);  // no terminal, no colours
 }
 
+TEST(Collide, TheSecondBodyMayHaveAxesAndAScaleOfItsOwn) {
+  const Workplace place;
+  place.write("metres.obj", cli_test::box_obj("a", -1, -0.9, 0, 3, 0.9, 1.5));
+  // The same body in millimetres, y up and z forward.
+  place.write("turned.obj", cli_test::box_obj("a", -900, 0, -1000, 900, 1500, 3000));
+  const std::vector<std::string> own{"--scale-b", "0.001", "--up-b", "y", "--forward-b", "+z"};
+  for (const std::string pose : {"3.9,0,0,0,0,0", "4.1,0,0,0,0,0", "1,1.7,0,20,0,0"}) {
+    const Json alike =
+        place.crashrank({"collide", "metres.obj", "metres.obj", "--pose", pose, "--json"}).json();
+    std::vector<std::string> arguments{"collide", "metres.obj", "turned.obj",
+                                       "--pose",  pose,         "--json"};
+    arguments.insert(arguments.end(), own.begin(), own.end());
+    const Outcome run = place.crashrank(arguments);
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(run.json()["queries"][0]["intersecting"], alike["queries"][0]["intersecting"])
+        << pose;
+  }
+  // What is not given is as for the first body.
+  const std::vector<std::string> poses{"--pose", "3.9,0,0,0,0,0", "--json"};
+  std::vector<std::string> both{"collide", "turned.obj", "turned.obj", "--scale", "0.001",
+                                "--up",    "+y",         "--forward",  "+z"};
+  both.insert(both.end(), poses.begin(), poses.end());
+  const Outcome first = place.crashrank(both);
+  ASSERT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(first.json()["queries"][0]["intersecting"], true);
+  // Options for the second body alone leave a model file for the first one.
+  ASSERT_EQ(place.crashrank({"compile", "metres.obj", "-o", "a.crm"}).code, 0);
+  std::vector<std::string> mixed{"collide", "a.crm", "turned.obj"};
+  mixed.insert(mixed.end(), own.begin(), own.end());
+  mixed.insert(mixed.end(), poses.begin(), poses.end());
+  const Outcome model = place.crashrank(mixed);
+  EXPECT_EQ(model.code, 0) << model.err;
+}
+
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -30,6 +32,13 @@ TEST(Inspect, JsonHasTheContractsShape) {
   EXPECT_NEAR(extent[0], 4.0, 1e-6);
   EXPECT_NEAR(extent[1], 1.8, 1e-6);
   EXPECT_NEAR(extent[2], 1.3, 1e-6);
+  for (const auto& [key, wanted] : std::vector<std::pair<std::string, std::vector<double>>>{
+           {"min_m", {-1.0, -0.9, 0.2}}, {"max_m", {3.0, 0.9, 1.5}}}) {
+    const std::vector<double> corner = file.at(key);
+    ASSERT_EQ(corner.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(corner[i], wanted[i], 1e-6) << key;
+  }
+  EXPECT_TRUE(file.at("orientation_hint").is_null());
   EXPECT_EQ(file.at("degenerate_triangles"), 0);
   EXPECT_EQ(file.at("non_finite_vertices"), 0);
   EXPECT_EQ(file.at("watertight"), true);
@@ -47,6 +56,35 @@ TEST(Inspect, TheMeshOptionsTurnAndScale) {
   EXPECT_NEAR(extent[0], 4.0, 1e-6);
   EXPECT_NEAR(extent[1], 1.8, 1e-6);
   EXPECT_NEAR(extent[2], 1.3, 1e-6);
+}
+
+TEST(Inspect, TheBoundingBoxAndAHintForTurnedVehiclesArePrinted) {
+  const Workplace place;
+  place.write("side.obj", cli_test::box_obj("body", -0.9, -1, 0.2, 0.9, 3, 1.5));
+  const Outcome side = place.crashrank({"inspect", "side.obj"});
+  EXPECT_NE(side.out.find("  x -0.9 to 0.9, y -1 to 3, z 0.2 to 1.5 m\n"), std::string::npos)
+      << side.out;
+  EXPECT_NE(side.out.find("lies sideways (along y); read it with --forward +y --up +z"),
+            std::string::npos)
+      << side.out;
+  // y up, as in glTF; what the hint says mends it.
+  place.write("tall.obj", cli_test::box_obj("body", -0.9, 0.2, -1, 0.9, 1.5, 3));
+  const Outcome tall = place.crashrank({"inspect", "tall.obj", "--json"});
+  const std::string hint = tall.json()["files"][0]["orientation_hint"];
+  EXPECT_NE(hint.find("upright (along z); read it with --forward +z --up +y"), std::string::npos);
+  for (const std::vector<std::string>& axes :
+       std::vector<std::vector<std::string>>{{"tall.obj", "--forward", "+z", "--up", "+y"},
+                                             {"side.obj", "--forward", "+y", "--up", "+z"}}) {
+    std::vector<std::string> arguments{"inspect", "--json"};
+    arguments.insert(arguments.end(), axes.begin(), axes.end());
+    EXPECT_TRUE(place.crashrank(arguments).json()["files"][0]["orientation_hint"].is_null());
+  }
+  // Neither a wall nor what is too small for a vehicle.
+  place.write("wall.obj", cli_test::box_obj("wall", 0, -5, 0, 0.25, 5, 2.5));
+  place.write("crate.obj", cli_test::box_obj("crate", 0, 0, 0, 0.6, 1.2, 1));
+  for (const std::string file : {"wall.obj", "crate.obj"}) {
+    EXPECT_EQ(place.crashrank({"inspect", file}).out.find("hint"), std::string::npos) << file;
+  }
 }
 
 TEST(Inspect, SizesNoRoadUserHasAreWarnedAbout) {

@@ -69,6 +69,8 @@ TEST(RankDeadline, APartialAnswerAndOptionsWithoutPartAreToldOnStandardError) {
   EXPECT_NE(cut.err.find("a partial answer, its first place not proved"), std::string::npos)
       << cut.err;
   EXPECT_TRUE(cli_test::is_one_message(cut.err)) << cut.err;
+  ASSERT_EQ(cut.json().at("warnings").size(), 1U);
+  EXPECT_NE(cut.err.find(cut.json().at("warnings")[0].get<std::string>()), std::string::npos);
   EXPECT_EQ(ranked(place, {"--deadline-ms", "100000"}).err, "");
   const Outcome idle = ranked(place, {"--deadline-ms", "100000", "--policy", "random"});
   EXPECT_EQ(idle.code, 0);

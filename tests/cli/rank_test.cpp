@@ -176,6 +176,47 @@ TEST(Rank, DamageIsWrittenInFormatsThatAreReadBack) {
   EXPECT_EQ(place.read("out/" + stem + ".png").substr(1, 3), "PNG");
 }
 
+TEST(Rank, BodiesThatOnlyOthersHitHaveDamageFilesToo) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  // A car before the stone: the ego pushes it into the stone.
+  place.write("scenario.json", R"({
+  "scenario_version": 1,
+  "models": {
+    "ego": {"mesh": "ego.obj", "kind": "car", "mass_kg": 1500},
+    "block": {"mesh": "block.obj", "kind": "barrier"}
+  },
+  "ego": {"model": "ego", "speed_mps": 20},
+  "candidates": {"listed": [{"name": "straight", "acceleration_mps2": 0}], "grid": false,
+                 "add_straight_braking": false},
+  "actors": [{"name": "parked", "model": "ego", "pose": {"x_m": 8}},
+             {"name": "stone", "model": "block", "pose": {"x_m": 11.5}}],
+  "horizon_s": 3
+})");
+  const Json answer = ranked(place, {"--damage", "out"});
+  bool is_hit_by_ego = false;
+  bool is_hit_by_parked = false;
+  for (const Json& contact : answer.at("ranking")[0].at("contacts")) {
+    const std::vector<std::string> bodies = contact.at("bodies");
+    is_hit_by_ego = is_hit_by_ego || (bodies == std::vector<std::string>{"ego", "stone"});
+    is_hit_by_parked = is_hit_by_parked ||
+                       (bodies == std::vector<std::string>{"parked", "stone"}) ||
+                       (bodies == std::vector<std::string>{"stone", "parked"});
+  }
+  ASSERT_TRUE(is_hit_by_parked && !is_hit_by_ego) << answer.at("ranking")[0].at("contacts").dump();
+  const std::vector<std::string> files = place.list("out");
+  EXPECT_EQ(files,
+            (std::vector<std::string>{"001-straight-1-parked.glb", "001-straight-1-parked.ply",
+                                      "001-straight-2-stone.glb", "001-straight-2-stone.ply",
+                                      "001-straight-ego.glb", "001-straight-ego.ply",
+                                      "001-straight-ego.png", "001-straight.png"}));
+  // The files are the same for every number of threads.
+  ranked(place, {"--damage", "again", "--workers", "3"});
+  for (const std::string& file : files) {
+    EXPECT_EQ(place.read("out/" + file), place.read("again/" + file)) << file;
+  }
+}
+
 TEST(Rank, NothingIsWrittenOutsideTheDamageFolder) {
   const Workplace place;
   cli_test::write_box_scenario(place);

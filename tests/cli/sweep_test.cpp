@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -194,6 +195,37 @@ TEST(Sweep, ThePlotIsSvgWithEscapedNames) {
   EXPECT_EQ(svg.find("<c>"), std::string::npos);
   for (const char* policy : {"best-match", "random", "lowest", "best-match-load", "late-match"}) {
     EXPECT_NE(svg.find(std::string(">") + policy + "<"), std::string::npos) << policy;
+  }
+}
+
+TEST(Sweep, WithoutJobsThereIsNoSpeedupAndAnExcessHasAReason) {
+  const Balls balls;
+  balls.place.write("poses.txt", "1 0 0 50 0 1 0 0 0 0 1 0 0 0 0 1\n");  // far apart
+  const std::vector<std::string> few{"--depths", "1:4", "--workers", "1"};
+  std::vector<std::string> json = few;
+  json.emplace_back("--json");
+  const Outcome run = balls.sweep(json);
+  ASSERT_EQ(run.code, 0) << run.err;
+  for (const Json& row : run.json()["rows"]) {
+    EXPECT_EQ(row["jobs"], 0.0);
+    EXPECT_GT(row["serial_seconds"].get<double>(), 0.0);
+    EXPECT_TRUE(row["speedup"].is_null());
+    EXPECT_TRUE(row["replayed_speedup"].is_null());
+    EXPECT_TRUE(row["speedup_note"].is_null());
+  }
+  // A second body of its own scale: half as large, a pose that only touches at full size.
+  balls.place.write("poses.txt", "1 0 0 1.8 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  for (const std::string scale : {"1", "0.5"}) {
+    const Outcome scaled = balls.sweep({"--json", "--depths", "3", "--scale-b", scale});
+    ASSERT_EQ(scaled.code, 0) << scaled.err;
+    const Json answer = scaled.json();
+    for (const Json& row : answer["rows"]) {
+      EXPECT_EQ(row["speedup"].is_null(), row["jobs"] == 0.0);
+      if (!row["speedup"].is_number()) continue;
+      const double cores = std::min(5.0, answer["processors"].get<double>());
+      EXPECT_EQ(row["speedup_note"].is_string(), row["speedup"].get<double>() > cores ||
+                                                     row["replayed_speedup"].get<double>() > 5.0);
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -28,6 +29,87 @@ TEST(Usage, HelpAndVersionAreData) {
     EXPECT_EQ(help.err, "");
     EXPECT_NE(help.out.find("Example"), std::string::npos) << help.out;
   }
+}
+
+TEST(Usage, HelpIsACommandToo) {
+  const Workplace place;
+  EXPECT_EQ(place.crashrank({"help"}).out, place.crashrank({"--help"}).out);
+  for (const std::string command :
+       {"inspect", "compile", "collide", "rank", "sweep", "validate", "completion"}) {
+    const Outcome help = place.crashrank({"help", command});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_EQ(help.out, place.crashrank({command, "--help"}).out);
+  }
+  const Outcome wrong = place.crashrank({"help", "rnak"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("there is no command 'rnak'"), std::string::npos) << wrong.err;
+  EXPECT_NE(wrong.err.find("did you mean 'rank'?"), std::string::npos) << wrong.err;
+}
+
+TEST(Usage, HelpShowsRangesDefaultsAndKnownWords) {
+  const Workplace place;
+  const std::string sweep = place.crashrank({"sweep", "--help"}).out;
+  const std::string rank = place.crashrank({"rank", "--help"}).out;
+  for (const auto& [help, words] : std::vector<std::pair<std::string, std::string>>{
+           {sweep, "[1 to 65536, default 8]"},
+           {sweep, "[1 to 64, default 4]"},
+           {sweep, "--store private|shared"},
+           {sweep, "[default private]"},
+           {rank, "[0 to 1000000, default 20]"},
+           {rank, "--measure harm|delta-v|energy|intrusion|polygons|area|closing-energy"},
+           {rank, "--damage FOLDER"}}) {
+    EXPECT_NE(help.find(words), std::string::npos) << words << '\n' << help;
+  }
+}
+
+TEST(Usage, CompletionKnowsCommandsOptionsAndTheirWords) {
+  const Workplace place;
+  const std::string script = place.crashrank({"completion", "bash"}).out;
+  place.write("complete.bash", script);
+  const auto completed = [&](const std::string& line) {
+    const Outcome run = place.shell(
+        "bash -c 'source complete.bash && COMP_WORDS=(" + line +
+        ") && COMP_CWORD=$((${#COMP_WORDS[@]} - 1)) && _crashrank && echo \"${COMPREPLY[*]}\"'");
+    EXPECT_EQ(run.err, "");
+    return run.out;
+  };
+  EXPECT_EQ(completed("crashrank in"), "inspect\n");
+  EXPECT_EQ(completed("crashrank rank --mea"), "--measure\n");
+  EXPECT_EQ(completed("crashrank rank --measure de"), "delta-v\n");
+  EXPECT_EQ(completed("crashrank rank --top 1"), "\n");
+  EXPECT_EQ(completed("crashrank inspect comp"), "complete.bash\n");
+  EXPECT_EQ(completed("crashrank help va"), "validate\n");
+  EXPECT_EQ(completed("crashrank completion z"), "zsh\n");
+  // Every option that a command's help shows is in both scripts.
+  const std::string zsh = place.crashrank({"completion", "zsh"}).out;
+  EXPECT_EQ(zsh.rfind("#compdef crashrank\n", 0), 0U);
+  for (const char* command : {"inspect", "compile", "collide", "rank", "sweep", "validate"}) {
+    std::istringstream help(place.crashrank({command, "--help"}).out);
+    for (std::string line; std::getline(help, line);) {
+      const std::size_t at = line.find("--");
+      if (line.rfind("  -", 0) != 0 || at > 6) continue;
+      const std::string option = line.substr(at, line.find_first_of(" ,", at) - at);
+      EXPECT_NE(script.find(option), std::string::npos) << option;
+      EXPECT_NE(zsh.find("'" + option + "["), std::string::npos) << option;
+    }
+  }
+  EXPECT_EQ(place.crashrank({"completion", "fish"}).code, 2);
+}
+
+TEST(Usage, AScenarioIsNoProfileAndAProfileNoScenario) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  place.write("profile.json", R"({"profile_version": 1, "friction": 0.4})");
+  const Outcome scenario = place.crashrank({"rank", "scenario.json", "--profile", "scenario.json"});
+  EXPECT_EQ(scenario.code, 3);
+  EXPECT_NE(scenario.err.find("scenario.json: is a scenario, not a profile; name it without"),
+            std::string::npos)
+      << scenario.err;
+  const Outcome profile = place.crashrank({"rank", "profile.json"});
+  EXPECT_EQ(profile.code, 3);
+  EXPECT_NE(profile.err.find("profile.json: is a profile, not a scenario; name a scenario"),
+            std::string::npos)
+      << profile.err;
 }
 
 TEST(Usage, AWrongCommandIsNamedBesideTheRightOnes) {
@@ -131,6 +213,17 @@ TEST(Usage, HowOftenAnOptionOrItsValueIsThereIsToldInPlainWords) {
            {{"rank", "s.json", "--top", "3", "--top", "4"}, "--top is given more than once"},
            {{"rank", "s.json", "--first-place=3"}, "--first-place takes no value"},
            {{"collide", "a.obj", "a.obj", "--any=5"}, "--any takes no value"},
+           {{"--verson"},
+            "there is no option '--verson' before a command; did you mean '--version'?"},
+           {{"rank", "s.json", "--deadline-ms", "abc"},
+            "--deadline-ms: 'abc' is not a number: give milliseconds from 0 to"},
+           {{"rank", "s.json", "--deadline-ms", "-1"}, "-1 is out of range: give milliseconds"},
+           {{"rank", "s.json", "--workers", "99"},
+            "--workers: 99 is out of range: give a whole number from 1 to 64"},
+           {{"inspect", "a.obj", "--scale", "2m"},
+            "'2m' is not a number: give metres per file unit"},
+           {{"rank", "s.json", "--measure", "arae"}, "did you mean 'area'?"},
+           {{"rank", "s.json", "--allow", "nix"}, "'nix' is no folder"},
            {{"inspect", "a.obj", "--origin", "1e300,0,0"}, "lies farther than 1e7 m"}}) {
     const Outcome run = place.crashrank(arguments);
     EXPECT_EQ(run.code, 2);
@@ -186,6 +279,9 @@ TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
            {"collide", "a.obj", "a.obj", "--repeat", "0"},
            {"collide", "a.obj", "a.obj", "--split", "guess"},
            {"collide", "a.obj", "a.obj", "--frame", "moving"},
+           {"collide", "a.obj", "a.obj", "--up-b", "sideways"},
+           {"collide", "a.obj", "a.obj", "--up-b", "+x"},
+           {"collide", "a.obj", "a.obj", "--scale-b", "0"},
            {"collide", "a.obj", "a.obj", "--kernel", "quick"},
            {"collide", "a.obj", "a.obj", "--workers", "0"},
            {"collide", "a.obj", "a.obj", "--workers", "2", "--policy", "best"},

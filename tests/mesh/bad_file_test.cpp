@@ -37,6 +37,13 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(at, what.size(), by);
 }
 
+// A tetrahedron's corners and two faces, the second as given, on line 8.
+std::string off_with_face(const std::string& face) {
+  return "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n" + face + "\n";
+}
+
+std::string text_stl() { return test::as_stl_text(test::eighths_soup()); }
+
 std::string polygon(std::size_t corners) {
   std::ostringstream out;
   for (std::size_t i = 0; i < corners; ++i) {
@@ -186,7 +193,23 @@ std::vector<Case> cases() {
        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
        "property float z\nend_header\n0 0 0\n1 1 1\n",
        "no triangles"},
-      {"promises.off", replaced(test::as_off(soup), "108 36", "353535235358 36"), ""},
+      {"promises.off", replaced(test::as_off(soup), "108 36", "353535235358 36"),
+       "ends after 144 of the 353535235358 vertices"},
+      {"index.off", off_with_face("3 0 1 4"), "line 8: face 1 names vertex '4', but there are 4"},
+      {"negative.off", off_with_face("3 0 1 -1"), "line 8: face 1 names vertex '-1'"},
+      {"corners.off", off_with_face("4 0 1 2"), "line 8: face 1 has 3 of its 4 corners"},
+      {"cut.off", off_with_face(""), "ends after 1 of the 2 faces"},
+      {"comments.off", off_with_face("\n3 0 1 3 255 0 0 # red"), "", 2},
+      {"comment_among.off", off_with_face("# one\n3 0 1 3"), "", 1,
+       "1 of 2 lines of faces were passed over"},
+      {"decagon.off", off_with_face("10 0 1 3 0 1 3 0 1 3 2"), "", 1, "more than nine corners"},
+      {"one_line.off", replaced(off_with_face("3 0 1 3"), "OFF\n", "OFF "), "", 2},
+      {"in_facet.stl", text_stl().substr(0, text_stl().rfind("endloop")), "", 36,
+       "ends within facet 36"},
+      {"no_end.stl", text_stl().substr(0, text_stl().rfind("endsolid")), "", 36,
+       "ends without endsolid"},
+      {"in_vertex.stl", text_stl().substr(0, text_stl().rfind("vertex") + 3),
+       "ends within facet 36"},
       {"accessor.glb", one_box_glb("\"count\":36", "\"count\":9999"), "out of range"},
       {"index.glb", glb_with_index(60'000), "", 11, "1 face", 1},
       {"cycle.glb",

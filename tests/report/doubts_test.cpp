@@ -19,14 +19,46 @@ Motion planned(double begin_mps, double end_mps, double end_s) {
   return *Motion::timed(std::vector<TimedPose>{{0.0, {}}, {0.5 * end_s, middle}, {end_s, last}});
 }
 
+/// A closed box with that size, on the ground.
+Model box_body(double length_m, double width_m, double height_m) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner(i % 2 * length_m, i / 2 % 2 * width_m, i / 4 * height_m);
+    mesh.vertices.push_back(corner.cast<float>());
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {1, 3, 7}, {1, 7, 5}, {3, 2, 6}, {3, 6, 7}, {2, 0, 4}, {2, 4, 6}};
+  mesh.parts = {{"body", 0, 12}};
+  Result<Model> model = make_model(std::move(mesh));
+  EXPECT_TRUE(model.ok());
+  return std::move(*model);
+}
+
 /// Nothing doubtful: the ego drives 20 m/s, the second candidate hits at 10 m/s after 0.5 s.
 struct Sound : Told {
   Sound() {
     scenario.ego.speed_mps = 20.0;
     scenario.horizon_s = 3.0;
     result.measure = Measure::harm;
+    models[0] = box_body(4.5, 1.8, 1.4);
   }
-  std::vector<std::string> doubts() const { return ranking_doubts(scenario, result); }
+  std::vector<std::string> doubts() const { return ranking_doubts(scenario, models, result); }
+
+  /// Lets the second actor be a car of that size and mass at a place.
+  void set_car(const Model& car, double mass_kg, const Eigen::Vector3d& at_m) {
+    models.push_back(car);
+    ScenarioModel model;
+    model.name = "other car";
+    scenario.models.push_back(model);
+    scenario.actors[1].model = models.size() - 1;
+    scenario.actors[1].pose.translation = at_m;
+    result.actors[1] = {models.size() - 1, mass_kg, false};
+  }
+  void expect_one(const std::string& beginning) const {
+    const std::vector<std::string> all = doubts();
+    ASSERT_EQ(all.size(), 1U) << testing::PrintToString(all);
+    EXPECT_EQ(all[0].rfind(beginning, 0), 0U) << all[0];
+  }
 };
 
 TEST(Doubts, ThereAreNoneOfAnOrdinaryRanking) { EXPECT_TRUE(Sound().doubts().empty()); }
@@ -166,6 +198,88 @@ TEST(Doubts, ActorsWhosePosesEndWhileTheyMoveAreTold) {
   told.scenario.actors[1].poses = {{0.0, {}}, {0.2, away}};
   ASSERT_EQ(told.doubts().size(), 1U);
   EXPECT_NE(told.doubts()[0].find("'second', at 0.2 s and 20.0 m/s"), std::string::npos);
+}
+
+TEST(Doubts, MeshesThatSeemTurnedAreToldWithTheAxesThatMendIt) {
+  const Eigen::Vector3d away(30.0, 0.0, 0.0);
+  Sound fine;
+  fine.set_car(box_body(4.5, 1.8, 1.4), 1500.0, away);
+  EXPECT_TRUE(fine.doubts().empty()) << testing::PrintToString(fine.doubts());
+  Sound sideways;
+  sideways.set_car(box_body(1.8, 4.5, 1.4), 1500.0, away);
+  sideways.expect_one(
+      "models.other car: the car is 1.8 x 4.5 x 1.4 m (length x width x height): it seems to lie "
+      "sideways (along y); read its mesh with forward +y (or its opposite) and up +z");
+  Sound upright;
+  upright.set_car(box_body(1.8, 1.4, 4.5), 1500.0, away);
+  upright.expect_one(
+      "models.other car: the car is 1.8 x 1.4 x 4.5 m (length x width x height): it seems to lie "
+      "upright (along z); read its mesh with forward +z (or its opposite) and up +y");
+  // Named in the axes of the file, whatever it was read with.
+  upright.scenario.models.back().transform.forward = Axis::plus_y;
+  upright.scenario.models.back().transform.up = Axis::plus_x;
+  EXPECT_NE(upright.doubts()[0].find("forward +x (or its opposite) and up +z"), std::string::npos)
+      << upright.doubts()[0];
+}
+
+TEST(Doubts, SizesAndStatedMassesThatNoBodyOfTheKindHasAreTold) {
+  const Eigen::Vector3d away(30.0, 0.0, 0.0);
+  Sound huge;
+  huge.set_car(box_body(12.0, 2.5, 2.0), 1500.0, away);
+  huge.expect_one(
+      "models.other car: the car is 12 x 2.5 x 2 m (length x width x height), but such a body is 2 "
+      "to 7.5 m long; check its scale");
+  huge.scenario.models.back().kind = BodyKind::bus;
+  EXPECT_TRUE(huge.doubts().empty());
+  Sound light;
+  light.set_car(box_body(4.5, 1.8, 1.4), 1.7, away);
+  light.expect_one(
+      "models.other car: the car has a mass of 1.7 kg, but such a body has 250 to 6000 kg");
+  light.result.actors[1].mass_guessed = true;
+  EXPECT_TRUE(light.doubts().empty());
+}
+
+TEST(Doubts, BodiesThatFloatAreTold) {
+  Sound told;
+  told.set_car(box_body(4.5, 1.8, 1.4), 1500.0, {30.0, 0.0, 1.0});
+  EXPECT_TRUE(told.doubts().empty()) << "the road may climb";
+  told.scenario.actors[1].pose.translation = {6.0, 0.0, 1.2};
+  told.expect_one("1 body floats above the ground that the ego stands on: 'second' by 1.2 m");
+  told.scenario.actors[1].pose.translation.z() = -1.3;
+  told.expect_one("the ego floats: it stands 1.3 m or more above the other");
+}
+
+TEST(Doubts, TwoOthersThatOverlapAtTimeZeroAreTold) {
+  Sound told;
+  told.set_car(box_body(4.5, 1.8, 1.4), 1500.0, {30.0, 0.0, 0.0});
+  told.scenario.actors.push_back(told.scenario.actors[1]);
+  told.scenario.actors[2].name = "third";
+  told.result.actors.push_back(told.result.actors[1]);
+  const std::string words = "1 pair of bodies overlaps at time 0: 'second' and 'third'";
+  told.expect_one(words);
+  told.scenario.actors[2].pose.translation = {34.4, 1.7, 0.0};
+  told.expect_one(words);
+  told.scenario.actors[2].pose.translation = {34.6, 1.7, 0.0};
+  EXPECT_TRUE(told.doubts().empty());
+  // One wholly inside the other: no triangles meet.
+  told.models.push_back(box_body(2.1, 1.0, 0.8));
+  told.scenario.models.push_back(told.scenario.models.back());
+  told.scenario.actors[2].model = told.result.actors[2].model = told.models.size() - 1;
+  told.scenario.actors[2].pose.translation = {31.0, 0.4, 0.3};
+  told.expect_one(words);
+}
+
+TEST(Doubts, JsonListsThemAfterTheWarningsGiven) {
+  Sound told;
+  told.scenario.keys_without_effect = {"crush"};
+  const std::vector<std::string> given{"car.obj: \"odd\""};
+  const std::string json = ranking_json(told.scenario, told.models, told.result, given);
+  EXPECT_NE(json.find(R"("warnings": [
+    "car.obj: \"odd\"",
+    "the scenario sets crush, which is without effect; leave it out"
+  ])"),
+            std::string::npos)
+      << json;
 }
 
 TEST(Doubts, ThePageTellsThem) {

@@ -19,9 +19,11 @@ namespace crashrank {
 /// candidate's entry `other` and the time and speed beside it are those of its first contact, the
 /// damage of `ego` and `other` that of all its contacts together, `other` being all other bodies.
 /// `contacts` lists the ego's and those between others by their begins, each with its own damage.
-/// Units stand in the keys; angles are degrees.
+/// Units stand in the keys; angles are degrees. `warnings` are those given, such as the importer's,
+/// then `ranking_doubts`.
 CRASHRANK_API std::string ranking_json(const Scenario& scenario, View<const Model> models,
-                                       const RankResult& result);
+                                       const RankResult& result,
+                                       View<const std::string> warnings = {});
 
 /// What the table shows.
 struct RankingTextOptions {
@@ -39,9 +41,11 @@ CRASHRANK_API std::string ranking_text(const Scenario& scenario, View<const Mode
 /// What makes places of an answer doubtful though nothing is wrong with it, one sentence each,
 /// names as they are: contacts faster than the crash model reaches, more contacts than
 /// are simulated, bodies that overlap at the start, listed manoeuvres beyond the grip of the tyres,
-/// timed poses that end while their body moves or begin at another speed than the ego's, keys of
-/// the scenario that are without effect.
+/// timed poses that end while their body moves or begin at another speed than the ego's, meshes
+/// that seem turned or have a size or mass that no body of their kind has, bodies that float, keys
+/// of the scenario that are without effect. At most the squared number of bodies.
 CRASHRANK_API std::vector<std::string> ranking_doubts(const Scenario& scenario,
+                                                      View<const Model> models,
                                                       const RankResult& result);
 
 }  // namespace crashrank

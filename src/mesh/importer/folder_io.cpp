@@ -67,6 +67,8 @@ private:
   std::size_t position_ = 0;
 };
 
+constexpr const char* missing = "is missing";
+
 // Only these formats spread over files: material libraries, by whatever name, and buffers.
 bool may_name_files(const std::string& format) {
   return format == "obj" || format == "gltf" || format == "glb";
@@ -126,7 +128,7 @@ std::string FolderIo::resolve(const std::string& name, std::string& reason) cons
   std::string real = real_path(folder_ + relative);
   if (real.empty()) real = real_path(folder_ + percent_decoded(relative));
   if (real.empty()) {
-    reason = "is missing";
+    reason = missing;
     return {};
   }
   if (real.compare(0, folder_.size(), folder_) != 0) {
@@ -188,7 +190,9 @@ Assimp::IOStream* FolderIo::Open(const char* file, const char* mode) {
   std::string reason;
   const int descriptor = open_inside(file, reason);
   if (descriptor < 0) {
-    note(file, reason);
+    // An OBJ file names nothing but material libraries, which no answer depends on.
+    const bool harmless = extension_ == "obj" && reason == missing;
+    if (!harmless) note(file, reason);
     return nullptr;
   }
   return std::make_unique<DescriptorStream>(descriptor, true, 0, size_of(descriptor)).release();

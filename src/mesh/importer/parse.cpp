@@ -5,6 +5,7 @@
 #include "mesh/importer/folder_io.hpp"
 #include "mesh/importer/gltf_count.hpp"
 #include "mesh/importer/obj_fault.hpp"
+#include "mesh/importer/text_checks.hpp"
 
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -78,13 +79,22 @@ std::uint64_t polygons_in(const aiScene& scene) {
   return polygons;
 }
 
-// Told where lines of faces in an OBJ file came to nothing.
-std::string passed_over(const aiScene& scene, std::uint64_t lines) {
+// The number of faces that the lines of an OBJ or OFF file mean, 0 for other formats.
+Result<std::uint64_t> check_lines(const Request& request) {
+  if (request.extension == "obj") return check_obj_lines(STDIN_FILENO);
+  if (request.extension == "off") return check_off_lines(STDIN_FILENO);
+  return std::uint64_t{0};
+}
+
+// A warning where lines of faces came to nothing; empty where none did.
+std::string passed_over(const aiScene& scene, std::uint64_t lines, const Request& request) {
   const std::uint64_t read = polygons_in(scene);
   if (lines <= read) return {};
+  const char* const why = request.extension == "off"
+                              ? "they have more than nine corners, or comments stand among them"
+                              : "they are indented, cut or have fewer than three corners";
   return std::to_string(lines - read) + " of " + std::to_string(lines) +
-         " lines of faces were passed over: they are indented, cut or have fewer than three "
-         "corners, and the surface lacks them";
+         " lines of faces were passed over: " + why + ", and the surface lacks them";
 }
 
 void configure(Assimp::Importer& importer) {
@@ -139,6 +149,8 @@ Error parser_error(const std::string& text, const FolderIo& files, const Request
   if (text.find("STL storage representation") != std::string::npos) {
     error.reason = "it is neither a text nor a binary STL file, or it was cut";
     error.remedy = "name the file after its format, or export it again";
+  } else if (request.extension == "stl") {
+    if (const std::string cut = describe_stl_cut(STDIN_FILENO); !cut.empty()) error.reason = cut;
   }
   if (!files.refused().empty()) {
     error.reason = files.refused().front();
@@ -152,9 +164,7 @@ Error parser_error(const std::string& text, const FolderIo& files, const Request
 Result<Parsed> parse(const Request& request) {
   const Result<Content> content = look_at(STDIN_FILENO, request.extension);
   if (!content) return content.error();
-  const Result<std::uint64_t> face_lines = request.extension == "obj"
-                                               ? check_obj_lines(STDIN_FILENO)
-                                               : Result<std::uint64_t>(std::uint64_t{0});
+  const Result<std::uint64_t> face_lines = check_lines(request);
   if (!face_lines) return face_lines.error();
 
   // Never destroyed: the process ends soon, and the destructor of a very deep node tree recurses.
@@ -181,7 +191,7 @@ Result<Parsed> parse(const Request& request) {
     const std::uint64_t promised = gltf_triangles(STDIN_FILENO, request.file_bytes);
     left_out = std::max(promised, faces_in(*scene) + 1) - faces_in(*scene);
   }
-  const std::string holes = passed_over(*scene, *face_lines);
+  const std::string holes = passed_over(*scene, *face_lines, request);
   Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
   if (!dropped) return dropped.error();
   *dropped += left_out;
@@ -195,7 +205,8 @@ Result<Parsed> parse(const Request& request) {
   if (!mesh) return mesh.error();
   if (mesh->triangles.empty() && !holes.empty()) {
     return make_error(ErrorCode::bad_input, "no surface is left: " + holes,
-                      "begin each face with a small f and a blank");
+                      request.extension == "off" ? "export triangles"
+                                                 : "begin each face with a small f and a blank");
   }
   if (mesh->triangles.empty()) {
     return make_error(ErrorCode::bad_input, "the file holds no triangles",
@@ -210,6 +221,10 @@ Result<Parsed> parse(const Request& request) {
                               "; triangles are numbered without");
   }
   if (!holes.empty()) parsed.warnings.push_back(holes);
+  if (request.extension == "stl") {
+    std::string cut = describe_stl_cut(STDIN_FILENO);
+    if (!cut.empty()) parsed.warnings.push_back(std::move(cut));
+  }
   for (const std::string& file : files.refused()) parsed.warnings.push_back(file);
   return parsed;
 }

@@ -1,0 +1,160 @@
+#include "mesh/importer/text_checks.hpp"
+
+#include "mesh/importer/content.hpp"
+#include "mesh/importer/obj_lines.hpp"
+#include "mesh/text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+namespace crashrank::importer {
+namespace {
+
+/// The next word, which is taken off; empty at the end.
+std::string_view take_word(std::string_view& line) {
+  constexpr std::string_view blanks = " \t\v";
+  const std::size_t begin = line.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  line.remove_prefix(begin);
+  const std::string_view word = line.substr(0, line.find_first_of(blanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+std::optional<std::int64_t> whole_number(std::string_view word) {
+  std::int64_t number = 0;
+  const char* const end = word.data() + word.size();
+  const std::from_chars_result read = std::from_chars(word.data(), end, number);
+  if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
+  return number;
+}
+
+/// The lines that hold something: without comments and blank ones.
+class FilledLines {
+public:
+  explicit FilledLines(int descriptor) : lines_(descriptor) {}
+
+  bool next(ObjLine& line) {
+    while (lines_.next(line)) {
+      line.text = line.text.substr(0, line.text.find('#'));
+      std::string_view rest = line.text;
+      if (!take_word(rest).empty()) return true;
+    }
+    return false;
+  }
+
+private:
+  ObjLines lines_;
+};
+
+Error cut_off(std::int64_t found, std::int64_t promised, const char* things) {
+  return make_error(ErrorCode::bad_input,
+                    "it ends after " + std::to_string(found) + " of the " +
+                        std::to_string(promised) + " " + things + " that its header promises",
+                    "the file was cut; export or copy it again");
+}
+
+Error bad_face(std::size_t line, std::int64_t face, const std::string& fault) {
+  Error error = make_error(
+      ErrorCode::bad_input, "face " + std::to_string(face) + " " + fault,
+      "mend the line (faces and vertices are numbered from 0), or export the file again");
+  error.place = "line " + std::to_string(line);
+  return error;
+}
+
+/// Words of a facet that has begun, whatever their case.
+bool is_word(std::string_view word, std::string_view wanted) {
+  return word.size() == wanted.size() && std::equal(word.begin(), word.end(), wanted.begin(),
+                                                    [](char a, char b) { return (a | 0x20) == b; });
+}
+
+/// Whether it begins as text does and is not as long as a binary file of its own number of facets.
+bool is_stl_text(int descriptor) {
+  constexpr std::size_t header = 80;
+  std::string head = read_at(descriptor, 0, header + 4);
+  std::string_view begin = head;
+  if (begin.substr(0, 3) == "\xef\xbb\xbf") begin.remove_prefix(3);
+  if (!is_word(take_word(begin).substr(0, 5), "solid")) return false;
+  if (head.size() < header + 4) return true;
+  std::uint32_t facets = 0;
+  std::memcpy(&facets, head.data() + header, sizeof facets);
+  const std::size_t end = header + 4 + std::size_t{50} * facets;
+  return read_at(descriptor, end - 1, 2).size() != 1;
+}
+
+}  // namespace
+
+Result<std::uint64_t> check_off_lines(int descriptor) {
+  FilledLines lines(descriptor);
+  ObjLine line;
+  if (!lines.next(line)) return std::uint64_t{0};
+  std::string_view counts = line.text;
+  const std::string_view keyword = take_word(counts);
+  // Vertices of OFF and its kin COFF, NOFF, STOFF; those of 4OFF and nOFF have other numbers.
+  if (keyword.size() < 3 || keyword.substr(keyword.size() - 3) != "OFF") return std::uint64_t{0};
+  if (keyword.find_first_of("4n") != std::string_view::npos) return std::uint64_t{0};
+  if (counts.find_first_not_of(" \t\v") == std::string_view::npos) {
+    if (!lines.next(line)) return std::uint64_t{0};
+    counts = line.text;
+  }
+  const std::optional<std::int64_t> vertices = whole_number(take_word(counts));
+  const std::optional<std::int64_t> faces = whole_number(take_word(counts));
+  if (!vertices || !faces || *vertices < 0 || *faces < 0) return std::uint64_t{0};
+  for (std::int64_t i = 0; i < *vertices; ++i) {
+    if (!lines.next(line)) return cut_off(i, *vertices, "vertices");
+  }
+  std::uint64_t surfaces = 0;
+  for (std::int64_t i = 0; i < *faces; ++i) {
+    if (!lines.next(line)) return cut_off(i, *faces, "faces");
+    std::string_view rest = line.text;
+    const std::optional<std::int64_t> corners = whole_number(take_word(rest));
+    if (!corners) return std::uint64_t{0};
+    if (*corners >= 3) ++surfaces;
+    for (std::int64_t k = 0; k < *corners; ++k) {
+      const std::string_view word = take_word(rest);
+      if (word.empty() && line.whole) {
+        return bad_face(
+            line.number, i,
+            "has " + std::to_string(k) + " of its " + std::to_string(*corners) + " corners");
+      }
+      const std::optional<std::int64_t> index = whole_number(word);
+      if (index && *index >= 0 && *index < *vertices) continue;
+      if (!line.whole) break;  // the middle of a very long line is not here
+      return bad_face(line.number, i,
+                      "names vertex " + detail::quoted(word, 40) + ", but there are " +
+                          std::to_string(*vertices));
+    }
+  }
+  return surfaces;
+}
+
+std::string describe_stl_cut(int descriptor) {
+  if (!is_stl_text(descriptor)) return {};
+  ObjLines lines(descriptor);
+  bool in_facet = false;
+  bool in_solid = false;
+  std::size_t facets = 0;
+  for (ObjLine line; lines.next(line);) {
+    const std::string_view first = take_word(line.text);
+    if (is_word(first, "solid")) in_solid = true;
+    if (is_word(first, "endsolid")) in_solid = false;
+    if (is_word(first, "endfacet")) in_facet = false;
+    if (!is_word(first, "facet")) continue;
+    in_facet = true;
+    ++facets;
+  }
+  if (in_facet) {
+    return "the text ends within facet " + std::to_string(facets) +
+           ": the file was cut, and the surface lacks what came after";
+  }
+  if (!in_solid) return {};
+  return "the text ends without endsolid: it may have been cut after facet " +
+         std::to_string(facets);
+}
+
+}  // namespace crashrank::importer
