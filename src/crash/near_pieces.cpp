@@ -25,14 +25,13 @@ void NearPieces::begin() {
     list = 0;
   }
   list += 2;
-  begun = resumed = list;
+  begun = list;
   count = 0;
   pieces = 0;
   valid_for_m = -1e9;
 }
 
 void NearPieces::resume() {
-  resumed = list;
   ++list;
   count = 0;
   pieces = 0;

@@ -31,9 +31,6 @@ struct alignas(64) PieceCurves {
 struct NearGroup {
   std::uint32_t group = 0;
   std::uint8_t listed = 0;
-  /// Those that have been inside the other body: they are followed wherever they are, so that they
-  /// press no further before they are there again.
-  std::uint8_t followed = 0;
 };
 
 /// Blocks of one body's outline whose pieces may press into another body.
@@ -46,7 +43,6 @@ struct NearPieces {
   std::size_t pieces = 0;             ///< moved by the last pass
   std::uint32_t list = 0;             ///< number of the present list
   std::uint32_t begun = 0;            ///< lists since this number are of the same two bodies
-  std::uint32_t resumed = 0;          ///< and those until this one of an earlier contact
   double valid_for_m = -1e9;          ///< relative travel until the list has to be made anew
 
   /// Room for the blocks of so many pieces.

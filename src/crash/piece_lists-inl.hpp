@@ -143,23 +143,19 @@ inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
     const BlockGroup& group = own.groups[g];
     const std::uint32_t listed = may_press(q, group, near_m);
     if (listed == 0) continue;
-    NearGroup& entry = near.groups[near.count++];
-    entry = {static_cast<std::uint32_t>(g), static_cast<std::uint8_t>(listed), 0};
+    near.groups[near.count++] = {static_cast<std::uint32_t>(g), static_cast<std::uint8_t>(listed)};
     for (std::uint32_t left = listed; left != 0; left &= left - 1U) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::size_t i = group.first + lane;
       // Not in the list before this one: nothing is known of the way it came.
       if (near.listed[i] + 1 != near.list) {
-        const bool known = near.listed[i] > near.begun && near.listed[i] <= near.resumed;
+        const bool known = near.listed[i] > near.begun;
         begin_block(q, own.blocks[i], own.rows[i], allowed_m, known, near.states[i]);
         if (!q.pusher->response.rigid) {
           bend_block(q, own.blocks[i], own.rows[i], near.curves[i]);
         }
       }
       near.listed[i] = near.list;
-      const float* const way = near.states[i].way.data();
-      if (bits(less(all(0.0F), maximum(load(way), load(way + 8)))) == 0) continue;
-      entry.followed = static_cast<std::uint8_t>(entry.followed | 1U << lane);
     }
   }
 }

@@ -114,9 +114,8 @@ public:
         other_(query.pusher->response),
         target_(query.pressed->vehicle->silhouettes) {}
 
-  /// Adds the forces of those of the pieces that lie inside the pressed body; false where none
-  /// does.
-  template <bool both_yield> HWY_INLINE bool press(const PressingPieces& p);
+  /// Adds the forces of those of the pieces that lie inside the pressed body.
+  template <bool both_yield> HWY_INLINE void press(const PressingPieces& p);
   void store_sums(PressTotals& totals, PassSums& sums, PassRecord& record) const;
 
 private:
@@ -131,7 +130,7 @@ private:
   std::size_t highest_band_ = 0;
 };
 
-template <bool both_yield> HWY_INLINE bool Presser::press(const PressingPieces& p) {
+template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& p) {
   // A step inwards from the surface over which the pressure rises to the yield pressure, m: paint,
   // cladding, gaps.
   constexpr float soft_m = 0.012F;
@@ -154,7 +153,7 @@ template <bool both_yield> HWY_INLINE bool Presser::press(const PressingPieces& 
   Depths d = depths_at(target_, p.band, x, y);
   F8 least = d.least();
   const M8 where = both(p.where, less(zero, least));
-  if (bits(where) == 0) return false;
+  if (bits(where) == 0) return;
   lowest_band_ = std::min(lowest_band_, p.band);
   highest_band_ = std::max(highest_band_, p.band);
   // Lanes that do not count are given numbers that keep everything finite.
@@ -283,7 +282,6 @@ template <bool both_yield> HWY_INLINE bool Presser::press(const PressingPieces& 
       s.intrusion_other = maximum(s.intrusion_other, intrusion(inside, other_crush));
     }
   }
-  return true;
 }
 
 /// Under this force reach counts in proportion: a door has to bear 10 kN in the mean of its first
@@ -324,9 +322,8 @@ inline void Presser::store_sums(PressTotals& totals, PassSums& sums, PassRecord&
 }
 
 /// Moves the pieces of a block, and presses those that advance into what they have not been in.
-/// False where none presses.
 template <bool both_yield>
-HWY_INLINE bool press_block(const PressQuery& q, std::size_t block, NearPieces& near,
+HWY_INLINE void press_block(const PressQuery& q, std::size_t block, NearPieces& near,
                             Presser& presser, PressTotals& totals) {
   constexpr float rounding_m = 1e-4F;
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
@@ -335,7 +332,6 @@ HWY_INLINE bool press_block(const PressQuery& q, std::size_t block, NearPieces& 
   const PieceRows& rows = own.rows[block];
   PieceStates& states = near.states[block];
   near.pieces += own.blocks[block].count;
-  bool presses = false;
   for (std::size_t h = 0; h < own.blocks[block].count; h += 8) {
     PressingPieces p;
     p.at = carry_pieces(q.to, load(rows.x.data() + h), load(rows.y.data() + h),
@@ -358,31 +354,24 @@ HWY_INLINE bool press_block(const PressQuery& q, std::size_t block, NearPieces& 
     p.ahead = states.ahead.data() + h;
     p.band = own.blocks[block].band;
     p.first = h;
-    if (presser.press<both_yield>(p)) presses = true;
+    presser.press<both_yield>(p);
   }
-  return presses;
 }
 
 template <bool both_yield>
 inline void press_all(const PressQuery& q, NearPieces& near, PressTotals& totals, PassSums& sums,
                       PassRecord& record) {
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
-  const Silhouettes& target = q.pressed->vehicle->silhouettes;
   Presser presser(q);
   near.pieces = 0;
   for (std::size_t i = 0; i < near.count; ++i) {
-    NearGroup& entry = near.groups[i];
-    const BlockGroup& group = own.groups[entry.group];
-    std::uint32_t moved = entry.listed;
-    if (moved != entry.followed) {
-      const M8 inside = are_near(carry_boxes(q.to, group), target.bands[group.band], 0.0F);
-      moved = (moved & bits(inside)) | entry.followed;
-    }
-    for (; moved != 0; moved &= moved - 1U) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(moved));
-      if (press_block<both_yield>(q, group.first + lane, near, presser, totals)) {
-        entry.followed = static_cast<std::uint8_t>(entry.followed | 1U << lane);
-      }
+    const NearGroup& entry = near.groups[i];
+    const std::uint32_t first_block = own.groups[entry.group].first;
+    // Those beside the other body, too: where they press once it has moved sideways, they press no
+    // deeper than their neighbours have been.
+    for (std::uint32_t left = entry.listed; left != 0; left &= left - 1U) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      press_block<both_yield>(q, first_block + lane, near, presser, totals);
     }
   }
   presser.store_sums(totals, sums, record);

@@ -11,8 +11,10 @@ namespace {
 /// Mass that is pushed aside, times the mean density: a vehicle's mass lies in the lower half of
 /// its volume, and what is pushed drags about as much beside it along.
 constexpr float dragged = 4.0F;
-/// List of pieces: those within this distance of the other body, m.
-constexpr double near_m = 0.15;
+/// Travel for which a list of pieces is made, m.
+constexpr double list_travel_m = 0.15;
+/// It is made anew in the first step beyond that: no step takes more than this, m.
+constexpr double step_travel_m = 0.1;
 
 Carrier carrier(const PressedBody& from, const PressedBody& to) {
   const PlanarBody& p = from.motion;
@@ -104,8 +106,8 @@ void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
   query.dragged_kgm3 = dragged * static_cast<float>(pressed.vehicle->density_kgm3);
   near.valid_for_m -= moved_m;
   if (!(near.valid_for_m > 0.0)) {
-    list_blocks(query, static_cast<float>(near_m), near);
-    near.valid_for_m = near_m;
+    list_blocks(query, static_cast<float>(list_travel_m + step_travel_m), near);
+    near.valid_for_m = list_travel_m;
   }
   PressTotals totals;
   press_blocks(query, near, totals, sums, record);
