@@ -65,7 +65,7 @@ struct CrushResponse {
   float hardening_length = 0.0F;
   float rigid_slope = 0.0F;
   std::array<float, profile_bands> share{};  ///< of the strength, by height band
-  std::size_t cabin_band = 0;               ///< lowest height band of the compartment
+  std::size_t cabin_band = 0;                ///< lowest height band of the compartment
   bool rigid = false;
 };
 
