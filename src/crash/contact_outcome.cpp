@@ -32,13 +32,6 @@ BodyContact ContactRun::describe(bool is_first) const {
     const PlanarForce& taken = is_first ? taken_first_ : taken_second_;
     result.delta_v_mps = now.inverse_mass * Vector3d(own.x - taken.x, own.y - taken.y, 0.0);
     result.delta_yaw_rate_radps = now.inverse_inertia * (own.moment - taken.moment);
-    const Undergone& undergone = is_first ? of_first_ : of_second_;
-    const double change_mps = result.delta_v_mps.norm();
-    if (undergone.shared && change_mps > undergone.most_mps) {
-      const double share = undergone.most_mps / change_mps;
-      result.delta_v_mps *= share;
-      result.delta_yaw_rate_radps *= share;
-    }
     const PlanarBody& last = acts_ ? end : now;
     result.after.linear_mps = Vector3d(last.vx, last.vy, given.velocity.linear_mps.z());
     result.after.angular_radps.z() = last.spin;
@@ -61,6 +54,19 @@ BodyContact ContactRun::describe(bool is_first) const {
   return result;
 }
 
+/// The impulses of several that press on a body at a time may cancel, and then say nothing of what
+/// its people feel: no contact counts for more than the body undergoes, or than the speed at which
+/// its crush energy would be its kinetic energy.
+void ContactRun::limit(const Undergone& undergone, double inverse_mass, BodyContact& contact) {
+  const double change_mps = contact.delta_v_mps.norm();
+  const double most_mps =
+      std::max(undergone.most_mps, std::sqrt(2.0 * contact.crush_energy_j * inverse_mass));
+  if (!undergone.shared || !(change_mps > most_mps)) return;
+  const double share = most_mps / change_mps;
+  contact.delta_v_mps *= share;
+  contact.delta_yaw_rate_radps *= share;
+}
+
 ContactOutcome ContactRun::outcome(bool swapped) const {
   ContactOutcome result;
   result.steps = steps_;
@@ -79,6 +85,8 @@ ContactOutcome ContactRun::outcome(bool swapped) const {
   result.friction_j = scale * friction_j_;
   first.crush_energy_j = scale * crush_first_j_;
   second.crush_energy_j = scale * crush_second_j_;
+  limit(of_first_, motion_of(first_).inverse_mass, first);
+  limit(of_second_, motion_of(this->second()).inverse_mass, second);
   result.point_m = origin_m_;
   if (point_weight_ > 0.0) {
     result.point_m += Vector3d(point_x_ / point_weight_, point_y_ / point_weight_, 0.0);

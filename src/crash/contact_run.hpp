@@ -96,8 +96,7 @@ public:
   /// The share in [0, 1] of that which something else took at the same time: no change of velocity.
   void take_back(bool from_first, double share);
   /// All contacts together changed the first or the second body's velocity so in this step, m/s;
-  /// `shared`: others pressed on it, too. Each contact's change of velocity is no larger than the
-  /// greatest that its body has undergone since it began: what others hold against it is none.
+  /// `shared`: others pressed on it, too.
   void undergo(bool first, const Eigen::Vector2d& change_mps, bool shared);
   /// Once the bodies have moved to the end of the step.
   void end_step();
@@ -185,6 +184,7 @@ private:
   double relative_speed() const;
   double most_speed_mps() const;
   BodyContact describe(bool is_first) const;
+  static void limit(const Undergone& undergone, double inverse_mass, BodyContact& contact);
 
   ContactWorkspace::State* state_ = nullptr;
   ContactOptions options_;

@@ -264,8 +264,8 @@ void SceneRun::settle() {
     m.pressed = false;
     all_rest = all_rest && m.state == State::rests;
   }
-  over_ = all_rest || now_s_ - last_force_s_ > options_.after_last_contact_s ||
-          now_s_ - start_s_ > options_.longest_s;
+  const double end_s = std::max(last_force_s_ + options_.after_last_contact_s, options_.until_s);
+  over_ = all_rest || now_s_ > end_s || now_s_ - start_s_ > options_.longest_s;
   if (!over_) return;
   for (const std::uint32_t k : live_) close(runs_[k]);
   live_.clear();

@@ -34,6 +34,7 @@ struct SceneOptions {
   double sliding_grip = 0.5;                  ///< of what has no wheels that turn
   double rolling_step_s = 0.02;               ///< longest step without contact
   double after_last_contact_s = 3.0;          ///< the scene ends so long after the last force
+  double until_s = 0.0;                       ///< but while anything moves not before this time
   double longest_s = 30.0;                    ///< and so long after its start at the latest
 };
 

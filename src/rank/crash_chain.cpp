@@ -35,6 +35,8 @@ SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
   options.rolling_step_s *= sample.step;
   options.after = scene.harm.after_contact;
   options.grip = scene.grip;
+  // A candidate that touches nobody is looked at until the horizon, and so is what follows here.
+  options.until_s = scene.slice_s.back();
   return options;
 }
 

@@ -135,7 +135,7 @@ double tally_up(const Scene& scene, const Approach& from, Tally& tally, Candidat
     const OutcomePair outcomes = outcomes_of(result, from.told[k]);
     const auto tell = [&](std::size_t side, BodyOutcome& outcome) {
       const BodyEvent& event = events.last[{effects[k].sides[side].body, numbers[k][side]}];
-      outcome.event_delta_v_mps = event.delta_v_mps.norm();
+      outcome.event_delta_v_mps = event.size_mps();
       outcome.event_yaw_rate_change_radps = event.yaw_radps;
     };
     tell(0, outcomes.a);

@@ -26,6 +26,7 @@ void extend(BodyEvent& event, const Scene& scene, const ContactEffect& effect, s
   const Body& other = body_of(scene, effect.sides[1 - side].body);
   event.end_s = std::max(event.end_s, effect.end_s);
   event.delta_v_mps += own.delta_v_mps;
+  event.greatest_mps = std::max(event.greatest_mps, own.delta_v_mps.norm());
   event.impulse_ns += own.impulse_ns;
   event.yaw_radps += own.yaw_radps;
   // A contact's intrusion is what it adds to that of earlier ones of the two.
@@ -77,7 +78,7 @@ HarmExposure exposure_of(const Scene& scene, std::size_t index, const BodyEvent&
   HarmExposure e;
   e.kind = body.vehicle.kind;
   e.ego = index == ego_body;
-  e.delta_v_mps = event.delta_v_mps.norm();
+  e.delta_v_mps = event.size_mps();
   e.pdof_deg = pdof_deg(event.impulse_ns, event.forward);
   e.closing_speed_mps = struck_by(body, event.closing_mps, e.delta_v_mps, event.reduced_kg);
   e.leading_edge_m = event.leading_edge_m;
@@ -148,7 +149,7 @@ double Tally::term(const Scene& scene, const Entry& e) const {
   if (e.open.number == 0) return e.closed;
   if (scene.measure == Measure::harm) return combined_risk(e.closed, e.open.risk);
   if (scene.measure == Measure::delta_v && e.body == ego_body) {
-    return e.closed + e.open.delta_v_mps.norm();
+    return e.closed + e.open.size_mps();
   }
   return 0.0;
 }

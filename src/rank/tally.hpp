@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -56,6 +57,7 @@ struct BodyEvent {
   std::size_t number = 0;  ///< counted from 1; 0: none yet
   double end_s = 0.0;
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();
+  double greatest_mps = 0.0;  ///< delta-v of one of its contacts
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();
   Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< at its begin
   double yaw_radps = 0.0;
@@ -69,6 +71,9 @@ struct BodyEvent {
   /// Greatest of its contacts, each alone and after those before it: a further contact that takes
   /// delta-v back heals nobody.
   double risk = 0.0;
+
+  /// Contacts on opposite sides cancel in the sum: no less than that of one of them.
+  double size_mps() const { return std::max(greatest_mps, delta_v_mps.norm()); }
 };
 
 /// Exposure of the people on a body to an event.
