@@ -71,10 +71,10 @@ inline constexpr float flank_share = 0.65F;
 
 /// Box around the silhouettes of a band, m; empty where the band has none.
 struct BandBounds {
-  float min_x = 1e9F;
-  float max_x = -1e9F;
-  float min_y = 1e9F;
-  float max_y = -1e9F;
+  float min_x = 1e9F;   ///< rear end
+  float max_x = -1e9F;  ///< front end
+  float min_y = 1e9F;   ///< right side
+  float max_y = -1e9F;  ///< left side
 };
 
 /// What contacts read of a profile besides its pieces: the depth of a point below the front, rear
