@@ -154,9 +154,7 @@ ReferenceCar::State rest_of(PushedBody body, const Driving& driving, double unti
 
 // Campaigns set CRASHRANK_SCENE_COUNT and CRASHRANK_SCENE_SEED.
 TEST(SceneReference, PushedBodiesRestWhereAPlainIntegratorPutsThem) {
-  const std::uint64_t seed = test::wished("CRASHRANK_SCENE_SEED", 431);
-  const std::uint64_t count = test::wished("CRASHRANK_SCENE_COUNT", 300);
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  const auto [seed, count] = test::scene_campaign(431, 300);
   Random random(seed);
   SceneRun run;
   std::vector<double> places;

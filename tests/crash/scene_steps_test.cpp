@@ -52,9 +52,7 @@ void print_shares(const char* name, const std::vector<double>& values) {
 
 // Campaigns set CRASHRANK_SCENE_COUNT and CRASHRANK_SCENE_SEED.
 TEST(SceneSteps, HalvedStepsChangeChainsLittle) {
-  const std::uint64_t seed = test::wished("CRASHRANK_SCENE_SEED", 421);
-  const std::uint64_t count = test::wished("CRASHRANK_SCENE_COUNT", 120);
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  const auto [seed, count] = test::scene_campaign(421, 120);
   for (const double factor : {1.0, 0.5}) {
     Random random(seed);
     SceneRun run;
@@ -97,72 +95,6 @@ TEST(SceneSteps, HalvedStepsChangeChainsLittle) {
     EXPECT_LT(percentile(delta_v, 0.5), 0.01);
     EXPECT_LT(percentile(energies, 0.9), 0.05);
   }
-}
-
-/// Box that holds all velocities of a body's centre of mass so far.
-struct VelocityRange {
-  Eigen::Array2d low = Eigen::Array2d::Constant(1e9);
-  Eigen::Array2d high = Eigen::Array2d::Constant(-1e9);
-
-  void add(const detail::PlanarBody& b) {
-    const Eigen::Array2d v(b.vx, b.vy);
-    low = low.min(v);
-    high = high.max(v);
-  }
-  double diagonal() const { return (high - low).matrix().norm(); }
-};
-
-// What presses on a body from two sides at a time gives each contact an impulse that the other
-// takes: none of the two is a change of the body's velocity. Prints how often that happens.
-TEST(SceneSteps, DeltaVOfContactsAgainstTheBodysOwnVelocities) {
-  const std::uint64_t seed = test::wished("CRASHRANK_SCENE_SEED", 422);
-  const std::uint64_t count = test::wished("CRASHRANK_SCENE_COUNT", 120);
-  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
-  Random random(seed);
-  SceneRun run;
-  std::size_t sides = 0;
-  std::size_t beyond = 0;
-  std::size_t goes_on = 0;
-  std::size_t scenes_beyond = 0;
-  std::size_t scenes = 0;
-  double most_mps = 0.0;
-  double most_range_mps = 0.0;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    Stage stage = test::row(random, 3 + random.below(5));
-    run.begin(stage.ready(true), 0, 1, 0.0, Eigen::Vector3d::Zero(), {});
-    std::vector<VelocityRange> ranges(stage.plans.size());
-    bool going = true;
-    while (going) {
-      for (std::size_t k = 0; k < ranges.size(); ++k) ranges[k].add(run.body(k));
-      going = run.advance(1);
-    }
-    for (std::size_t k = 0; k < ranges.size(); ++k) ranges[k].add(run.body(k));
-    bool any = false;
-    for (const SceneContact& c : run.contacts()) {
-      goes_on += c.goes_on ? 1U : 0U;
-      for (const bool of_a : {true, false}) {
-        const std::size_t body = of_a ? c.a : c.b;
-        if (!stage.vehicles[body]->movable()) continue;
-        const double told = (of_a ? c.outcome.a : c.outcome.b).delta_v_mps.norm();
-        const double range = ranges[body].diagonal();
-        ++sides;
-        if (told < 1.1 * range + 0.1) continue;
-        ++beyond;
-        any = true;
-        if (told < most_mps) continue;
-        most_mps = told;
-        most_range_mps = range;
-      }
-    }
-    scenes += run.contacts().empty() ? 0U : 1U;
-    scenes_beyond += any ? 1U : 0U;
-  }
-  std::printf(
-      "%zu of %zu delta-v of one contact, in %zu of %zu scenes, exceed by over 10 %% all that the "
-      "body's velocity ever changed by; the greatest is %.1f m/s against %.1f m/s; %zu contacts go "
-      "on where an earlier one ended\n",
-      beyond, sides, scenes_beyond, scenes, most_mps, most_range_mps, goes_on);
-  EXPECT_GT(sides, count);
 }
 
 }  // namespace

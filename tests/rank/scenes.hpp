@@ -129,4 +129,15 @@ inline std::vector<std::string> part_names(const Model& model, const BodyDamage&
   return names;
 }
 
+/// A 4 × 2 × 1.5 m car at the origin, driving at 20 m/s, and a wall 47.5 m ahead of its front.
+inline Scene car_and_wall(std::optional<double> wall_kg = std::nullopt) {
+  Scene scene;
+  scene.scenario.ego.model = scene.add_model("car", box_mesh({2, 1, 0.75}), BodyKind::car, 1500.0);
+  scene.scenario.ego.speed_mps = 20.0;
+  const std::size_t wall =
+      scene.add_model("wall", box_mesh({0.5F, 10, 3}), BodyKind::barrier, wall_kg);
+  scene.add_actor("wall", wall, 50.0, 0.0);
+  return scene;
+}
+
 }  // namespace crashrank::scenes
