@@ -1,17 +1,12 @@
 #include "c/c_objects.hpp"
 #include "crashrank/crashrank.hpp"
-#include "crashrank/mesh/import.hpp"
-#include "crashrank/tree/model_file.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
