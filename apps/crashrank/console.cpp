@@ -58,7 +58,7 @@ ExitCode exit_code(ErrorCode code) {
 }
 
 int fail(const Error& error) {
-  if (is_interrupted()) return exit_budget;
+  if (is_interrupted()) return exit_interrupted;
   say(error.message());
   return exit_code(error.code);
 }
@@ -106,12 +106,13 @@ Progress::~Progress() {
 
 std::string Progress::line() const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  if (total_ == 0) return fmt::format("{} {:.0f} s", what_, seconds);
+  const std::size_t total = total_;
+  if (total == 0) return fmt::format("{} {:.0f} s", what_, seconds);
   constexpr std::size_t width = 30;
-  const std::size_t done = std::min<std::size_t>(done_, total_);
-  const std::size_t filled = width * done / total_;
+  const std::size_t done = std::min<std::size_t>(done_, total);
+  const std::size_t filled = width * done / total;
   return fmt::format("{} [{}{}] {}/{}", what_, std::string(filled, '#'),
-                     std::string(width - filled, '.'), done, total_);
+                     std::string(width - filled, '.'), done, total);
 }
 
 void Progress::draw() {

@@ -16,6 +16,8 @@ enum ExitCode : int {
   exit_usage = 2,
   exit_bad_input = 3,
   exit_budget = 4,  ///< a deadline or memory budget ended the work with a partial answer
+  exit_interrupted =
+      130,  ///< within the process only: exit_budget, once `run_interruptible` said it
 };
 
 ExitCode exit_code(ErrorCode code);
@@ -24,7 +26,7 @@ ExitCode exit_code(ErrorCode code);
 void say(const std::string& text);
 
 /// The same with an error's message; returns its exit code. After an interruption, which has a
-/// message of its own, prints nothing and returns exit_budget.
+/// message of its own, prints nothing and returns exit_interrupted.
 int fail(const Error& error);
 
 /// Prints "crashrank: warning: FILE: TEXT" on stderr, escaped, on one line.
@@ -53,6 +55,11 @@ public:
 
   /// Safe from any thread.
   void update(std::size_t done) { done_ = done; }
+  /// The same where the number to reach was not known. Safe from any thread.
+  void update(std::size_t done, std::size_t total) {
+    total_ = total;
+    update(done);
+  }
   /// One more is done. Safe from any thread.
   void advance() { ++done_; }
 
@@ -66,7 +73,7 @@ private:
   std::string line() const;
 
   std::string what_;
-  std::size_t total_;
+  std::atomic<std::size_t> total_;
   std::atomic<std::size_t> done_{0};
   Clock::time_point start_ = Clock::now();
 };

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
@@ -21,6 +22,7 @@ namespace crashrank::cli {
 namespace {
 
 constexpr std::chrono::milliseconds look_every(30);
+constexpr std::chrono::milliseconds patience(2000);
 
 // A signal handler reaches nothing else.
 volatile std::sig_atomic_t signal_received = 0;
@@ -40,6 +42,7 @@ struct Pending {
   std::timed_mutex mutex;
   std::vector<std::pair<const PartialAnswer*, std::function<Interruption()>>> answers;
   std::vector<std::string> files;
+  std::atomic<int> end_themselves{0};  ///< actions that do
 
   static Pending& instance() {
     static Pending pending;
@@ -114,13 +117,18 @@ int run_interruptible(const std::function<int()>& action) {
   }
   {
     std::unique_lock<std::mutex> lock(mutex);
+    std::chrono::milliseconds since_signal{0};
     while (!ended.wait_for(lock, look_every, [&] { return done; })) {
-      if (signal_received != 0) end_interrupted();
+      if (signal_received != 0) {
+        const bool ends_itself = Pending::instance().end_themselves > 0;
+        if (!ends_itself || since_signal > patience) end_interrupted();
+        since_signal += look_every;
+      }
       Progress::draw();
     }
   }
   if (worker.joinable()) worker.join();
-  if (signal_received != 0 && code != exit_done) end_interrupted();
+  if (signal_received != 0 && (problem || code == exit_interrupted)) end_interrupted();
   if (problem) std::rethrow_exception(problem);
   return code;
 }
@@ -139,6 +147,10 @@ PartialAnswer::~PartialAnswer() {
                                [this](const auto& answer) { return answer.first == this; }),
                 answers.end());
 }
+
+EndsItself::EndsItself() { ++Pending::instance().end_themselves; }
+
+EndsItself::~EndsItself() { --Pending::instance().end_themselves; }
 
 UnfinishedFile::UnfinishedFile(std::string path) : path_(std::move(path)) {
   Pending& pending = Pending::instance();

@@ -7,7 +7,8 @@ namespace crashrank::cli {
 
 /// Runs a command's action on a thread of its own. The calling thread meanwhile draws the progress
 /// and waits for SIGINT and SIGTERM: then it prints what `PartialAnswer` has, removes what
-/// `UnfinishedFile` names and ends the process with exit_budget, without waiting for the action.
+/// `UnfinishedFile` names and ends the process with exit_budget, without waiting for the action
+/// unless that `EndsItself`.
 /// Signals that the caller's caller ignores stay ignored. Rethrows what the action throws.
 int run_interruptible(const std::function<int()>& action);
 
@@ -30,6 +31,16 @@ public:
   ~PartialAnswer();
   PartialAnswer(const PartialAnswer&) = delete;
   PartialAnswer& operator=(const PartialAnswer&) = delete;
+};
+
+/// While it lives, the action asks `is_interrupted`, and ends by itself with what is known and a
+/// message of its own: it has 2 s for that.
+class EndsItself {
+public:
+  EndsItself();
+  ~EndsItself();
+  EndsItself(const EndsItself&) = delete;
+  EndsItself& operator=(const EndsItself&) = delete;
 };
 
 /// A file, or a folder with all in it, that an interruption removes. To be made before the file is.

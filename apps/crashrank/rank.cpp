@@ -5,7 +5,6 @@
 #include "interrupt.hpp"
 #include "mesh_arguments.hpp"
 #include "options.hpp"
-#include "quick_answer.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
@@ -19,12 +18,15 @@
 #include "crashrank/tree/model.hpp"
 #include "crashrank/tree/model_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -193,6 +195,14 @@ void warn_of_end(const Options& options, const RankResult& ranked, bool answered
   for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
 }
 
+/// What an interrupted ranking has come to.
+std::string how_far(const RankResult& ranked) {
+  const auto known = std::count_if(ranked.ranking.begin(), ranked.ranking.end(),
+                                   [](const CandidateResult& c) { return c.score.has_value(); });
+  return fmt::format("{} of {} candidates are evaluated, of the others only bounds are known", known,
+                     ranked.ranking.size());
+}
+
 int run(const Options& options) {
   if (options.json && is_standard(options.report)) {
     return fail(make_error(ErrorCode::usage,
@@ -245,14 +255,13 @@ int run(const Options& options) {
     text.colours = colours_wanted();
     return ranking_text(*scenario, *models, result, text);
   };
+  auto ends_itself = std::make_optional<EndsItself>();
   const Result<RankResult> ranked = [&] {
-    const Progress progress("ranking");
-    QuickAnswer quick(*scenario, *models, how, [&](const RankResult& result) {
-      std::vector<std::string> more = warnings;
-      more.emplace_back("the ranking was interrupted: a partial answer");
-      return text_of(result, more);
-    });
-    const PartialAnswer partial([&] { return quick.tell(); });
+    Progress progress("ranking");
+    how.go_on = [&](std::size_t evaluated, std::size_t candidates) {
+      progress.update(evaluated, candidates);
+      return !is_interrupted();
+    };
     return options.bounded() ? rank_bounded(options, *scenario, *models, how)
                              : rank(*scenario, *models, how);
   }();
@@ -261,6 +270,13 @@ int run(const Options& options) {
     if (error.file.empty()) error.file = options.scenario;
     return fail(error);
   }
+  if (is_interrupted()) {
+    warnings.push_back(how_far(*ranked));
+    print(text_of(*ranked, warnings));
+    say("interrupted: " + warnings.back());
+    return exit_budget;
+  }
+  ends_itself.reset();
   const bool answered = ranked->complete || (options.first_place && ranked->proved);
   const PartialAnswer partial([&, so_far = warnings] {
     return Interruption{text_of(*ranked, so_far),

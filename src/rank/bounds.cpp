@@ -49,13 +49,14 @@ double surely(const Scene& scene, std::size_t index) {
 void ScoreBounds::prepare(const Scene& scene) {
   people_ = surely(scene, ego_body);
   triangles_ = static_cast<double>(scene.ego.model->mesh.size());
-  area_m2_ = surface_of(scene.ego.model->mesh);
+  const bool by_area = scene.measure == Measure::area;
+  area_m2_ = by_area ? surface_of(scene.ego.model->mesh) : 0.0;
   intrusion_m_ = most_intrusion_m(scene.ego.vehicle);
   for (std::size_t i = 0; i < scene.actors.size(); ++i) {
     const Body& actor = scene.actors[i];
     people_ += surely(scene, i);
     triangles_ += static_cast<double>(actor.model->mesh.size());
-    area_m2_ += surface_of(actor.model->mesh);
+    if (by_area) area_m2_ += surface_of(actor.model->mesh);
     intrusion_m_ = std::max(intrusion_m_, most_intrusion_m(actor.vehicle));
   }
   update(scene);

@@ -22,7 +22,7 @@ public:
 private:
   double people_ = 0.0;        ///< all, as weighted
   double triangles_ = 0.0;     ///< of the ego and all actors
-  double area_m2_ = 0.0;       ///< of both
+  double area_m2_ = 0.0;       ///< of both; that measure only
   double intrusion_m_ = 0.0;   ///< of the body with the deepest compartment
   double energy_sum_j_ = 0.0;  ///< of all actors' motions
 };

@@ -182,8 +182,11 @@ void Scratch::prepare(const Scene& scene) {
 
 Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
                   RankWork& work) {
+  Approach stopped;
+  stopped.decided = false;
   Approach found;
   found.decided = find_hits(scene, candidate.motion, scratch, work);
+  if (scratch.stopped()) return stopped;
   const auto hit = std::find_if(scratch.hits.begin(), scratch.hits.end(),
                                 [](const Scratch::Hit& h) { return h.impact.hit(); });
   CandidateResult& result = found.result;
@@ -203,6 +206,7 @@ Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scrat
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (places[i] == last) continue;
       last = places[i];
+      if (scratch.stopped()) return stopped;
       found.effects.emplace_back();
       simulate(scene, candidate, first, scene.samples[i], scratch, work, found.effects.back());
     }

@@ -32,9 +32,11 @@ struct Scratch {
   std::vector<std::size_t> order;
   Tally tally;
   DamageScratch damage;
-  /// Given to the search for contacts, see ImpactOptions.
+  /// Asked by the search for contacts, see ImpactOptions, and before each simulation.
   bool (*stop)(void* stop_context) = nullptr;
   void* stop_context = nullptr;
+
+  bool stopped() const { return stop != nullptr && stop(stop_context); }
 
   /// Room for a scene: nothing but its damage allocates after it.
   void prepare(const Scene& scene);
@@ -47,11 +49,11 @@ struct Approach {
   std::vector<ToldContact> told;  ///< by effect of the plain variant
   /// Of the plain variant, then of those of the samples.
   std::vector<std::vector<ContactEffect>> effects;
-  bool decided = true;
+  bool decided = true;  ///< else the search came to no end or was stopped
 };
 
 /// Follows one candidate through its crash. Depends on the scene and the candidate alone, as do
-/// the others here.
+/// the others here, unless it is stopped: then nothing is known of it.
 Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch, RankWork& work);
 
 /// Reads the damage and scores it. `found` is of the first contact's first pose; those of the

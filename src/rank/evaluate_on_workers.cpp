@@ -4,6 +4,7 @@
 #include "crashrank/dispatch/pair_lists.hpp"
 #include "crashrank/dispatch/part_index.hpp"
 #include "rank/evaluate.hpp"
+#include "rank/headway.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -14,9 +15,10 @@
 namespace crashrank::detail {
 namespace {
 
-/// Candidates whose pairs are held at a time: enough that all threads stay busy, few enough that
-/// memory does not grow with the scenario.
-constexpr std::size_t batch_candidates = 1024;
+/// Candidates whose pairs are held at a time, for each thread: enough that all stay busy, few
+/// enough that memory does not grow with the scenario and that what is known when the caller ends
+/// the ranking is soon told.
+constexpr std::size_t candidates_each = 16;
 
 /// Where depth is left to the dispatcher it cuts a batch no finer than this.
 constexpr std::uint32_t auto_deepest = 12;
@@ -67,8 +69,11 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
   how.depth = options.depth;
   how.kernel = Kernel::fast;
 
+  Headway headway(options, result.candidates.size());
   std::vector<Scratch> scratch(std::max(1U, pool.size()));
+  for (Scratch& own : scratch) headway.watch(own);
   std::vector<RankWork> work(scratch.size());
+  const std::size_t batch_candidates = candidates_each * scratch.size();
   std::vector<Approach> approaches;
   std::vector<std::size_t> first_query;
   std::vector<DispatchQuery> queries;
@@ -79,6 +84,7 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
     approaches.resize(count);
     Status done = pool.for_each(count, [&](std::size_t i, std::uint32_t worker) {
       approaches[i] = approach(scene, result.candidates[begin + i], scratch[worker], work[worker]);
+      if (approaches[i].decided) headway.advance();
     });
     if (!done) return done;
 

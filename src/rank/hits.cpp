@@ -69,7 +69,7 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
     work.impact += impact.work;
     if (impact.state == ImpactState::undecided) {
       decided = false;
-      if (scratch.stop != nullptr && scratch.stop(scratch.stop_context)) break;
+      if (scratch.stopped()) break;
       continue;
     }
     if (impact.state == ImpactState::none) continue;

@@ -3,6 +3,7 @@
 #include "crashrank/base/guarded.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/evaluate_on_workers.hpp"
+#include "rank/headway.hpp"
 #include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
 
@@ -40,9 +41,12 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
     const Status shared = detail::evaluate_on_workers(*scene, options, result);
     if (!shared) return shared.error();
   } else {
+    detail::Headway headway(options, count);
     detail::Scratch scratch;
+    headway.watch(scratch);
     for (std::size_t i = 0; i < count; ++i) {
       result.ranking[i] = detail::evaluate(*scene, result.candidates[i], scratch, result.work);
+      if (result.ranking[i].score) headway.advance();
     }
   }
   for (std::size_t i = 0; i < count; ++i) result.ranking[i].candidate = i;
