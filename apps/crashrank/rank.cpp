@@ -199,8 +199,8 @@ void warn_of_end(const Options& options, const RankResult& ranked, bool answered
 std::string how_far(const RankResult& ranked) {
   const auto known = std::count_if(ranked.ranking.begin(), ranked.ranking.end(),
                                    [](const CandidateResult& c) { return c.score.has_value(); });
-  return fmt::format("{} of {} candidates are evaluated, of the others only bounds are known", known,
-                     ranked.ranking.size());
+  return fmt::format("{} of {} candidates are evaluated, of the others only bounds are known",
+                     known, ranked.ranking.size());
 }
 
 int run(const Options& options) {

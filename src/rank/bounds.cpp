@@ -47,19 +47,26 @@ double surely(const Scene& scene, std::size_t index) {
 }  // namespace
 
 void ScoreBounds::prepare(const Scene& scene) {
-  people_ = surely(scene, ego_body);
-  triangles_ = static_cast<double>(scene.ego.model->mesh.size());
-  const bool by_area = scene.measure == Measure::area;
-  area_m2_ = by_area ? surface_of(scene.ego.model->mesh) : 0.0;
-  intrusion_m_ = most_intrusion_m(scene.ego.vehicle);
-  for (std::size_t i = 0; i < scene.actors.size(); ++i) {
-    const Body& actor = scene.actors[i];
-    people_ += surely(scene, i);
-    triangles_ += static_cast<double>(actor.model->mesh.size());
-    if (by_area) area_m2_ += surface_of(actor.model->mesh);
-    intrusion_m_ = std::max(intrusion_m_, most_intrusion_m(actor.vehicle));
-  }
+  utmost_ = {};
+  utmost_.ego_mass_kg = scene.ego.mass_kg;
+  utmost_.contacts = static_cast<double>(SceneRun::most_contacts);
+  most_ratio_ = 1.0;
+  add(scene, ego_body);
+  for (std::size_t i = 0; i < scene.actors.size(); ++i) add(scene, i);
   update(scene);
+}
+
+void ScoreBounds::add(const Scene& scene, std::size_t index) {
+  const Body& body = body_of(scene, index);
+  utmost_.people += surely(scene, index);
+  utmost_.triangles += static_cast<double>(body.model->mesh.size());
+  if (scene.measure == Measure::area) utmost_.area_m2 += surface_of(body.model->mesh);
+  utmost_.intrusion_m = std::max(utmost_.intrusion_m, most_intrusion_m(body.vehicle));
+  if (!std::isfinite(body.mass_kg)) return;
+  // Energy about a point as far from its centre of mass as it reaches.
+  const double arm = 2.0 * body.radius_m;
+  most_ratio_ =
+      std::max(most_ratio_, 1.0 + body.mass_kg * arm * arm / body.vehicle.yaw_inertia_kgm2);
 }
 
 void ScoreBounds::update(const Scene& scene) {
@@ -68,38 +75,11 @@ void ScoreBounds::update(const Scene& scene) {
 }
 
 double ScoreBounds::most(const Scene& scene, const Motion& ego) const {
-  // All energy there is; a contact's, with its share of turning, is no larger than twice it, and a
-  // body that has all of it is no faster than this.
-  const double energy_j = slack * (energy_sum_j_ + most_energy(scene, scene.ego, ego));
-  constexpr auto contacts = static_cast<double>(SceneRun::most_contacts);
-  switch (scene.measure) {
-    case Measure::polygons:
-      return triangles_;
-    case Measure::area:
-      return slack * area_m2_;
-    case Measure::closing_energy: {
-      // Of both bodies' energy about a point as far from their centres of mass as they reach.
-      double most_ratio = 1.0;
-      const auto ratio = [](const Body& body) {
-        const double arm = 2.0 * body.radius_m;
-        return std::isfinite(body.mass_kg)
-                   ? 1.0 + body.mass_kg * arm * arm / body.vehicle.yaw_inertia_kgm2
-                   : 1.0;
-      };
-      for (const Body& actor : scene.actors) most_ratio = std::max(most_ratio, ratio(actor));
-      most_ratio = std::max(most_ratio, ratio(scene.ego));
-      return slack * contacts * 2.0 * most_ratio * energy_j;
-    }
-    case Measure::intrusion:
-      return slack * contacts * 2.0 * intrusion_m_;
-    case Measure::energy:
-      return energy_j;
-    case Measure::delta_v:
-      return slack * contacts * 2.0 * std::sqrt(2.0 * energy_j / scene.ego.mass_kg);
-    case Measure::harm:
-      break;
-  }
-  return slack * (people_ + scene.harm.weights.property_per_mj * 1e-6 * energy_j);
+  Utmost utmost = utmost_;
+  utmost.energy_j = slack * (energy_sum_j_ + most_energy(scene, scene.ego, ego));
+  // A contact's energy, with its share of turning, is no larger than twice all there is.
+  utmost.closing_energy_j = 2.0 * most_ratio_ * utmost.energy_j;
+  return slack * measure_row(scene.measure).most(utmost, scene.harm.weights);
 }
 
 }  // namespace crashrank::detail

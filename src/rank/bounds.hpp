@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rank/measure_table.hpp"
 #include "rank/scene.hpp"
 
 #include <cstddef>
@@ -20,10 +21,10 @@ public:
   double most(const Scene& scene, const Motion& ego) const;
 
 private:
-  double people_ = 0.0;        ///< all, as weighted
-  double triangles_ = 0.0;     ///< of the ego and all actors
-  double area_m2_ = 0.0;       ///< of both; that measure only
-  double intrusion_m_ = 0.0;   ///< of the body with the deepest compartment
+  void add(const Scene& scene, std::size_t index);
+
+  Utmost utmost_;              ///< but for energies, which change with motions
+  double most_ratio_ = 1.0;    ///< of a body's energy about any of its points to that it has
   double energy_sum_j_ = 0.0;  ///< of all actors' motions
 };
 

@@ -2,6 +2,7 @@
 
 #include "rank/bounds.hpp"
 #include "rank/hits.hpp"
+#include "rank/measure_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,12 +56,9 @@ std::map<std::size_t, BodyDamage> whole_damage(const Scene& scene, const Candida
   return whole;
 }
 
-/// Scores that are read from the damage.
-double damage_score(const std::map<std::size_t, BodyDamage>& damage, Measure measure) {
+double damage_score(const std::map<std::size_t, BodyDamage>& damage, const MeasureRow& row) {
   double score = 0.0;
-  for (const auto& [body, whole] : damage) {
-    score += measure == Measure::area ? whole.area_m2 : static_cast<double>(whole.triangles.size());
-  }
+  for (const auto& [body, whole] : damage) score += row.of_damage(whole);
   return score;
 }
 
@@ -100,6 +98,7 @@ struct EventTotals {
 
 /// The score of the plain variant; each contact learns its event and what it adds to the harm.
 double tally_up(const Scene& scene, const Approach& from, Tally& tally, CandidateResult& result) {
+  const MeasureRow& row = measure_row(scene.measure);
   tally.begin();
   EventTotals events;
   const std::vector<ContactEffect>& effects = from.effects.front();
@@ -117,14 +116,11 @@ double tally_up(const Scene& scene, const Approach& from, Tally& tally, Candidat
       const BodyEvent event = tally.event(own.body);
       events.note(own.body, event);
       numbers.back()[side] = event.number;
-      HarmExposure crushed;
-      crushed.crush_energy_j = own.crush_j;
-      harm[side] +=
-          tally.people_score(scene, own.body) + property_harm(crushed, scene.harm.weights);
+      harm[side] += tally.people_score(scene, own.body) + row.of_side(own, scene.harm.weights);
     }
     const ToldContact& told = from.told[k];
     if (!told.is_further) result.contacts[told.index].event = numbers.back()[0];
-    if (scene.measure != Measure::harm) continue;
+    if (!row.counts_people) continue;
     const OutcomePair outcomes = outcomes_of(result, told);
     outcomes.a.harm = harm[0];
     outcomes.b.harm = harm[1];
@@ -148,6 +144,7 @@ double tally_up(const Scene& scene, const Approach& from, Tally& tally, Candidat
 void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
                  Tally& tally, CandidateResult& result) {
   const std::vector<std::size_t> place = effect_of_sample(scene);
+  const bool counts_people = measure_row(scene.measure).counts_people;
   for (std::size_t i = 0; i < scene.samples.size(); ++i) {
     const HarmSample& sample = scene.samples[i];
     double score = 0.0;
@@ -157,7 +154,7 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
       score = tally.score(scene);
     }
     result.sample_scores.push_back(score);
-    if (scene.measure == Measure::harm && sample.model != scene.harm.model) continue;
+    if (counts_people && sample.model != scene.harm.model) continue;
     ScoreInterval& interval =
         is_numerical(sample) ? result.numerical_interval : result.score_interval;
     interval.lowest = std::min(interval.lowest, score);
@@ -231,8 +228,9 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
   if (approach.decided) {
     const double simulated =
         approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
-    result.score =
-        scored_by_damage(scene.measure) ? damage_score(damage, scene.measure) : simulated;
+    result.score = scored_by_damage(scene.measure)
+                       ? damage_score(damage, measure_row(scene.measure))
+                       : simulated;
     result.score_interval = {*result.score, *result.score};
     result.numerical_interval = result.score_interval;
     add_samples(scene, approach.effects, scratch.tally, result);

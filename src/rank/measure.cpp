@@ -1,59 +1,144 @@
 #include "crashrank/rank/measure.hpp"
 
+#include "rank/measure_table.hpp"
+
 #include <array>
+#include <cmath>
+#include <cstddef>
 
 namespace crashrank {
+namespace detail {
 namespace {
 
-struct MeasureEntry {
-  Measure measure;
-  const char* name;
-  const char* unit;
-};
+double no_contact(const ContactEffect& /*effect*/) { return 0.0; }
+double no_side(const SideEffect& /*side*/, const HarmWeights& /*weights*/) { return 0.0; }
+double no_body(double before, const BodyEvent& /*last*/, bool /*is_ego*/) { return before; }
 
-constexpr std::array<MeasureEntry, 7> measures{{
-    {Measure::polygons, "polygons", "triangles"},
-    {Measure::area, "area", "m2"},
-    {Measure::closing_energy, "closing-energy", "J"},
-    {Measure::delta_v, "delta-v", "m/s"},
-    {Measure::energy, "energy", "J"},
-    {Measure::intrusion, "intrusion", "m"},
-    {Measure::harm, "harm", "persons"},
-}};
+constexpr MeasureRow polygons{
+    Measure::polygons,
+    "polygons",
+    "triangles",
+    "damaged triangles of all bodies",
+    false,
+    false,
+    false,
+    [](const BodyDamage& whole) { return static_cast<double>(whole.triangles.size()); },
+    no_contact,
+    no_side,
+    no_body,
+    [](const Utmost& u, const HarmWeights&) { return u.triangles; }};
 
-const MeasureEntry& entry_of(Measure measure) noexcept {
-  for (const MeasureEntry& entry : measures) {
-    if (entry.measure == measure) return entry;
+constexpr MeasureRow area{
+    Measure::area, "area",  "m2",    "damaged surface of all bodies",
+    false,         false,   false,   [](const BodyDamage& whole) { return whole.area_m2; },
+    no_contact,    no_side, no_body, [](const Utmost& u, const HarmWeights&) { return u.area_m2; }};
+
+constexpr MeasureRow closing_energy{
+    Measure::closing_energy,
+    "closing-energy",
+    "J",
+    "kinetic energy that the crash could turn into damage",
+    false,
+    false,
+    false,
+    nullptr,
+    [](const ContactEffect& effect) { return effect.closing_energy_j; },
+    no_side,
+    no_body,
+    [](const Utmost& u, const HarmWeights&) { return u.contacts * u.closing_energy_j; }};
+
+constexpr MeasureRow delta_v{
+    Measure::delta_v, "delta-v", "m/s", "the own vehicle's change of velocity", true, true, false,
+    nullptr, no_contact, no_side,
+    [](double before, const BodyEvent& last, bool is_ego) {
+      return is_ego ? before + last.size_mps() : before;
+    },
+    // A body that has all of the energy is no faster than its root says, and turns round at most.
+    [](const Utmost& u, const HarmWeights&) {
+      return u.contacts * 2.0 * std::sqrt(2.0 * u.energy_j / u.ego_mass_kg);
+    }};
+
+constexpr MeasureRow energy{Measure::energy,
+                            "energy",
+                            "J",
+                            "energy turned into damage",
+                            true,
+                            true,
+                            false,
+                            nullptr,
+                            [](const ContactEffect& effect) { return effect.dissipated_j; },
+                            no_side,
+                            no_body,
+                            [](const Utmost& u, const HarmWeights&) { return u.energy_j; }};
+
+constexpr MeasureRow intrusion{
+    Measure::intrusion,
+    "intrusion",
+    "m",
+    "depth of the crush in passengers' cages",
+    true,
+    false,
+    false,
+    nullptr,
+    no_contact,
+    [](const SideEffect& side, const HarmWeights&) { return side.intrusion_m; },
+    no_body,
+    [](const Utmost& u, const HarmWeights&) { return u.contacts * 2.0 * u.intrusion_m; }};
+
+constexpr MeasureRow harm{
+    Measure::harm,
+    "harm",
+    "persons",
+    "people hurt, as weighted",
+    true,
+    true,
+    true,
+    nullptr,
+    no_contact,
+    [](const SideEffect& side, const HarmWeights& weights) {
+      HarmExposure crushed;
+      crushed.crush_energy_j = side.crush_j;
+      return property_harm(crushed, weights);
+    },
+    [](double before, const BodyEvent& last, bool) { return combined_risk(before, last.risk); },
+    [](const Utmost& u, const HarmWeights& weights) {
+      return u.people + weights.property_per_mj * 1e-6 * u.energy_j;
+    }};
+
+constexpr std::array<MeasureRow, 7> rows{polygons,  area, closing_energy, delta_v, energy,
+                                         intrusion, harm};
+
+constexpr bool each_in_its_place() {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (static_cast<std::size_t>(rows[i].measure) != i) return false;
   }
-  return measures.front();
+  return true;
 }
+static_assert(each_in_its_place(), "rows stand in the order of the enumerators");
 
 }  // namespace
 
-const char* measure_name(Measure measure) noexcept { return entry_of(measure).name; }
-
-const char* measure_unit(Measure measure) noexcept { return entry_of(measure).unit; }
-
-bool needs_crash(Measure measure) noexcept {
-  switch (measure) {
-    case Measure::delta_v:
-    case Measure::energy:
-    case Measure::intrusion:
-    case Measure::harm:
-      return true;
-    case Measure::polygons:
-    case Measure::area:
-    case Measure::closing_energy:
-      break;
-  }
-  return false;
+const MeasureRow& measure_row(Measure measure) noexcept {
+  return rows[static_cast<std::size_t>(measure)];
 }
+
+}  // namespace detail
+
+const char* measure_name(Measure measure) noexcept { return detail::measure_row(measure).name; }
+
+const char* measure_unit(Measure measure) noexcept { return detail::measure_row(measure).unit; }
+
+const char* measure_meaning(Measure measure) noexcept {
+  return detail::measure_row(measure).meaning;
+}
+
+bool needs_crash(Measure measure) noexcept { return detail::measure_row(measure).needs_crash; }
 
 Result<Measure> measure_from_name(const std::string& name) {
   std::string known;
-  for (const MeasureEntry& entry : measures) {
-    if (name == entry.name) return entry.measure;
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  for (const detail::MeasureRow& row : detail::rows) {
+    if (name == row.name) return row.measure;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
   }
   return make_error(ErrorCode::usage, "there is no measure \"" + name + "\"",
                     "choose one of " + known);

@@ -1,6 +1,7 @@
 #include "rank/refine.hpp"
 
 #include "rank/hits.hpp"
+#include "rank/measure_table.hpp"
 #include "rank/near.hpp"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "crashrank/crash/injury.hpp"
 #include "rank/join_fixed.hpp"
+#include "rank/measure_table.hpp"
 #include "rank/motion_check.hpp"
 
 #include <algorithm>
@@ -117,7 +118,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   Scene scene;
   scene.measure = options.measure.value_or(scenario.measure);
   scene.harm = options.harm.value_or(scenario.harm);
-  if (needs_crash(scene.measure) && scene.measure != Measure::intrusion && scene.harm.intervals) {
+  if (measure_row(scene.measure).has_samples && scene.harm.intervals) {
     scene.samples = harm_samples(scene.harm);
   }
   scene.plain.friction = scene.harm.friction;

@@ -1,5 +1,7 @@
 #include "rank/step_rounds.hpp"
 
+#include "rank/measure_table.hpp"
+
 #include <algorithm>
 #include <chrono>
 

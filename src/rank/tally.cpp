@@ -2,6 +2,7 @@
 
 #include "crash/rebound.hpp"
 #include "crashrank/crash/pdof.hpp"
+#include "rank/measure_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +121,7 @@ void Tally::add_side(const Scene& scene, const ContactEffect& effect, std::size_
     e.open.number = number;
   }
   extend(e.open, scene, effect, side);
-  if (scene.measure != Measure::harm) return;
+  if (!measure_row(scene.measure).counts_people) return;
   BodyEvent alone = begun(own);
   extend(alone, scene, effect, side);
   const double risk = risk_of(exposure_of(scene, own.body, alone), scene.harm, sample);
@@ -130,35 +131,26 @@ void Tally::add_side(const Scene& scene, const ContactEffect& effect, std::size_
 }
 
 void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSample& sample) {
+  const MeasureRow& row = measure_row(scene.measure);
   const ContactEffect effect = with_rebound(simulated, sample.restitution);
   for (std::size_t side = 0; side < effect.sides.size(); ++side) {
     add_side(scene, effect, side, sample);
-    const SideEffect& own = effect.sides[side];
-    if (scene.measure == Measure::intrusion) sum_ += own.intrusion_m;
-    if (scene.measure != Measure::harm) continue;
-    HarmExposure e;
-    e.crush_energy_j = own.crush_j;
-    sum_ += property_harm(e, scene.harm.weights);
+    sum_ += row.of_side(effect.sides[side], scene.harm.weights);
   }
-  if (scene.measure == Measure::energy) sum_ += effect.dissipated_j;
-  if (scene.measure == Measure::closing_energy) sum_ += effect.closing_energy_j;
+  sum_ += row.of_contact(effect);
 }
 
 /// Risk of a body's people, or the ego's summed delta-v, over all events.
 double Tally::term(const Scene& scene, const Entry& e) const {
   if (e.open.number == 0) return e.closed;
-  if (scene.measure == Measure::harm) return combined_risk(e.closed, e.open.risk);
-  if (scene.measure == Measure::delta_v && e.body == ego_body) {
-    return e.closed + e.open.size_mps();
-  }
-  return 0.0;
+  return measure_row(scene.measure).of_body(e.closed, e.open, e.body == ego_body);
 }
 
 double Tally::people_score(const Scene& scene, std::size_t body) const {
   const Entry* const e = find(body);
   if (e == nullptr) return 0.0;
   const double people = term(scene, *e);
-  if (scene.measure != Measure::harm) return people;
+  if (!measure_row(scene.measure).counts_people) return people;
   return people_weight(exposure_of(scene, body, e->open), scene.harm.weights) * people;
 }
 
@@ -176,7 +168,7 @@ double Tally::score(const Scene& scene) const {
 double Tally::least_score(const Scene& scene) const {
   constexpr double rounding = 1.0 - 1e-9;
   double score = sum_;
-  if (scene.measure == Measure::harm) {
+  if (measure_row(scene.measure).counts_people) {
     for (const Entry& e : bodies_) {
       score +=
           e.greatest_risk * people_weight(exposure_of(scene, e.body, e.open), scene.harm.weights);

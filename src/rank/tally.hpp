@@ -12,11 +12,6 @@
 
 namespace crashrank::detail {
 
-/// Whether a measure is read from the damaged triangles, not from what contacts do.
-constexpr bool scored_by_damage(Measure measure) {
-  return measure == Measure::polygons || measure == Measure::area;
-}
-
 /// Contacts of one body that begin within this time of the end of one before are one event: it has
 /// one delta-v, the sum of theirs, s.
 inline constexpr double same_event_s = 0.1;

@@ -16,26 +16,6 @@ std::string quoted(const RankResult& result, std::size_t place) {
   return "“" + result.candidates[result.ranking[place].candidate].name + "”";
 }
 
-const char* what_counts(Measure measure) {
-  switch (measure) {
-    case Measure::polygons:
-      return "damaged triangles of all bodies";
-    case Measure::area:
-      return "damaged surface of all bodies";
-    case Measure::delta_v:
-      return "the own vehicle's change of velocity";
-    case Measure::energy:
-      return "energy turned into damage";
-    case Measure::intrusion:
-      return "depth of the crush in passengers' cages";
-    case Measure::harm:
-      return "people hurt, as weighted";
-    case Measure::closing_energy:
-      break;
-  }
-  return "kinetic energy that the crash could turn into damage";
-}
-
 double damaged_area_m2(const Scenario& scenario, View<const Model> models,
                        const CandidateResult& ranked) {
   return ranked.ego.area_m2 + summary_of_others(scenario, models, ranked).area_m2;
@@ -239,7 +219,7 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
     return text + fmt::format("Both score {}; the first is placed before because {}.", first_score,
                               tie_words(first, second));
   }
-  text += fmt::format("What counts here is the {}: {} against {}", what_counts(result.measure),
+  text += fmt::format("What counts here is the {}: {} against {}", measure_meaning(result.measure),
                       first_score, second_score);
   if (*first.score > 0.0 && first.separable) {
     text += ", " + fixed_text(100.0 * (*second.score / *first.score - 1.0), 0) + " % more";

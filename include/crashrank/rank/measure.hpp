@@ -23,6 +23,8 @@ enum class Measure {
 CRASHRANK_API const char* measure_name(Measure measure) noexcept;
 /// Unit of its scores: "triangles", "m2", "J", "m/s", "m", "persons".
 CRASHRANK_API const char* measure_unit(Measure measure) noexcept;
+/// What it counts, for a sentence and without an article: "people hurt, as weighted".
+CRASHRANK_API const char* measure_meaning(Measure measure) noexcept;
 /// Whether scoring it takes a simulation of the crash beyond first contact.
 CRASHRANK_API bool needs_crash(Measure measure) noexcept;
 /// Reads a name; the error (usage) lists those there are.
