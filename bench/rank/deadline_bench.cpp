@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <malloc.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/utsname.h>
@@ -66,6 +67,26 @@ void print_quantiles(std::vector<double>& late_us) {
   for (const double share : {0.5, 0.99, 0.999, 0.9999, 1.0}) {
     std::printf(",%.1f", quantile(late_us, share));
   }
+}
+
+/// What malloc has given out and not got back.
+std::size_t allocated() {
+  const auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+/// Memory that Ranker::prepare sets aside, and how much more for each further thread.
+void tell_memory(const bench::Situations& s, const std::string& measure) {
+  std::size_t bytes[2] = {};
+  for (const unsigned workers : {1U, 2U}) {
+    const std::size_t before = allocated();
+    const Result<Ranker> ranker = bench::prepare_ranker(s, measure, workers);
+    if (!ranker) return;
+    bytes[workers - 1] = allocated() - before;
+  }
+  std::printf("# %s, memory of a Ranker: %.1f MB with one thread, %.1f MB for each more\n",
+              s.name.c_str(), 1e-6 * static_cast<double>(bytes[0]),
+              1e-6 * static_cast<double>(bytes[1] - bytes[0]));
 }
 
 /// Which candidate is first in every variant, by a call without a deadline.
@@ -183,6 +204,7 @@ int run(const Options& options) {
       std::fprintf(stderr, "%s\n", s.error().message().c_str());
       return 3;
     }
+    tell_memory(*s, options.measure);
     Result<Ranker> ranker = bench::prepare_ranker(*s, options.measure, options.workers);
     if (!ranker) {
       std::fprintf(stderr, "%s\n", ranker.error().message().c_str());

@@ -131,14 +131,22 @@ void CrashChain::finish() {
   }
 }
 
-ContactEffect CrashChain::effect(const SceneContact& contact) const {
+ContactEffect CrashChain::effect(std::size_t index) const {
+  const View<const SceneContact> all = contacts();
+  const SceneContact& contact = all[index];
+  // What two bodies close with again they had before. Contacts of a pair are in order.
+  const bool again = std::any_of(all.begin(), all.begin() + index, [&](const SceneContact& before) {
+    return before.a == contact.a && before.b == contact.b;
+  });
   ContactEffect e;
   e.begin_s = contact.begin_s;
   e.is_apart = contact.goes_on;
   e.end_s = contact.begin_s + contact.outcome.duration_s;
   e.closing_mps = contact.is_first ? first_->closing_speed_mps : closing_of(contact).norm();
-  e.closing_energy_j = closing_energy_j(contact.given_a.vehicle->mass_kg,
-                                        contact.given_b.vehicle->mass_kg, e.closing_mps);
+  if (!again) {
+    e.closing_energy_j = closing_energy_j(contact.given_a.vehicle->mass_kg,
+                                          contact.given_b.vehicle->mass_kg, e.closing_mps);
+  }
   e.restitution = contact.outcome.restitution;
   e.dissipated_j = contact.outcome.dissipated_j;
   e.sides[0] = side_of(body(contact.a), contact.given_a, contact.outcome.a);
@@ -177,19 +185,16 @@ void CrashChain::effects(std::vector<ContactEffect>& effects,
     ContactEffect touch;
     touch.begin_s = touch.end_s = first_->time_of_impact_s;
     touch.closing_mps = first_->closing_speed_mps;
-    touch.closing_energy_j = first_->closing_energy_j;
     touch.sides[1].body = first_->actor;
+    // Where the two meet with a force later, their energy is counted there.
+    const bool meet = std::any_of(all.begin(), all.end(), [&](const SceneContact& contact) {
+      return body(contact.a) == ego_body && body(contact.b) == first_->actor;
+    });
+    if (!meet) touch.closing_energy_j = first_->closing_energy_j;
     effects.push_back(touch);
   }
   for (const std::size_t k : order) {
-    if (k == without_force) continue;
-    ContactEffect next = effect(all[k]);
-    // What two bodies close with again they had before.
-    const bool again = std::any_of(effects.begin(), effects.end(), [&](const ContactEffect& e) {
-      return e.sides[0].body == next.sides[0].body && e.sides[1].body == next.sides[1].body;
-    });
-    if (again) next.closing_energy_j = 0.0;
-    effects.push_back(next);
+    if (k != without_force) effects.push_back(effect(k));
   }
 }
 

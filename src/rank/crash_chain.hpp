@@ -32,7 +32,8 @@ public:
   /// The bodies of those: an actor, or the ego; of joined bodies the first, or the one that was hit
   /// first.
   std::size_t body(std::size_t index) const { return actors_[index]; }
-  ContactEffect effect(const SceneContact& contact) const;
+  /// Effect of the contact of that index in `contacts`, whatever follows it.
+  ContactEffect effect(std::size_t index) const;
   /// Stands for the first contact where the outlines do not press: an effect without effects.
   static constexpr std::size_t without_force = static_cast<std::size_t>(-1);
   /// Effects of all contacts by their begins. `order`: the index of each in `contacts`.

@@ -78,7 +78,7 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
     going = chain.advance(steps_at_a_time);
     if (!going) break;
     for (; over < chain.contacts().size(); ++over) {
-      scratch.tally.add(q.scene, chain.effect(chain.contacts()[over]), plain);
+      scratch.tally.add(q.scene, chain.effect(over), plain);
       narrow(state, scratch.tally.least_score(q.scene), state.told.interval.highest);
     }
     in_time = !q.watch.expired();

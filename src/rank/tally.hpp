@@ -36,7 +36,7 @@ struct ContactEffect {
   double closing_mps = 0.0;  ///< as it begins
   double restitution = 0.0;  ///< of the simulation
   double dissipated_j = 0.0;
-  double closing_energy_j = 0.0;  ///< see Contact; 0 where the two have met before
+  double closing_energy_j = 0.0;  ///< see Contact; 0 but in the first contact of the two
   std::array<SideEffect, 2> sides;
 };
 

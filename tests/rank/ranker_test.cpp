@@ -184,6 +184,13 @@ TEST(RankerProperty, IntervalsHoldWhereOneCrashLeadsToOthers) {
   EXPECT_GT(chains, 2 * scenes);
 }
 
+TEST(RankerProperty, IntervalsHoldWhereTwoBodiesMeetAgain) {
+  // Two bodies meet with 14.3 m/s, then with 5.8 m/s: the first alone counts.
+  Widths widths;
+  cut_everywhere(Case(scenes::congestion(50095), Measure::closing_energy), Measure::closing_energy,
+                 16, widths);
+}
+
 TEST(RankerProperty, IntervalsHoldForEveryMeasure) {
   Widths widths;
   for (const Measure measure : measures) {
