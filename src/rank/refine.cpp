@@ -62,7 +62,7 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
 /// turn: most are beaten by their first contact alone. A simulation begins anew with each turn, for
 /// there is no room for one of each candidate; all turns before the last cost half of it together.
 bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
-  constexpr int steps_at_a_time = 8;
+  constexpr int steps_at_a_time = 4;
   constexpr std::uint64_t first_turn = 20'000;  // pieces: about the first contact of two cars
   constexpr std::uint64_t more = 3;
   const bool in_turns = q.give_up_above < std::numeric_limits<double>::infinity();
