@@ -2,6 +2,7 @@
 
 #include "crashrank/report/escape.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "report/base64.hpp"
 #include "report/contact_table.hpp"
 #include "report/damage_summary.hpp"
 #include "report/page/embedded.hpp"
@@ -9,6 +10,7 @@
 #include "report/plan_view.hpp"
 #include "report/ranking_words.hpp"
 #include "report/score_text.hpp"
+#include "report/still_picture.hpp"
 #include "report/view_data.hpp"
 
 #include <fmt/format.h>
@@ -54,11 +56,7 @@ public:
   }
 
 private:
-  bool has_view() const {
-    return !detail::embedded_three().empty() &&
-           std::any_of(places_.begin(), places_.end(),
-                       [&](std::size_t place) { return result_.ranking[place].collides; });
-  }
+  bool has_view() const { return !detail::embedded_three().empty() && !places_.empty(); }
 
   bool is_drawn(std::size_t place) const {
     return std::binary_search(places_.begin(), places_.end(), place);
@@ -72,7 +70,7 @@ private:
     out_ +=
         "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>\n"
         "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; "
-        "script-src 'unsafe-inline'; style-src 'unsafe-inline'\">\n"
+        "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n"
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n<title>";
     out_ += escape_xml(scenario_.name) + " - crashrank</title>\n<style>";
     out_ += detail::embedded_style();
@@ -97,7 +95,7 @@ private:
 
   void verdict() {
     if (result_.ranking.empty()) return;
-    out_ += "<section class='verdict'><h2>";
+    out_ += fmt::format("<section class='verdict {}'><h2>", how_bad());
     out_ += !result_.proved                    ? "Best guess so far: "
             : result_.measure == Measure::harm ? "Least harmful: "
                                                : "Least destructive: ";
@@ -146,14 +144,39 @@ private:
     out_ += "</section>\n";
   }
 
+  /// Colour of the verdict: how much harm even the best choice does.
+  const char* how_bad() const {
+    const CandidateResult& best = result_.ranking.front();
+    if (result_.measure != Measure::harm || !best.score) return "unweighted";
+    constexpr double few = 0.02;
+    constexpr double many = 0.2;
+    if (*best.score < few) return "slight";
+    return *best.score < many ? "grave" : "severe";
+  }
+
   bool simulated() const { return needs_crash(result_.measure); }
 
+  /// The winner's scene as a picture, for print and for browsers without WebGL.
+  void still() {
+    const Result<std::string> drawn = detail::still_picture(scenario_, models_, result_, 0);
+    if (!drawn) return;
+    out_ += "<figure class='still'><img alt='' src='data:image/png;base64,";
+    out_ += detail::base64(drawn->data(), drawn->size());
+    out_ += "'><figcaption>" + escape_xml(name_of(0)) +
+            (result_.ranking.front().contacts.empty() ? ", at the end of the plan"
+                                                      : ", at first contact; damage is red") +
+            "</figcaption></figure>\n";
+  }
+
   void view() {
+    out_ += "<section class='stage'>\n";
+    still();
     out_ +=
-        "<section class='stage'><div id='view'><p id='view-note'>The 3-D view needs a browser "
+        "<div id='view'><p id='view-note'>The 3-D view needs a browser "
         "with JavaScript and WebGL.</p></div>\n"
+        "<noscript><style>#view { height: auto; }</style></noscript>\n"
         "<div class='controls'><b id='view-title'></b> <label>pull apart <input id='apart' "
-        "type='range' min='0' max='3' step='0.05' value='0.6'></label> "
+        "type='range' min='0' max='3' step='0.05' value='0'></label> "
         "<span>drag to turn, wheel to come nearer; damage is red</span></div>\n";
     if (data_.left_out) {
       out_ += "<p class='note'>Models of very many triangles are left out of the 3-D view.</p>\n";
@@ -167,20 +190,14 @@ private:
       top = std::max(top, ranked.score.value_or(ranked.score_interval.highest));
     }
     out_ +=
-        "<section><h2>Ranking</h2>\n<table class='ranking'><thead><tr><th>rank</th>"
+        "<section class='wide'><h2>Ranking</h2>\n<table class='ranking'><thead><tr><th>rank</th>"
         "<th>candidate</th><th>";
     out_ += std::string(measure_name(result_.measure)) + " [" +
             escape_xml(measure_unit(result_.measure)) + "]</th>";
-    if (simulated()) out_ += "<th>interval</th><th>may rank</th>";
-    out_ += "<th>hits</th><th>after s</th><th>closing m/s</th>";
-    if (simulated()) {
-      out_ +=
-          "<th>delta-v m/s, ego</th><th>other</th><th>crush m, ego</th><th>other</th>"
-          "<th>harm, ego</th><th>others</th>";
-    } else {
-      out_ += "<th>along the normal m/s</th>";
-    }
-    out_ += "<th>damaged m², ego</th><th>others</th><th>ego's parts</th></tr></thead><tbody>\n";
+    if (simulated()) out_ += "<th>interval</th><th class='roomy'>may rank</th>";
+    out_ +=
+        "<th>hits</th><th class='roomy'>after s</th><th class='roomy'>closing m/s</th></tr></thead>"
+        "<tbody>\n";
     for (std::size_t place = 0; place < result_.ranking.size(); ++place) row(place, top);
     out_ += "</tbody></table></section>\n";
   }
@@ -196,11 +213,11 @@ private:
     out_ += fmt::format("<td class='score'><span class='bar' style='width:{:.1f}px'></span>{}</td>",
                         width, scores_[place]);
     if (simulated()) {
-      out_ += "<td class='n'>" + detail::interval_text(ranked) + "</td><td class='n'>" +
+      out_ += "<td class='n'>" + detail::interval_text(ranked) + "</td><td class='n roomy'>" +
               detail::places_text(ranked) + "</td>";
     }
     if (ranked.contacts.empty()) {
-      out_ += fmt::format("<td colspan='{}' class='free'>", simulated() ? 12 : 7);
+      out_ += "<td colspan='3' class='free'>";
       out_ += !ranked.score           ? "not known yet"
               : ranked.grazes.empty() ? "nothing"
                                       : "nothing, but grazes";
@@ -208,8 +225,6 @@ private:
       return;
     }
     const Contact& first = ranked.contacts.front();
-    const DamageSummary ego = detail::summary_of(ranked.ego, models_[scenario_.ego.model].mesh);
-    const DamageSummary other = detail::summary_of_others(scenario_, models_, ranked);
     std::string hit;
     for (const std::size_t actor : detail::hit_actors(ranked)) {
       hit += hit.empty() ? detail::contact_name(scenario_, first)
@@ -218,29 +233,38 @@ private:
     for (const detail::FurtherPair& pair : detail::further_pairs(ranked)) {
       hit += ", " + detail::pair_name(scenario_, *pair.first);
     }
+    out_ += fmt::format(
+        "<td><details><summary>{}</summary>{}</details></td><td class='n roomy'>{:.3f}</td>"
+        "<td class='n roomy'>{}</td></tr>\n",
+        escape_xml(hit), outcome_lines(ranked), first.time_of_impact_s,
+        detail::fixed_text(first.closing_speed_mps, 1));
+  }
+
+  std::string outcome_lines(const CandidateResult& ranked) const {
+    const Contact& first = ranked.contacts.front();
+    const DamageSummary ego = detail::summary_of(ranked.ego, models_[scenario_.ego.model].mesh);
+    const DamageSummary other = detail::summary_of_others(scenario_, models_, ranked);
     std::string parts;
     for (std::size_t i = 0; i < std::min<std::size_t>(4, ego.parts.size()); ++i) {
       if (i > 0) parts += ", ";
       parts += ego.parts[i];
     }
-    if (ego.parts.size() > 4) parts += fmt::format(" +{}", ego.parts.size() - 4);
-    out_ +=
-        fmt::format("<td>{}</td><td class='n'>{:.3f}</td><td class='n'>{}</td>", escape_xml(hit),
-                    first.time_of_impact_s, detail::fixed_text(first.closing_speed_mps, 1));
-    if (simulated()) {
-      severity_cells(ranked);
-    } else {
-      out_ += "<td class='n'>" + detail::fixed_text(first.normal_speed_mps, 1) + "</td>";
-    }
-    out_ += fmt::format("<td class='n'>{}</td><td class='n'>{}</td><td>{}</td></tr>\n",
-                        detail::fixed_text(ego.area_m2, 2), detail::fixed_text(other.area_m2, 2),
-                        escape_xml(parts));
+    if (ego.parts.size() > 4) parts += fmt::format(" and {} more", ego.parts.size() - 4);
+    std::string lines =
+        fmt::format("after {:.3f} s, closing with {} m/s, {} along the normal",
+                    first.time_of_impact_s, detail::fixed_text(first.closing_speed_mps, 1),
+                    detail::fixed_text(first.normal_speed_mps, 1));
+    if (simulated()) lines += severity_lines(ranked);
+    lines += fmt::format("<br>damaged m²: ego {}, others {}", detail::fixed_text(ego.area_m2, 2),
+                         detail::fixed_text(other.area_m2, 2));
+    if (!parts.empty()) lines += "<br>ego's parts: " + escape_xml(parts);
+    return lines;
   }
 
   /// Of all contacts: the ego's changes of velocity and harm add up; of the others', those hit by
   /// others included, the greatest change of velocity and the sum of harm; crush is the deepest. As
   /// many digits as the ranges leave of anything.
-  void severity_cells(const CandidateResult& ranked) {
+  static std::string severity_lines(const CandidateResult& ranked) {
     BodyOutcome ego;
     BodyOutcome other;
     const auto add_other = [&other](const BodyOutcome& outcome) {
@@ -258,9 +282,9 @@ private:
       add_other(contact.outcome_a);
       add_other(contact.outcome_b);
     }
-    out_ += fmt::format(
-        "<td class='n'>{}</td><td class='n'>{}</td><td class='n'>{}</td>"
-        "<td class='n'>{}</td><td class='n'>{:.2g}</td><td class='n'>{:.2g}</td>",
+    return fmt::format(
+        "<br>delta-v m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
+        "<br>harm: ego {:.2g}, others {:.2g}",
         detail::fixed_text(ego.delta_v_mps, 1), detail::fixed_text(other.delta_v_mps, 1),
         detail::fixed_text(ego.crush_m, 2), detail::fixed_text(other.crush_m, 2), ego.harm,
         other.harm);

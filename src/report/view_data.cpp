@@ -1,8 +1,8 @@
 #include "report/view_data.hpp"
 
 #include "report/base64.hpp"
-#include "report/damage_summary.hpp"
 #include "report/palette.hpp"
+#include "report/scene_views.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -74,21 +74,25 @@ ViewData view_data(const Scenario& scenario, View<const Model> models, const Ran
   Json scenes = Json::object();
   for (const std::size_t place : places) {
     const CandidateResult& ranked = result.ranking[place];
-    if (ranked.contacts.empty()) continue;
+    // Who touches nothing is worth looking at where he is the best.
+    if (ranked.contacts.empty() && place > 0) continue;
     Json bodies = Json::array();
-    BodyDamage ego = ranked.ego;
-    ego.pose = ranked.contacts.front().ego.pose;
-    if (shown(scenario.ego.model)) {
-      bodies.push_back(body_json(scenario.ego.model, models[scenario.ego.model].mesh, ego));
+    for (const SceneView& body : scene_views(scenario, models, result, place)) {
+      if (shown(body.model)) {
+        bodies.push_back(body_json(body.model, models[body.model].mesh, body.damage));
+      }
     }
-    for (const DamagedBody& body : damaged_others(scenario, models, ranked)) {
-      const std::size_t model = scenario.actors[body.actor].model;
-      if (shown(model)) bodies.push_back(body_json(model, models[model].mesh, body.damage));
+    if (bodies.empty()) continue;
+    Eigen::Vector3d point;
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitY();
+    if (ranked.contacts.empty()) {
+      point = result.candidates[ranked.candidate].motion.pose_at(scenario.horizon_s).translation;
+    } else {
+      point = ranked.contacts.front().point_m;
+      normal = ranked.contacts.front().normal;
     }
-    const Contact& first = ranked.contacts.front();
-    scenes[std::to_string(place + 1)] = {{"point", vector(first.point_m)},
-                                         {"normal", vector(first.normal)},
-                                         {"bodies", std::move(bodies)}};
+    scenes[std::to_string(place + 1)] = {
+        {"point", vector(point)}, {"normal", vector(normal)}, {"bodies", std::move(bodies)}};
   }
   Json meshes = Json::object();
   for (const std::size_t model : used) {

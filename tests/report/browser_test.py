@@ -1,7 +1,9 @@
-"""Opens a report in headless Chromium: its script has to run to the end without an error, and the
-3-D view has to show both bodies with red damage. Skipped where no Chromium is installed."""
+"""Opens a report in headless Chromium: its script has to run to the end without an error, the
+3-D view has to show both bodies with red damage, and on desks, tablets and telephones nothing may
+stand beyond the right edge. Skipped where no Chromium is installed."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -47,6 +49,28 @@ def pixels_of(png):
     return rows, channels
 
 
+def check_width(arguments, page, width):
+    """A window is never narrower than some 500 pixels; a frame in it is."""
+    with open(page, encoding="utf-8") as file:
+        text = file.read()
+    probe = ("<script>addEventListener('load', () => { const d = document.documentElement;"
+             "parent.document.title = d.scrollWidth + '/' + d.clientWidth; });</script></body>")
+    inner = os.path.join(os.path.dirname(page), "inner.html")
+    with open(inner, "w", encoding="utf-8") as file:
+        file.write(text.replace("</body>", probe))
+    outer = os.path.join(os.path.dirname(page), "outer.html")
+    with open(outer, "w", encoding="utf-8") as file:
+        file.write(f"<title>-</title><iframe src='inner.html' style='width:{width}px;height:900px'>"
+                   "</iframe>")
+    shown = subprocess.run(arguments + ["--allow-file-access-from-files", "--dump-dom",
+                                        "file://" + outer],
+                           capture_output=True, text=True, timeout=120, check=True)
+    told = re.search(r"<title>(\d+)/(\d+)</title>", shown.stdout)
+    assert told, shown.stdout[:300]
+    print("width", width, "needs", told[1], "of", told[2])
+    assert int(told[1]) <= int(told[2]) <= width
+
+
 def main():
     browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which(
         "google-chrome")
@@ -70,6 +94,8 @@ def main():
         assert "Uncaught" not in shown.stderr, shown.stderr
         assert 'data-view="ready"' in shown.stdout, shown.stderr
         assert "Least harmful" in shown.stdout
+        for width in (1400, 820, 390):
+            check_width(arguments, page, width)
         picture = os.path.join(folder, "page.png")
         subprocess.run(arguments + ["--screenshot=" + picture, "file://" + page],
                        capture_output=True, timeout=120, check=True)

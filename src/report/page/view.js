@@ -11,7 +11,10 @@
     renderer = new THREE.WebGLRenderer({antialias: true, alpha: true});
   } catch (error) {
     document.getElementById("view-note").textContent =
-      "This browser offers no WebGL: the 3-D view stays empty.";
+      "This browser offers no WebGL for the 3-D view.";
+    holder.classList.add("empty");
+    document.querySelector(".controls").hidden = true;
+    for (const button of document.querySelectorAll("button[data-place]")) button.hidden = true;
     return;
   }
   document.getElementById("view-note").remove();
@@ -176,5 +179,6 @@
   }
   const places = Object.keys(data.scenes);
   if (places.length > 0) show(places[0]);
+  document.body.classList.add("live");
   document.body.dataset.view = "ready";
 })();
