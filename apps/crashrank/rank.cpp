@@ -258,7 +258,7 @@ int run(const Options& options) {
   auto ends_itself = std::make_optional<EndsItself>();
   const Result<RankResult> ranked = [&] {
     Progress progress("ranking");
-    how.go_on = [&](std::size_t evaluated, std::size_t candidates) {
+    how.on_progress = [&](std::size_t evaluated, std::size_t candidates) {
       progress.update(evaluated, candidates);
       return !is_interrupted();
     };

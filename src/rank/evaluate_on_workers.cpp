@@ -4,7 +4,7 @@
 #include "crashrank/dispatch/pair_lists.hpp"
 #include "crashrank/dispatch/part_index.hpp"
 #include "rank/evaluate.hpp"
-#include "rank/headway.hpp"
+#include "rank/progress.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -69,9 +69,9 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
   how.depth = options.depth;
   how.kernel = Kernel::fast;
 
-  Headway headway(options, result.candidates.size());
+  RankProgress progress(options, result.candidates.size());
   std::vector<Scratch> scratch(std::max(1U, pool.size()));
-  for (Scratch& own : scratch) headway.watch(own);
+  for (Scratch& own : scratch) progress.watch(own);
   std::vector<RankWork> work(scratch.size());
   const std::size_t batch_candidates = candidates_each * scratch.size();
   std::vector<Approach> approaches;
@@ -84,7 +84,7 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
     approaches.resize(count);
     Status done = pool.for_each(count, [&](std::size_t i, std::uint32_t worker) {
       approaches[i] = approach(scene, result.candidates[begin + i], scratch[worker], work[worker]);
-      if (approaches[i].decided) headway.advance();
+      if (approaches[i].decided) progress.advance();
     });
     if (!done) return done;
 

@@ -3,7 +3,7 @@
 #include "crashrank/base/guarded.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/evaluate_on_workers.hpp"
-#include "rank/headway.hpp"
+#include "rank/progress.hpp"
 #include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
 
@@ -41,12 +41,12 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
     const Status shared = detail::evaluate_on_workers(*scene, options, result);
     if (!shared) return shared.error();
   } else {
-    detail::Headway headway(options, count);
+    detail::RankProgress progress(options, count);
     detail::Scratch scratch;
-    headway.watch(scratch);
+    progress.watch(scratch);
     for (std::size_t i = 0; i < count; ++i) {
       result.ranking[i] = detail::evaluate(*scene, result.candidates[i], scratch, result.work);
-      if (result.ranking[i].score) headway.advance();
+      if (result.ranking[i].score) progress.advance();
     }
   }
   for (std::size_t i = 0; i < count; ++i) result.ranking[i].candidate = i;

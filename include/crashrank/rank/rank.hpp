@@ -37,11 +37,11 @@ struct RankOptions {
   std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
   std::optional<HarmOptions> harm;     ///< absent: the scenario's
   ImpactOptions impact;                ///< `start_is_apart` is decided inside
-  /// Asked by every thread that works, some at once, before each simulation and after each
-  /// candidate: how many are evaluated, of how many. It has to return at once and must not throw.
-  /// Once it says false, candidates not yet evaluated keep bounds on their scores. Empty: all are
-  /// evaluated. A Ranker has a budget instead.
-  std::function<bool(std::size_t evaluated, std::size_t candidates)> go_on;
+  /// Called before each simulation and after each candidate with the number of candidates evaluated
+  /// and of all, by all workers, also concurrently; must return within microseconds and not throw.
+  /// Returning false cancels the ranking: candidates not evaluated yet get bounds on their scores.
+  /// Empty: all candidates are evaluated. `Ranker` ignores it, see RankBudget.
+  std::function<bool(std::size_t evaluated, std::size_t candidates)> on_progress;
 };
 
 /// What a crash does to one body.

@@ -32,7 +32,7 @@ std::size_t known(const RankResult& result) {
                     [](const CandidateResult& c) { return c.score.has_value(); }));
 }
 
-TEST(RankGoOn, WhatIsKnownByTheEndIsExactAndTheRestIsBounded) {
+TEST(RankProgress, ACancelledRankingHasExactScoresAndBounds) {
   const Scene scene = many_candidates();
   const RankResult whole = scene.ranked();
   ASSERT_EQ(known(whole), 40U);
@@ -41,7 +41,7 @@ TEST(RankGoOn, WhatIsKnownByTheEndIsExactAndTheRestIsBounded) {
       SCOPED_TRACE(std::to_string(workers) + " workers, " + std::to_string(enough));
       RankOptions options;
       options.workers = workers;
-      options.go_on = [enough](std::size_t evaluated, std::size_t candidates) {
+      options.on_progress = [enough](std::size_t evaluated, std::size_t candidates) {
         EXPECT_EQ(candidates, 40U);
         return evaluated < enough;
       };
@@ -69,14 +69,14 @@ TEST(RankGoOn, WhatIsKnownByTheEndIsExactAndTheRestIsBounded) {
   }
 }
 
-TEST(RankGoOn, WhoIsAskedAndGoesOnGetsTheSameAnswer) {
+TEST(RankProgress, TheCallbackDoesNotChangeTheRanking) {
   const Scene scene = many_candidates();
   const RankResult plain = scene.ranked();
   for (const unsigned workers : {1U, 2U}) {
     std::atomic<std::size_t> most{0};
     RankOptions options;
     options.workers = workers;
-    options.go_on = [&most](std::size_t evaluated, std::size_t /*candidates*/) {
+    options.on_progress = [&most](std::size_t evaluated, std::size_t /*candidates*/) {
       std::size_t before = most;
       while (before < evaluated && !most.compare_exchange_weak(before, evaluated)) {
       }
