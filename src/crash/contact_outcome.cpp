@@ -54,14 +54,15 @@ BodyContact ContactRun::describe(bool is_first) const {
   return result;
 }
 
-/// The impulses of several that press on a body at a time may cancel, and then say nothing of what
-/// its people feel: no contact counts for more than the body undergoes, or than the speed at which
-/// its crush energy would be its kinetic energy.
+/// The impulses of several that press on a body at a time may cancel, and those of steps that count
+/// may be cancelled by others; such a sum says nothing of what its people feel: no contact counts
+/// for more than the body undergoes, or than the speed at which its crush energy would be its
+/// kinetic energy.
 void ContactRun::limit(const Undergone& undergone, double inverse_mass, BodyContact& contact) {
   const double change_mps = contact.delta_v_mps.norm();
   const double most_mps =
       std::max(undergone.most_mps, std::sqrt(2.0 * contact.crush_energy_j * inverse_mass));
-  if (!undergone.shared || !(change_mps > most_mps)) return;
+  if (!undergone.partial || !(change_mps > most_mps)) return;
   const double share = most_mps / change_mps;
   contact.delta_v_mps *= share;
   contact.delta_yaw_rate_radps *= share;

@@ -267,7 +267,29 @@ Eigen::Vector2d ContactRun::step_change_mps(bool of_first) const {
   return Eigen::Vector2d(share * f.x, share * f.y);
 }
 
+/// Injury risk is known for impacts of some 0.1 s. A long push or scrape that accelerates both
+/// bodies no more than brakes do every day is no impact, however much velocity it adds up to. Both
+/// bodies count the same share, so that impulses stay equal. Slow impacts, whose forces are as
+/// small, are over by `impact_s`.
+void ContactRun::weigh_step() {
+  constexpr double impact_s = 0.3;
+  constexpr double everyday_mps2 = 0.3 * gravity_mps2;
+  constexpr double strong_mps2 = 1.0 * gravity_mps2;
+  counted_ = 1.0;
+  const double change_mps = std::max(step_change_mps(true).norm(), step_change_mps(false).norm());
+  const double acceleration = change_mps / step_s_;
+  if (acceleration >= strong_mps2) strong_s_ = time_s_;
+  if (time_s_ - strong_s_ <= impact_s) return;
+  counted_ = std::clamp((acceleration - everyday_mps2) / (strong_mps2 - everyday_mps2), 0.0, 1.0);
+  add_taken(true, 1.0 - counted_);
+  add_taken(false, 1.0 - counted_);
+}
+
 void ContactRun::take_back(bool from_first, double share) {
+  add_taken(from_first, share * counted_);
+}
+
+void ContactRun::add_taken(bool from_first, double share) {
   const PlanarForce& f = from_first ? on_first_ : state_->pairs[pairs_[0]].on_second;
   PlanarForce& taken = from_first ? taken_first_ : taken_second_;
   taken.x += share * pushed_s_ * f.x;
@@ -278,7 +300,7 @@ void ContactRun::take_back(bool from_first, double share) {
 void ContactRun::undergo(bool first, const Eigen::Vector2d& change_mps, bool shared) {
   Undergone& body = first ? of_first_ : of_second_;
   body.now_mps += change_mps;
-  body.shared = body.shared || shared;
+  body.partial = body.partial || shared || counted_ < 1.0;
   if (presses()) body.most_mps = std::max(body.most_mps, body.now_mps.norm());
 }
 

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace crashrank {
@@ -93,7 +94,13 @@ public:
   void press();
   /// What the step's force gave the first or the second body, m/s.
   Eigen::Vector2d step_change_mps(bool of_first) const;
-  /// The share in [0, 1] of that which something else took at the same time: no change of velocity.
+  /// It continues an earlier contact's push: no impact begins with it.
+  void continue_push() noexcept { strong_s_ = -std::numeric_limits<double>::infinity(); }
+  /// Decides after `press` how much of the step's force counts as change of velocity: all but that
+  /// of long pushes and scrapes.
+  void weigh_step();
+  /// The share in [0, 1] of what counts that something else took at the same time: it counts no
+  /// more.
   void take_back(bool from_first, double share);
   /// All contacts together changed the first or the second body's velocity so in this step, m/s;
   /// `shared`: others pressed on it, too.
@@ -165,7 +172,8 @@ private:
   struct Undergone {
     Eigen::Vector2d now_mps = Eigen::Vector2d::Zero();
     double most_mps = 0.0;  ///< greatest after a step with a force
-    bool shared = false;    ///< others pressed on it at the same time
+    /// What counts may be more: others pressed on it at the same time, or not all steps count.
+    bool partial = false;
   };
   /// Relative velocity where the force of a step acts.
   struct AtForce {
@@ -179,6 +187,7 @@ private:
   void push();
   AtForce at_force() const;
   void rebound(double passing_mps);
+  void add_taken(bool from_first, double share);
   double moving_j() const;
   double speed_at_rims() const;
   double relative_speed() const;
@@ -211,6 +220,8 @@ private:
   PlanarForce since_rebound_;     ///< impulse on the first, about the origin
   PlanarForce impulse_on_first_;  ///< in the whole contact, about its centre of mass
   double pushed_s_ = 0.0;         ///< how long it acted in this step
+  double counted_ = 1.0;          ///< share of this step's force that counts, see `weigh_step`
+  double strong_s_ = 0.0;         ///< since the begin: last force that counts whole, s
   PlanarForce taken_first_;       ///< impulses on both, see `take_back`
   PlanarForce taken_second_;
   Undergone of_first_;

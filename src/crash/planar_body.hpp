@@ -8,6 +8,8 @@
 
 namespace crashrank::detail {
 
+inline constexpr double gravity_mps2 = 9.80665;
+
 /// Several times faster than std::hypot, which minds numbers that no body has.
 inline double plane_length(double x, double y) { return std::sqrt(x * x + y * y); }
 

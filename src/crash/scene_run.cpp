@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double standard_gravity = 9.80665;
 constexpr auto no_pair = static_cast<std::uint32_t>(-1);
 /// Bodies slower than this at their rims have come to rest, m/s.
 constexpr double rest_mps = 0.02;
@@ -243,6 +242,7 @@ void SceneRun::open(std::size_t i, std::size_t j) {
   goes_on_[k] = now_s_ < pair.faded_until_s ? 1 : 0;
   runs_[k].begin(memory_, first, index, given(first), given(second), origin_m_, options_.variant,
                  options_.contact);
+  if (goes_on_[k] != 0) runs_[k].continue_push();
 }
 
 void SceneRun::open_contacts() {
@@ -281,7 +281,7 @@ void SceneRun::drive_on_road(std::size_t i, double step_s) {
   const SceneBody& body = bodies_[i];
   const double grip =
       body.footing->wheels ? options_.grip : std::min(options_.grip, options_.sliding_grip);
-  const double pushed_mps = pushing * grip * standard_gravity * step_s;
+  const double pushed_mps = pushing * grip * gravity_mps2 * step_s;
   Member& m = members_[i];
   const auto each_run = [&](auto&& each) {
     for (const std::uint32_t k : live_) {
@@ -322,7 +322,10 @@ void SceneRun::press() {
   each_side([&](const ContactRun& run, bool /*first*/, std::size_t i) {
     if (run.presses()) ++members_[i].pressing;
   });
-  for (const std::uint32_t k : live_) runs_[k].press();
+  for (const std::uint32_t k : live_) {
+    runs_[k].press();
+    if (runs_[k].presses()) runs_[k].weigh_step();
+  }
   each_side([&](ContactRun& run, bool first, std::size_t i) {
     const Member& m = members_[i];
     if (m.state != State::free) return;
