@@ -1,6 +1,6 @@
 #include "crash_test_pairs.hpp"
 
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <Eigen/Geometry>

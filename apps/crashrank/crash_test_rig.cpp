@@ -2,7 +2,7 @@
 
 #include "crash_test_prism.hpp"
 
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "bench/workload.hpp"
 #include "catalogue.hpp"
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
 
 #include <array>
 #include <cmath>

@@ -38,9 +38,9 @@
 #include "crashrank/crash/cdc.hpp"
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/crash/injury.hpp"
-#include "crashrank/crash/motion.hpp"
 #include "crashrank/crash/pdof.hpp"
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/motion.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
 
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/profile.hpp"

@@ -4,7 +4,7 @@
 #include "crash/tyres.hpp"
 
 #include "crashrank/base/view.hpp"
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 
 #include <string>
 

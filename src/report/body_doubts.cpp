@@ -1,7 +1,7 @@
 #include "report/body_doubts.hpp"
 
 #include "crashrank/collide/wide_collide.hpp"
-#include "crashrank/crash/containment.hpp"
+#include "crashrank/motion/containment.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "report/orientation.hpp"
 

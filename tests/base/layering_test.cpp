@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> stages{"base",    "mesh",  "tree", "collide", "dispatch",
+const std::vector<std::string> stages{"base",    "mesh",  "tree", "collide", "dispatch", "motion",
                                       "vehicle", "crash", "rank", "report",  "c"};
 
 int level(const std::string& stage) {
@@ -21,8 +21,7 @@ int level(const std::string& stage) {
   return -1;
 }
 
-// Data flows mesh -> tree -> collide -> dispatch -> vehicle -> crash -> rank -> report: a stage may
-// include itself and the stages to its left.
+// Data flows in this order: a stage may include itself and the stages to its left.
 std::vector<std::string> violations(const fs::path& root) {
   static const std::regex include(R"re(^\s*#\s*include\s*[<"](?:crashrank/)?([a-z]+)/)re");
   std::vector<std::string> found;

@@ -1,10 +1,10 @@
 #include "crashrank/collide/distance.hpp"
 
-#include "crash/random.hpp"
-#include "crash/shapes.hpp"
+#include "base/random.hpp"
 #include "crashrank/collide/collide.hpp"
 #include "oracle/triangle_oracle.hpp"
 #include "oracle/triangle_pairs.hpp"
+#include "tree/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
-#include "crash/random.hpp"
-#include "crash/shapes.hpp"
+#include "base/random.hpp"
 #include "oracle/shipped_models.hpp"
+#include "tree/shapes.hpp"
 
 #include <Eigen/Core>
 

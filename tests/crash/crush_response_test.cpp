@@ -1,7 +1,7 @@
 #include "crash/crush_response.hpp"
 #include "crash/crush_curves-inl.hpp"
 
-#include "crash/random.hpp"
+#include "base/random.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "crash/shapes.hpp"
 #include "crash/tyres.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
+#include "tree/shapes.hpp"
 
 #include <gtest/gtest.h>
 

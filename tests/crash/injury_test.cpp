@@ -1,7 +1,7 @@
 #include "crashrank/crash/injury.hpp"
 
-#include "crash/random.hpp"
-#include "crash/shapes.hpp"
+#include "base/random.hpp"
+#include "tree/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "crashrank/crash/cdc.hpp"
 #include "crashrank/crash/pdof.hpp"
 
-#include "crash/random.hpp"
+#include "base/random.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crash/random.hpp"
+#include "base/random.hpp"
 #include "crash/tyres.hpp"
 #include "crashrank/base/frames.hpp"
 

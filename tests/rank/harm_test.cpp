@@ -1,6 +1,6 @@
 #include "crashrank/rank/harm.hpp"
 
-#include "crash/random.hpp"
+#include "base/random.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "crash/random.hpp"
+#include "base/random.hpp"
 #include "rank/scenes.hpp"
 #include "rank/shipped_cast.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "rank/tally.hpp"
 
-#include "crash/shapes.hpp"
+#include "tree/shapes.hpp"
 
 #include <array>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "crash/random.hpp"
+#include "base/random.hpp"
 #include "rank/tally_cases.hpp"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 #include "crashrank/vehicle/silhouettes.hpp"
 
-#include "crash/random.hpp"
-#include "crash/shapes.hpp"
+#include "base/random.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 #include "oracle/shipped_models.hpp"
+#include "tree/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "crashrank/vehicle/vehicle.hpp"
 
-#include "crash/shapes.hpp"
 #include "oracle/shipped_models.hpp"
+#include "tree/shapes.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -4,7 +4,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/view.hpp"
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 #include "crashrank/rank/scenario.hpp"
 
 #include <cstddef>

@@ -3,7 +3,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 #include "crashrank/rank/candidate.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/scenario.hpp"

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "crash/relative_motion.hpp"
+#include "motion/relative_motion.hpp"
 
 #include "crashrank/collide/box_test.hpp"
 #include "crashrank/collide/triangle_distance.hpp"
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 
 #include <Eigen/Core>

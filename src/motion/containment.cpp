@@ -1,4 +1,4 @@
-#include "crashrank/crash/containment.hpp"
+#include "crashrank/motion/containment.hpp"
 
 #include "crashrank/collide/box_test.hpp"
 

@@ -1,6 +1,6 @@
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 
-#include "crash/random.hpp"
+#include "base/random.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "crash/impact_search.hpp"
+#include "motion/impact_search.hpp"
 
 #include "crashrank/collide/distance.hpp"
 #include "crashrank/collide/traverse.hpp"

@@ -1,4 +1,4 @@
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 
 #include <Eigen/Geometry>
 

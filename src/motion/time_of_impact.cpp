@@ -1,13 +1,13 @@
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
 
 #include "base/hidden.hpp"
-#include "crash/impact_search.hpp"
-#include "crash/relative_motion.hpp"
+#include "motion/impact_search.hpp"
+#include "motion/relative_motion.hpp"
 
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/distance.hpp"
 #include "crashrank/collide/traverse.hpp"
-#include "crashrank/crash/containment.hpp"
+#include "crashrank/motion/containment.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "crash/impact_fixture.hpp"
+#include "motion/impact_fixture.hpp"
 
 #include <gtest/gtest.h>
 

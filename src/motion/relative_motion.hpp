@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/collide/triangle_test.hpp"
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 
 #include <Eigen/Core>
 

@@ -1,6 +1,6 @@
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
 
-#include "crash/impact_fixture.hpp"
+#include "motion/impact_fixture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "crash/random.hpp"
-#include "crash/shapes.hpp"
+#include "base/random.hpp"
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/distance.hpp"
-#include "crashrank/crash/time_of_impact.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
+#include "tree/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/export.hpp"
-#include "crashrank/crash/motion.hpp"
+#include "crashrank/motion/motion.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 
 #include <Eigen/Core>
