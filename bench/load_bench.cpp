@@ -6,11 +6,12 @@
 
 #include "bench/timing.hpp"
 #include "bench/workload.hpp"
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/tree/validate.hpp"
 #include "crashrank/tree/validate_wide.hpp"
-#include "tree/file_bytes.hpp"
-#include "tree/model_layout.hpp"
+#include "model/file_bytes.hpp"
+#include "model/model_layout.hpp"
 
 #include <unistd.h>
 #include <CLI/CLI.hpp>

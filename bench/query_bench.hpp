@@ -4,6 +4,8 @@
 #include "bench/workload.hpp"
 
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <algorithm>

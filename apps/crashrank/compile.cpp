@@ -9,9 +9,9 @@
 #include "tree_arguments.hpp"
 
 #include "crashrank/mesh/stated_mass.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
-#include "crashrank/tree/model_file.hpp"
 
 #include <fmt/format.h>
 

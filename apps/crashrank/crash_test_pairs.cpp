@@ -1,5 +1,6 @@
 #include "crash_test_pairs.hpp"
 
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/tree/model.hpp"
 

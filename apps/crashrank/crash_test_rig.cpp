@@ -2,6 +2,7 @@
 
 #include "crash_test_prism.hpp"
 
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/tree/model.hpp"
 

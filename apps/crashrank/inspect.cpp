@@ -5,9 +5,9 @@
 #include "mesh_arguments.hpp"
 
 #include "crashrank/mesh/import.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/report/escape.hpp"
 #include "crashrank/report/table.hpp"
-#include "crashrank/tree/model_file.hpp"
 #include "report/orientation.hpp"
 
 #include <fmt/format.h>

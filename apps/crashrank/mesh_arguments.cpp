@@ -5,8 +5,10 @@
 #include "options.hpp"
 #include "streams.hpp"
 
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
+#include "crashrank/tree/build.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -8,6 +8,7 @@
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/rank/profile.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/ranker.hpp"
@@ -15,8 +16,8 @@
 #include "crashrank/rank/scenario_models.hpp"
 #include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
-#include "crashrank/tree/model_file.hpp"
 
 #include <fmt/format.h>
 

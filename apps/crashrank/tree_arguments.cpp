@@ -1,4 +1,5 @@
 #include "tree_arguments.hpp"
+#include "crashrank/tree/build.hpp"
 
 #include "options.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "bench/workload.hpp"
 #include "catalogue.hpp"
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 
 #include <array>

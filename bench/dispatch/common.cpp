@@ -1,6 +1,7 @@
 #include "common.hpp"
 
 #include "crashrank/mesh/import.hpp"
+#include "crashrank/model/make_model.hpp"
 
 #include <algorithm>
 #include <array>

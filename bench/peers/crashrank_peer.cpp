@@ -1,5 +1,6 @@
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/model.hpp"
 #include "peer.hpp"
 

@@ -1,4 +1,5 @@
 #include "bench/rank/situations.hpp"
+#include "crashrank/model/make_model.hpp"
 
 #include "bench/workload.hpp"
 

@@ -17,9 +17,10 @@
 #include "crashrank/mesh/transform.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
-#include "crashrank/tree/model_file.hpp"
 #include "crashrank/tree/validate.hpp"
 #include "crashrank/tree/validate_wide.hpp"
 

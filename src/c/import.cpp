@@ -1,7 +1,8 @@
 #include "crashrank/mesh/import.hpp"
 #include "c/handles.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/rank/scenario_models.hpp"
-#include "crashrank/tree/model_file.hpp"
 
 #include <utility>
 

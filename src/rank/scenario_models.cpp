@@ -1,7 +1,8 @@
 #include "crashrank/rank/scenario_models.hpp"
 
 #include "crashrank/base/guarded.hpp"
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
 #include "rank/number_range.hpp"
 

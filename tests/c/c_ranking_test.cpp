@@ -1,7 +1,8 @@
 #include "c/c_objects.hpp"
 #include "crashrank/crashrank.hpp"
 #include "crashrank/mesh/import.hpp"
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 // No query allocates once its workspace and buffer have grown: every operator new is counted.
 
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
 
 #include "counted_allocations.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "base/random.hpp"
 #include "crashrank/collide/collide.hpp"
+#include "crashrank/tree/build.hpp"
 #include "oracle/triangle_oracle.hpp"
 #include "oracle/triangle_pairs.hpp"
 #include "tree/shapes.hpp"

@@ -4,6 +4,8 @@
 #include "crashrank/collide/wide_collide.hpp"
 
 #include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 #include "crashrank/tree/wide_tree.hpp"
 
 #include <gtest/gtest.h>

@@ -4,6 +4,7 @@
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 #include "crashrank/dispatch/sweep.hpp"
 
+#include "crashrank/model/make_model.hpp"
+
 #include "dispatch/sample_bodies.hpp"
 
 #include <gtest/gtest.h>

@@ -3,8 +3,10 @@
 // same bytes.
 
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 #include "fuzz/target.hpp"
-#include "tree/model_layout.hpp"
+#include "model/model_layout.hpp"
 
 #include <algorithm>
 #include <cstring>

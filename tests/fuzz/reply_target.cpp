@@ -1,5 +1,6 @@
 // The importer's answer: a parser that a file has taken over can write anything.
 
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/model.hpp"
 #include "fuzz/target.hpp"
 #include "mesh/import_protocol.hpp"

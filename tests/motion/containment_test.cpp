@@ -1,5 +1,7 @@
 #include "crashrank/motion/containment.hpp"
 
+#include "crashrank/tree/build.hpp"
+
 #include "base/random.hpp"
 #include "tree/shapes.hpp"
 

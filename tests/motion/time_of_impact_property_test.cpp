@@ -1,3 +1,4 @@
+#include "crashrank/tree/build.hpp"
 #include "motion/impact_fixture.hpp"
 
 #include <gtest/gtest.h>

@@ -3,6 +3,8 @@
 
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
 #include "oracle/body_poses.hpp"
 #include "oracle/brute_force.hpp"

@@ -1,9 +1,11 @@
 // Every allocation of building, saving and loading, and a dense sample of those of ranking, is made
 // to fail once: the answer is a typed error, nothing stays allocated, and the same call then works.
 
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/ranker.hpp"
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/tree/build.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // What docs/guide/faults.md promises for input that makes little sense.
 
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/rank/ranker.hpp"
 
 #include "oracle/random.hpp"

@@ -1,4 +1,5 @@
 #include "crashrank/collide/collide.hpp"
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/rank/rank.hpp"
 
 #include "oracle/random.hpp"

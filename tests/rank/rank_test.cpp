@@ -1,5 +1,7 @@
 #include "crashrank/rank/rank.hpp"
 
+#include "crashrank/model/make_model.hpp"
+
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,8 @@
 #include "crashrank/rank/scenario_models.hpp"
 
 #include "crashrank/mesh/shell_properties.hpp"
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
 #include "mesh/scratch_dir.hpp"
 #include "rank/scenes.hpp"
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/mesh/profile.hpp"
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include "oracle/shipped_models.hpp"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/scenario.hpp"
 #include "crashrank/tree/model.hpp"

@@ -1,5 +1,8 @@
 #include "crashrank/tree/validate_wide.hpp"
 
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
+
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

@@ -9,6 +9,8 @@
 
 #include "crashrank/collide/pair_hash.hpp"
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 
 #include <hwy/targets.h>
 

@@ -4,6 +4,8 @@
 //   instruction_count build|scalar|vector|any
 
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 
 #include <cmath>
 #include <cstdio>

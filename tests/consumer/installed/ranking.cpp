@@ -1,6 +1,7 @@
 // A ranking that paper can check: towards a wall 7 m ahead at 10 m/s, 1500 kg. Braking by 8 m/s²
 // ends after 6.25 m; by 5 m/s² it meets the wall with v² = 100 − 2·5·7 = 30 m²/s².
 #include <crashrank/crashrank.hpp>
+#include <crashrank/model/make_model.hpp>
 
 #include <cstdio>
 #include <vector>

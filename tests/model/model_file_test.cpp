@@ -1,8 +1,10 @@
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/model/model_file.hpp"
 
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 #include "crashrank/tree/validate_wide.hpp"
-#include "tree/model_file_checks.hpp"
+#include "model/model_file_checks.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
 #include "base/utf8.hpp"
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/tree/validate_wide.hpp"
-#include "tree/model_layout.hpp"
+#include "model/model_layout.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "crashrank/tree/validate_wide.hpp"
-#include "tree/model_layout.hpp"
+#include "model/model_layout.hpp"
 
 #include <algorithm>
 #include <cassert>

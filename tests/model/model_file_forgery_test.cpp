@@ -1,5 +1,5 @@
 #include "crashrank/tree/validate_wide.hpp"
-#include "tree/model_file_checks.hpp"
+#include "model/model_file_checks.hpp"
 
 #include <gtest/gtest.h>
 

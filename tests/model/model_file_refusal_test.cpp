@@ -1,4 +1,5 @@
-#include "tree/model_file_checks.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "model/model_file_checks.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

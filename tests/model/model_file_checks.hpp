@@ -1,7 +1,9 @@
 #pragma once
 
-#include "crashrank/tree/model_file.hpp"
-#include "tree/model_layout.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model_file.hpp"
+#include "crashrank/tree/build.hpp"
+#include "model/model_layout.hpp"
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

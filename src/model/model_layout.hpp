@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/model/model_file.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,8 +1,8 @@
-#include "crashrank/tree/model_file.hpp"
+#include "crashrank/model/model_file.hpp"
 
 #include "crashrank/base/guarded.hpp"
-#include "tree/file_bytes.hpp"
-#include "tree/model_layout.hpp"
+#include "model/file_bytes.hpp"
+#include "model/model_layout.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,6 +1,6 @@
-#include "tree/file_bytes.hpp"
+#include "model/file_bytes.hpp"
 
-#include "tree/model_layout.hpp"
+#include "model/model_layout.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
