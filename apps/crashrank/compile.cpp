@@ -10,8 +10,8 @@
 
 #include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/model/model_file.hpp"
-#include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include "streams.hpp"
 
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/build.hpp"
 
 #include <fmt/format.h>

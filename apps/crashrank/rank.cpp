@@ -9,13 +9,13 @@
 #include "tree_arguments.hpp"
 
 #include "crashrank/model/model_file.hpp"
-#include "crashrank/rank/profile.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/ranker.hpp"
-#include "crashrank/rank/scenario.hpp"
-#include "crashrank/rank/scenario_models.hpp"
 #include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/scenario.hpp"
+#include "crashrank/scenario/scenario_models.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
 

@@ -1,5 +1,5 @@
 #include <crashrank/crashrank.hpp>
-#include <crashrank/rank/scenario_models.hpp>
+#include <crashrank/scenario/scenario_models.hpp>
 
 #include <cstdio>
 

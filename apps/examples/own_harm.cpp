@@ -1,7 +1,7 @@
 // Ranks by a harm function of one's own: what the library finds out about each crash goes in, the
 // order comes out.
 #include <crashrank/crashrank.hpp>
-#include <crashrank/rank/scenario_models.hpp>
+#include <crashrank/scenario/scenario_models.hpp>
 
 #include <algorithm>
 #include <cstdio>

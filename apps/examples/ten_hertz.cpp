@@ -2,7 +2,7 @@
 // world moves on, the candidates are made anew, and the ranking ends at its deadline with what it
 // knows.
 #include <crashrank/crashrank.hpp>
-#include <crashrank/rank/scenario_models.hpp>
+#include <crashrank/scenario/scenario_models.hpp>
 
 #include <chrono>
 #include <cstdio>

@@ -2,7 +2,7 @@
 
 /// Everything that the targets crashrank::core and crashrank::crashrank offer. Mesh files are read
 /// by crashrank::import, whose headers are crashrank/mesh/import.hpp and
-/// crashrank/rank/scenario_models.hpp.
+/// crashrank/scenario/scenario_models.hpp.
 
 #include "crashrank/base/frames.hpp"
 #include "crashrank/base/library_version.hpp"
@@ -44,10 +44,10 @@
 #include "crashrank/motion/time_of_impact.hpp"
 
 #include "crashrank/rank/harm.hpp"
-#include "crashrank/rank/profile.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/rank/ranker.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include "crashrank/report/damage_model.hpp"
 #include "crashrank/report/html_report.hpp"

@@ -8,8 +8,8 @@
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/rank/scenario.hpp"
 #include "crashrank/report/escape.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <algorithm>

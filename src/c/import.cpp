@@ -2,7 +2,7 @@
 #include "c/handles.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model_file.hpp"
-#include "crashrank/rank/scenario_models.hpp"
+#include "crashrank/scenario/scenario_models.hpp"
 
 #include <utility>
 

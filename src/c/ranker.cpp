@@ -1,6 +1,6 @@
 #include "crashrank/rank/ranker.hpp"
 #include "c/handles.hpp"
-#include "rank/scenario_check.hpp"
+#include "scenario/scenario_check.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "crashrank/rank/measure.hpp"
+#include "crashrank/scenario/measure.hpp"
 
 #include "rank/measure_table.hpp"
 

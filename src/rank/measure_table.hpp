@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/rank/harm.hpp"
-#include "crashrank/rank/measure.hpp"
+#include "crashrank/scenario/measure.hpp"
 #include "rank/tally.hpp"
 
 namespace crashrank::detail {

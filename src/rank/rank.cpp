@@ -4,8 +4,8 @@
 #include "rank/evaluate.hpp"
 #include "rank/evaluate_on_workers.hpp"
 #include "rank/progress.hpp"
-#include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
+#include "scenario/scenario_check.hpp"
 
 #include <chrono>
 #include <cstddef>

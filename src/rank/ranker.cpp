@@ -3,13 +3,13 @@
 #include "base/hidden.hpp"
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
-#include "rank/motion_check.hpp"
 #include "rank/near.hpp"
 #include "rank/race.hpp"
 #include "rank/refine.hpp"
-#include "rank/scenario_check.hpp"
 #include "rank/scene.hpp"
 #include "rank/step_rounds.hpp"
+#include "scenario/motion_check.hpp"
+#include "scenario/scenario_check.hpp"
 
 #include <algorithm>
 #include <array>

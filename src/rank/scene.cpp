@@ -3,7 +3,7 @@
 #include "crashrank/crash/injury.hpp"
 #include "rank/join_fixed.hpp"
 #include "rank/measure_table.hpp"
-#include "rank/motion_check.hpp"
+#include "scenario/motion_check.hpp"
 
 #include <algorithm>
 #include <cmath>

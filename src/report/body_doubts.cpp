@@ -2,7 +2,7 @@
 
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/motion/containment.hpp"
-#include "crashrank/rank/candidate.hpp"
+#include "crashrank/scenario/candidate.hpp"
 #include "report/orientation.hpp"
 
 #include <fmt/format.h>

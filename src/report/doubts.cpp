@@ -1,6 +1,6 @@
 #include "crashrank/crash/contact_law.hpp"
-#include "crashrank/rank/candidate.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "crashrank/scenario/candidate.hpp"
 #include "report/body_doubts.hpp"
 #include "report/ranking_words.hpp"
 

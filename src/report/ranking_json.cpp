@@ -1,7 +1,7 @@
 #include "crashrank/report/ranking.hpp"
 
 #include "crashrank/crash/contact_law.hpp"
-#include "crashrank/rank/candidate.hpp"
+#include "crashrank/scenario/candidate.hpp"
 #include "report/contact_order.hpp"
 #include "report/damage_summary.hpp"
 

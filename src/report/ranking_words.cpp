@@ -1,6 +1,6 @@
 #include "report/ranking_words.hpp"
 
-#include "crashrank/rank/candidate.hpp"
+#include "crashrank/scenario/candidate.hpp"
 #include "report/damage_summary.hpp"
 #include "report/score_text.hpp"
 

@@ -1,6 +1,6 @@
 #include "report/scene_views.hpp"
 
-#include "crashrank/rank/candidate.hpp"
+#include "crashrank/scenario/candidate.hpp"
 #include "report/damage_summary.hpp"
 
 namespace crashrank::detail {

@@ -2,8 +2,8 @@
 // scenario within the stated limits, whose manoeuvres can be made.
 
 #include "base/utf8.hpp"
-#include "crashrank/rank/candidate.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/candidate.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "fuzz/target.hpp"
 
 #include <algorithm>
@@ -160,7 +160,7 @@ Bytes bytes_of(const std::string& text) { return Bytes(text.begin(), text.end())
 }  // namespace
 
 std::vector<Bytes> seeds() {
-  std::vector<fs::path> files{source("tests/rank/data/sample.json")};
+  std::vector<fs::path> files{source("tests/scenario/data/sample.json")};
   for (const fs::directory_entry& entry : fs::directory_iterator(source("data/scenarios"))) {
     if (entry.path().extension() == ".json") files.push_back(entry.path());
   }

@@ -2,7 +2,7 @@
 
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <gtest/gtest.h>

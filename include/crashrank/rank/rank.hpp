@@ -9,10 +9,10 @@
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
-#include "crashrank/rank/candidate.hpp"
 #include "crashrank/rank/harm.hpp"
-#include "crashrank/rank/measure.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/candidate.hpp"
+#include "crashrank/scenario/measure.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <Eigen/Core>

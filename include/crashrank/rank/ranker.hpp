@@ -4,9 +4,9 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/motion/motion.hpp"
-#include "crashrank/rank/candidate.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/candidate.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <cstddef>

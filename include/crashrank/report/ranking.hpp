@@ -3,7 +3,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
 

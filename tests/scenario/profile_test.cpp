@@ -1,4 +1,4 @@
-#include "crashrank/rank/profile.hpp"
+#include "crashrank/scenario/profile.hpp"
 
 #include "rank/scenes.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
-#include "crashrank/rank/harm.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 
 #include <string>
 

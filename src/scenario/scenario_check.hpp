@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/result.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ std::string read(const std::string& path) {
   return text.str();
 }
 
-json sample() { return json::parse(read(CRASHRANK_RANK_DATA "/sample.json")); }
+json sample() { return json::parse(read(CRASHRANK_SCENARIO_DATA "/sample.json")); }
 
 Error error_of(const std::string& text) {
   const Result<Scenario> scenario = parse_scenario(text, "f.json");
@@ -94,7 +94,7 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
 
 // The same variants are given to the published schema by schema_test.py.
 TEST(Scenario, EveryErrorNamesItsKeyPath) {
-  const json variants = json::parse(read(CRASHRANK_RANK_DATA "/bad_scenarios.json"));
+  const json variants = json::parse(read(CRASHRANK_SCENARIO_DATA "/bad_scenarios.json"));
   ASSERT_GT(variants.size(), 50U);
   for (const json& variant : variants) {
     SCOPED_TRACE(variant.at("why").get<std::string>());

@@ -1,4 +1,4 @@
-#include "crashrank/rank/scenario_models.hpp"
+#include "crashrank/scenario/scenario_models.hpp"
 
 #include "crashrank/mesh/shell_properties.hpp"
 #include "crashrank/model/make_model.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/result.hpp"
-#include "rank/number_range.hpp"
+#include "scenario/number_range.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,8 +1,8 @@
-#include "crashrank/rank/candidate.hpp"
+#include "crashrank/scenario/candidate.hpp"
 
 #include "crashrank/base/guarded.hpp"
-#include "rank/motion_check.hpp"
-#include "rank/scenario_check.hpp"
+#include "scenario/motion_check.hpp"
+#include "scenario/scenario_check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

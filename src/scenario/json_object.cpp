@@ -1,4 +1,4 @@
-#include "rank/json_object.hpp"
+#include "scenario/json_object.hpp"
 
 #include "base/nearest_word.hpp"
 #include "base/utf8.hpp"

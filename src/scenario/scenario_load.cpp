@@ -1,7 +1,7 @@
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include "crashrank/base/guarded.hpp"
-#include "rank/text_file.hpp"
+#include "scenario/text_file.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "crashrank/rank/candidate.hpp"
+#include "crashrank/scenario/candidate.hpp"
 
 #include "oracle/random.hpp"
 

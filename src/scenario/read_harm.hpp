@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/rank/harm.hpp"
-#include "rank/json_object.hpp"
+#include "crashrank/scenario/harm_options.hpp"
+#include "scenario/json_object.hpp"
 
 namespace crashrank::detail {
 

@@ -1,8 +1,8 @@
-#include "rank/scenario_check.hpp"
+#include "scenario/scenario_check.hpp"
 
 #include "crashrank/dispatch/worker_pool.hpp"
-#include "rank/motion_check.hpp"
-#include "rank/number_range.hpp"
+#include "scenario/motion_check.hpp"
+#include "scenario/number_range.hpp"
 
 #include <cmath>
 #include <set>

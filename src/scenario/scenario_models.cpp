@@ -1,10 +1,10 @@
-#include "crashrank/rank/scenario_models.hpp"
+#include "crashrank/scenario/scenario_models.hpp"
 
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model_file.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
-#include "rank/number_range.hpp"
+#include "scenario/number_range.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "rank/json_text.hpp"
+#include "scenario/json_text.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,9 +1,9 @@
 #include "crashrank/base/guarded.hpp"
-#include "crashrank/rank/scenario.hpp"
-#include "rank/json_object.hpp"
-#include "rank/json_text.hpp"
-#include "rank/read_harm.hpp"
-#include "rank/scenario_check.hpp"
+#include "crashrank/scenario/scenario.hpp"
+#include "scenario/json_object.hpp"
+#include "scenario/json_text.hpp"
+#include "scenario/read_harm.hpp"
+#include "scenario/scenario_check.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "rank/text_file.hpp"
+#include "scenario/text_file.hpp"
 
 #include <filesystem>
 #include <fstream>

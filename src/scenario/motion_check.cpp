@@ -1,6 +1,6 @@
-#include "rank/motion_check.hpp"
+#include "scenario/motion_check.hpp"
 
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,10 +1,10 @@
-#include "crashrank/rank/profile.hpp"
+#include "crashrank/scenario/profile.hpp"
 
 #include "crashrank/base/guarded.hpp"
-#include "rank/json_object.hpp"
-#include "rank/json_text.hpp"
-#include "rank/read_harm.hpp"
-#include "rank/text_file.hpp"
+#include "scenario/json_object.hpp"
+#include "scenario/json_text.hpp"
+#include "scenario/read_harm.hpp"
+#include "scenario/text_file.hpp"
 
 namespace crashrank {
 namespace {

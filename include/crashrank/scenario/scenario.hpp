@@ -6,8 +6,8 @@
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/motion/motion.hpp"
-#include "crashrank/rank/harm.hpp"
-#include "crashrank/rank/measure.hpp"
+#include "crashrank/scenario/harm_options.hpp"
+#include "crashrank/scenario/measure.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
 #include "crashrank/vehicle/surface.hpp"
 

@@ -3,7 +3,7 @@
 #include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/motion/motion.hpp"
-#include "crashrank/rank/scenario.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include <cstddef>
 #include <optional>
