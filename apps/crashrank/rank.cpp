@@ -9,8 +9,8 @@
 #include "tree_arguments.hpp"
 
 #include "crashrank/model/model_file.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/rank/ranker.hpp"
 #include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/profile.hpp"

@@ -3,7 +3,7 @@
 // not: of each stretch the shortest of many runs counts.
 #include "bench/rank/situations.hpp"
 
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -2,7 +2,7 @@
 // they know by then. Where the time goes without a deadline.
 #include "bench/rank/situations.hpp"
 
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include <CLI/CLI.hpp>
 

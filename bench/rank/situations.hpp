@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/result.hpp"
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include <cstddef>
 #include <cstdint>

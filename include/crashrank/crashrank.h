@@ -412,8 +412,9 @@ typedef struct crashrank_answer {
 } crashrank_answer;
 
 /// Ranks within a budget; NULL: without end. Allocates nothing, and blocks for its own workers
-/// alone (crashrank/rank/ranker.hpp names the measures whose last stage allocates). One thread at
-/// a time for each ranker. Errors: usage; bad_input for a situation that cannot be computed with.
+/// alone (crashrank/rank/anytime/ranker.hpp names the measures whose last stage allocates). One
+/// thread at a time for each ranker. Errors: usage; bad_input for a situation that cannot be
+/// computed with.
 CRASHRANK_API crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker,
                                                      const crashrank_budget* budget,
                                                      crashrank_answer* answer,

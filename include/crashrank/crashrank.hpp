@@ -43,9 +43,9 @@
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/rank/ranker.hpp"
 #include "crashrank/scenario/profile.hpp"
 #include "crashrank/scenario/scenario.hpp"
 

@@ -1,4 +1,4 @@
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "c/handles.hpp"
 #include "scenario/scenario_check.hpp"
 

@@ -1,6 +1,6 @@
 #include "rank/evaluate.hpp"
 
-#include "rank/bounds.hpp"
+#include "rank/anytime/bounds.hpp"
 #include "rank/hits.hpp"
 #include "rank/measure_table.hpp"
 

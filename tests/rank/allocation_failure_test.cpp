@@ -3,8 +3,8 @@
 
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model_file.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/rank/ranker.hpp"
 #include "crashrank/tree/build.hpp"
 #include "rank/scenes.hpp"
 

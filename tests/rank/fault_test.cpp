@@ -1,7 +1,7 @@
 // What docs/guide/faults.md promises for input that makes little sense.
 
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include "oracle/random.hpp"
 #include "rank/scenes.hpp"

@@ -1,13 +1,13 @@
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include "base/hidden.hpp"
 #include "crashrank/base/guarded.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
+#include "rank/anytime/race.hpp"
+#include "rank/anytime/refine.hpp"
+#include "rank/anytime/step_rounds.hpp"
 #include "rank/near.hpp"
-#include "rank/race.hpp"
-#include "rank/refine.hpp"
 #include "rank/scene.hpp"
-#include "rank/step_rounds.hpp"
 #include "scenario/motion_check.hpp"
 #include "scenario/scenario_check.hpp"
 

@@ -1,7 +1,7 @@
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include "campaign.hpp"
-#include "rank/ranker_case.hpp"
+#include "rank/anytime/ranker_case.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Deadlines that come at every single look at the clock, by a clock that the test sets.
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include "rank/random_scene.hpp"
 #include "rank/scenes.hpp"

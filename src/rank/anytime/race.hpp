@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rank/refine.hpp"
+#include "rank/anytime/refine.hpp"
 
 #include <cstddef>
 #include <cstdint>

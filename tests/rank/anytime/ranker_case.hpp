@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include "rank/random_scene.hpp"
 #include "rank/scenes.hpp"

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "crashrank/rank/ranker.hpp"
-#include "rank/bounds.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
+#include "rank/anytime/bounds.hpp"
+#include "rank/anytime/watch.hpp"
 #include "rank/evaluate.hpp"
-#include "rank/watch.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "rank/step_rounds.hpp"
+#include "rank/anytime/step_rounds.hpp"
 
 #include "rank/measure_table.hpp"
 

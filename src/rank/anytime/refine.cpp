@@ -1,4 +1,4 @@
-#include "rank/refine.hpp"
+#include "rank/anytime/refine.hpp"
 
 #include "rank/hits.hpp"
 #include "rank/measure_table.hpp"

@@ -1,4 +1,4 @@
-#include "rank/race.hpp"
+#include "rank/anytime/race.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "rank/bounds.hpp"
+#include "rank/anytime/bounds.hpp"
 
 #include "crash/scene_run.hpp"
 #include "rank/tally.hpp"

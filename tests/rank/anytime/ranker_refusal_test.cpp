@@ -1,6 +1,6 @@
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
-#include "rank/ranker_case.hpp"
+#include "rank/anytime/ranker_case.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

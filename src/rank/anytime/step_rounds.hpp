@@ -2,8 +2,8 @@
 
 #include "crashrank/base/view.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
-#include "rank/refine.hpp"
-#include "rank/watch.hpp"
+#include "rank/anytime/refine.hpp"
+#include "rank/anytime/watch.hpp"
 
 #include <array>
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "crashrank/rank/ranker.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 
 #include "counted_allocations.hpp"
 #include "rank/random_scene.hpp"
