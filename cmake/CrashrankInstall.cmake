@@ -6,12 +6,13 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/crashrank)
 install(DIRECTORY include/crashrank DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 
 # An export set for each component: who wants the headers alone needs nothing else installed.
-set(components core crashrank)
+set(components core crashrank study)
 if(CRASHRANK_BUILD_TOOLS)
   list(APPEND components import tools)
 endif()
 set(targets_of_core crashrank_core)
 set(targets_of_crashrank crashrank)
+set(targets_of_study crashrank_study)
 set(targets_of_import crashrank_import)
 set(targets_of_tools crashrank_cli)
 
@@ -77,7 +78,7 @@ endif()
 file(RELATIVE_PATH prefix_from_pkgconfig ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
   ${CMAKE_INSTALL_PREFIX})
 string(REGEX REPLACE "/$" "" prefix_from_pkgconfig "${prefix_from_pkgconfig}")
-set(pc_files crashrank-core crashrank)
+set(pc_files crashrank-core crashrank crashrank-study)
 if(CRASHRANK_BUILD_TOOLS)
   list(APPEND pc_files crashrank-import)
 endif()

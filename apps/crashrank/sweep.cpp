@@ -10,7 +10,7 @@
 #include "sweep_plot.hpp"
 #include "tree_arguments.hpp"
 
-#include "crashrank/dispatch/sweep.hpp"
+#include "crashrank/dispatch/study/sweep.hpp"
 #include "crashrank/report/table.hpp"
 #include "crashrank/tree/model.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/dispatch/sweep.hpp"
+#include "crashrank/dispatch/study/sweep.hpp"
 
 #include <string>
 

@@ -1,5 +1,5 @@
 // Poses from other programs' frames: CARLA's, an aircraft's, a camera's.
-#include <crashrank/base/frames.hpp>
+#include <crashrank/interop/frames.hpp>
 
 #include <cstdio>
 

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "crashrank/dispatch/dispatcher.hpp"
-#include "crashrank/dispatch/replay.hpp"
+#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/replay.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 #include "common.hpp"
+#include "crashrank/dispatch/study/recording.hpp"
 #include "dispatch/core.hpp"
 #include "dispatch/find_jobs.hpp"
 

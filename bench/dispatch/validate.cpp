@@ -1,4 +1,5 @@
 #include "common.hpp"
+#include "crashrank/dispatch/study/recording.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,12 +4,12 @@
 /// by crashrank::import, whose headers are crashrank/mesh/import.hpp and
 /// crashrank/scenario/scenario_models.hpp.
 
-#include "crashrank/base/frames.hpp"
 #include "crashrank/base/library_version.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/version.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/interop/frames.hpp"
 
 #include "crashrank/mesh/quality.hpp"
 #include "crashrank/mesh/shell_properties.hpp"

@@ -1,6 +1,6 @@
 #include "crash/tyres.hpp"
 
-#include "crashrank/base/frames.hpp"
+#include "crashrank/interop/frames.hpp"
 
 #include <algorithm>
 #include <cmath>

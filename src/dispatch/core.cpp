@@ -1,12 +1,6 @@
 #include "dispatch/core.hpp"
 
-#include <chrono>
-
 namespace crashrank::detail {
-
-double clock_seconds() noexcept {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void Core::run(const Batch& batch) {
   const double begun = measure ? clock_seconds() : 0.0;

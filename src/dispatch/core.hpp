@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -105,6 +106,8 @@ private:
 
 /// The steady clock, s. The clock of a thread's processor time would not count other programs, but
 /// takes longer to read than a small job takes to do.
-double clock_seconds() noexcept;
+inline double clock_seconds() noexcept {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace crashrank::detail

@@ -1,4 +1,5 @@
 #include "dispatch/dispatcher_state.hpp"
+#include "crashrank/dispatch/study/recording.hpp"
 
 #include "dispatch/estimate_work.hpp"
 #include "dispatch/find_jobs.hpp"

@@ -11,9 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> stages{"base",   "mesh",    "tree",  "collide", "dispatch",
-                                      "motion", "vehicle", "model", "crash",   "scenario",
-                                      "rank",   "report",  "c"};
+const std::vector<std::string> stages{"base",     "interop", "mesh",    "tree",  "collide",
+                                      "dispatch", "motion",  "vehicle", "model", "crash",
+                                      "scenario", "rank",    "report",  "c"};
 
 int level(const std::string& stage) {
   for (std::size_t i = 0; i < stages.size(); ++i) {

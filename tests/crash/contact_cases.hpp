@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/base/frames.hpp"
 #include "crashrank/crash/contact_law.hpp"
+#include "crashrank/interop/frames.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include "base/random.hpp"

@@ -2,7 +2,7 @@
 
 #include "base/random.hpp"
 #include "crash/tyres.hpp"
-#include "crashrank/base/frames.hpp"
+#include "crashrank/interop/frames.hpp"
 
 #include <Eigen/Core>
 

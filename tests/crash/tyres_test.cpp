@@ -1,7 +1,7 @@
 #include "crash/tyres.hpp"
 
 #include "crash/tyres_cases.hpp"
-#include "crashrank/base/frames.hpp"
+#include "crashrank/interop/frames.hpp"
 
 #include <gtest/gtest.h>
 

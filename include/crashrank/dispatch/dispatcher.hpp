@@ -8,7 +8,6 @@
 #include "crashrank/dispatch/pair_lists.hpp"
 #include "crashrank/dispatch/part_index.hpp"
 #include "crashrank/dispatch/policy.hpp"
-#include "crashrank/dispatch/recording.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
 
 #include <atomic>
@@ -17,6 +16,8 @@
 #include <memory>
 
 namespace crashrank {
+
+struct DispatchRecording;
 
 /// Where the cores read the parts of their jobs.
 enum class StoreMode {
@@ -54,8 +55,9 @@ struct DispatchOptions {
   bool sorted = false;  ///< every query's pairs in one run, sorted by a, then b
   /// Set from any thread to end the dispatch early.
   const std::atomic<bool>* cancel = nullptr;
-  /// Filled with what every job took, for `replay`; measuring costs about a tenth of a microsecond
-  /// a job. Estimates of work are recorded only under a policy that asks for them (late_match).
+  /// Filled with what every job took, for `replay` (dispatch/study/recording.hpp); measuring costs
+  /// about a tenth of a microsecond a job. Estimates of work are recorded only under a policy that
+  /// asks for them (late_match).
   DispatchRecording* recording = nullptr;
 };
 

@@ -1,4 +1,4 @@
-#include "crashrank/dispatch/replay.hpp"
+#include "crashrank/dispatch/study/replay.hpp"
 
 #include "dispatch/core.hpp"
 

@@ -6,7 +6,7 @@
 #include "crashrank/base/view.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
-#include "crashrank/dispatch/replay.hpp"
+#include "crashrank/dispatch/study/replay.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <cstddef>

@@ -1,4 +1,6 @@
-#include "crashrank/dispatch/replay.hpp"
+#include "crashrank/dispatch/study/replay.hpp"
+
+#include "crashrank/dispatch/study/recording.hpp"
 
 #include "dispatch/sample_bodies.hpp"
 

@@ -1,9 +1,9 @@
-#include "crashrank/dispatch/replay.hpp"
+#include "crashrank/dispatch/study/replay.hpp"
 
 #include "dispatch/crew.hpp"
 #include "dispatch/holdings.hpp"
 #include "dispatch/placer.hpp"
-#include "dispatch/virtual_cores.hpp"
+#include "dispatch/study/virtual_cores.hpp"
 
 #include <algorithm>
 #include <exception>

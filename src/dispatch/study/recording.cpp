@@ -1,4 +1,4 @@
-#include "crashrank/dispatch/recording.hpp"
+#include "crashrank/dispatch/study/recording.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "dispatch/virtual_cores.hpp"
+#include "dispatch/study/virtual_cores.hpp"
 
 #include "crashrank/collide/pair.hpp"
 

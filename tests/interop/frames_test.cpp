@@ -1,4 +1,4 @@
-#include "crashrank/base/frames.hpp"
+#include "crashrank/interop/frames.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
-#include "crashrank/dispatch/recording.hpp"
+#include "crashrank/dispatch/study/recording.hpp"
 
 #include <cstddef>
 #include <cstdint>

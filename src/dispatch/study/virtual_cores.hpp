@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/dispatch/recording.hpp"
-#include "crashrank/dispatch/replay.hpp"
+#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/replay.hpp"
 #include "dispatch/holdings.hpp"
 #include "dispatch/placer.hpp"
 
