@@ -6,7 +6,7 @@
 
 #include "bench/query_bench.hpp"
 
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 #include "crashrank/tree/build.hpp"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 
 #include "bench/query_bench.hpp"
 
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 
 #include <Eigen/Dense>
 

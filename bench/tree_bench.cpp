@@ -6,9 +6,9 @@
 // Every round builds each row once, one after the other, so that a change in the machine's mood
 // falls on all alike; the table gives medians. --paper adds the literal rule, which takes seconds.
 
+#include "crashrank/internal/tree/quality.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/quality.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -12,7 +12,7 @@
 
 #include "crashrank/collide/pair_hash.hpp"
 #include "crashrank/collide/wide_collide.hpp"
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
 

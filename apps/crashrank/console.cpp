@@ -2,7 +2,7 @@
 
 #include "interrupt.hpp"
 
-#include "crashrank/report/escape.hpp"
+#include "crashrank/internal/report/escape.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -3,9 +3,9 @@
 #include "console.hpp"
 #include "streams.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
+#include "crashrank/internal/report/escape.hpp"
 #include "crashrank/report/damage_model.hpp"
-#include "crashrank/report/escape.hpp"
 #include "crashrank/report/picture.hpp"
 
 #include <fmt/format.h>

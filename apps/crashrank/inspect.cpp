@@ -4,10 +4,10 @@
 #include "json.hpp"
 #include "mesh_arguments.hpp"
 
+#include "crashrank/internal/report/escape.hpp"
+#include "crashrank/internal/report/table.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/model/model_file.hpp"
-#include "crashrank/report/escape.hpp"
-#include "crashrank/report/table.hpp"
 #include "report/orientation.hpp"
 
 #include <fmt/format.h>

@@ -5,8 +5,8 @@
 #include "options.hpp"
 #include "streams.hpp"
 
+#include "crashrank/internal/report/escape.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/report/escape.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/build.hpp"
 

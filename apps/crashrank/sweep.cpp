@@ -11,7 +11,7 @@
 #include "tree_arguments.hpp"
 
 #include "crashrank/dispatch/study/sweep.hpp"
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <fmt/format.h>

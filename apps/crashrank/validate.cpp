@@ -9,7 +9,7 @@
 #include "streams.hpp"
 #include "validate_pairs.hpp"
 
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "console.hpp"
 
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,7 @@
 #include "common.hpp"
 #include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
 #include "dispatch/core.hpp"
 #include "dispatch/find_jobs.hpp"
 

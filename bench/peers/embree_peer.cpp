@@ -1,4 +1,4 @@
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "peer.hpp"
 
 #include <embree3/rtcore.h>

@@ -1,6 +1,6 @@
 #include "table.hpp"
 
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -19,7 +19,7 @@
 /// Strings are UTF-8. Units are SI, angles radians. Frames follow ISO 8855: x forward, y left,
 /// z up. A pose is a row-major 4x4 matrix of a rigid motion, 16 numbers, last row 0 0 0 1.
 
-#include "crashrank/base/export.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 // NOLINTBEGIN(modernize-*): this is C.
 #include <stddef.h>

@@ -6,9 +6,9 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/internal/report/escape.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/report/escape.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
 

@@ -1,6 +1,10 @@
 #include "crashrank/collide/distance.hpp"
 
-#include "crashrank/collide/traverse.hpp"
+#include "crashrank/internal/collide/box_gap.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
+#include "crashrank/internal/collide/triangle_distance.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "crashrank/collide/pair_hash.hpp"
 
-#include "crashrank/base/sha256.hpp"
+#include "crashrank/internal/base/sha256.hpp"
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 
 #include "collide/lanes-inl.hpp"
 #include "collide/wide_query.hpp"
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <cstddef>
 #include <cstdint>

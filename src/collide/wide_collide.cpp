@@ -14,7 +14,10 @@
 #if HWY_ONCE
 
 #include "collide/wide_query.hpp"
-#include "crashrank/tree/lanes.hpp"
+#include "crashrank/internal/base/products.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/tree/lanes.hpp"
+#include "crashrank/internal/tree/round_up.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/collide/box_test.hpp"
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/vehicle/strength.hpp"
+#include "crashrank/internal/vehicle/strength.hpp"
 
 #include "crashrank/mesh/profile.hpp"
 

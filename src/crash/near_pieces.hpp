@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/vehicle/silhouettes.hpp"
+#include "crashrank/internal/vehicle/silhouettes.hpp"
 
 #include <array>
 #include <cstddef>

@@ -7,7 +7,7 @@
 #endif
 
 #include "collide/lanes-inl.hpp"
-#include "crashrank/vehicle/silhouettes.hpp"
+#include "crashrank/internal/vehicle/silhouettes.hpp"
 
 #include <cstddef>
 #include <cstdint>

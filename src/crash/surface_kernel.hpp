@@ -4,7 +4,7 @@
 #include "crash/near_pieces.hpp"
 #include "crash/surface_pass.hpp"
 
-#include "crashrank/vehicle/silhouettes.hpp"
+#include "crashrank/internal/vehicle/silhouettes.hpp"
 
 #include <array>
 

@@ -1,4 +1,5 @@
 #include "dispatch/core.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
 
 namespace crashrank::detail {
 

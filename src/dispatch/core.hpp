@@ -1,11 +1,12 @@
 #pragma once
 
 #include "crashrank/base/pose.hpp"
-#include "crashrank/collide/box_test.hpp"
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/dispatch/pair_lists.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
 #include "dispatch/part_store.hpp"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 #include "dispatch/dispatcher_state.hpp"
 #include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
 
 #include "dispatch/estimate_work.hpp"
 #include "dispatch/find_jobs.hpp"

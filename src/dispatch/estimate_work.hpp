@@ -1,8 +1,8 @@
 #pragma once
 
-#include "crashrank/collide/box_test.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/part_index.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
 
 #include <algorithm>
 #include <cmath>

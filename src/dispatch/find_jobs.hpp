@@ -1,9 +1,9 @@
 #pragma once
 
-#include "crashrank/collide/box_test.hpp"
 #include "crashrank/collide/pair.hpp"
-#include "crashrank/collide/traverse.hpp"
 #include "crashrank/dispatch/part_index.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
 
 #include <cstdint>
 #include <vector>

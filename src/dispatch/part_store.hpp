@@ -1,7 +1,7 @@
 #pragma once
 
+#include "crashrank/internal/tree/tree_view.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/tree_view.hpp"
 
 #include <cstddef>
 #include <cstdint>

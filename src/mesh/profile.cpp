@@ -2,7 +2,7 @@
 
 #include "mesh/outline.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 
 #include <algorithm>
 #include <cmath>

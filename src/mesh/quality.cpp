@@ -1,6 +1,6 @@
 #include "crashrank/mesh/quality.hpp"
 
-#include "crashrank/mesh/degenerate.hpp"
+#include "crashrank/internal/mesh/degenerate.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,6 +1,6 @@
 #include "crashrank/mesh/stated_mass.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 
 #include <algorithm>
 #include <cmath>

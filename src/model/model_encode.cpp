@@ -1,6 +1,6 @@
 #include "base/crc32c.hpp"
 #include "base/utf8.hpp"
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/tree/validate_wide.hpp"
 #include "model/model_layout.hpp"
 

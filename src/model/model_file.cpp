@@ -1,6 +1,6 @@
 #include "crashrank/model/model_file.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "model/file_bytes.hpp"
 #include "model/model_layout.hpp"
 

@@ -1,6 +1,7 @@
-#include "crashrank/motion/containment.hpp"
+#include "crashrank/internal/motion/containment.hpp"
 
-#include "crashrank/collide/box_test.hpp"
+#include "crashrank/internal/base/products.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
 
 #include <algorithm>
 #include <array>

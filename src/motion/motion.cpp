@@ -1,5 +1,7 @@
 #include "crashrank/motion/motion.hpp"
 
+#include "crashrank/internal/base/products.hpp"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>

@@ -6,8 +6,12 @@
 
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/distance.hpp"
-#include "crashrank/collide/traverse.hpp"
-#include "crashrank/motion/containment.hpp"
+#include "crashrank/internal/base/products.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
+#include "crashrank/internal/collide/triangle_distance.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
+#include "crashrank/internal/motion/containment.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "rank/passed.hpp"
 
-#include "crashrank/collide/predicates.hpp"
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/predicates.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "crashrank/rank/rank.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/evaluate_on_workers.hpp"
 #include "rank/progress.hpp"

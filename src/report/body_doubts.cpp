@@ -1,7 +1,7 @@
 #include "report/body_doubts.hpp"
 
 #include "crashrank/collide/wide_collide.hpp"
-#include "crashrank/motion/containment.hpp"
+#include "crashrank/internal/motion/containment.hpp"
 #include "crashrank/scenario/candidate.hpp"
 #include "report/orientation.hpp"
 

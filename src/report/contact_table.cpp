@@ -1,6 +1,6 @@
 #include "report/contact_table.hpp"
 
-#include "crashrank/report/escape.hpp"
+#include "crashrank/internal/report/escape.hpp"
 #include "report/contact_order.hpp"
 #include "report/ranking_words.hpp"
 #include "report/score_text.hpp"

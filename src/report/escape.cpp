@@ -1,4 +1,4 @@
-#include "crashrank/report/escape.hpp"
+#include "crashrank/internal/report/escape.hpp"
 
 #include "base/utf8.hpp"
 

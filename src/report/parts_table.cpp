@@ -1,6 +1,6 @@
 #include "report/parts_table.hpp"
 
-#include "crashrank/report/escape.hpp"
+#include "crashrank/internal/report/escape.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "report/plan_view.hpp"
 
-#include "crashrank/report/escape.hpp"
+#include "crashrank/internal/report/escape.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>

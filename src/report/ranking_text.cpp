@@ -1,6 +1,6 @@
-#include "crashrank/report/escape.hpp"
+#include "crashrank/internal/report/escape.hpp"
+#include "crashrank/internal/report/table.hpp"
 #include "crashrank/report/ranking.hpp"
-#include "crashrank/report/table.hpp"
 #include "report/damage_summary.hpp"
 #include "report/ranking_words.hpp"
 #include "report/score_text.hpp"

@@ -1,6 +1,6 @@
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 
-#include "crashrank/report/escape.hpp"
+#include "crashrank/internal/report/escape.hpp"
 
 #include <algorithm>
 #include <utility>

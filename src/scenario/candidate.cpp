@@ -1,6 +1,6 @@
 #include "crashrank/scenario/candidate.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "scenario/motion_check.hpp"
 #include "scenario/scenario_check.hpp"
 

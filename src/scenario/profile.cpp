@@ -1,6 +1,6 @@
 #include "crashrank/scenario/profile.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "scenario/json_object.hpp"
 #include "scenario/json_text.hpp"
 #include "scenario/read_harm.hpp"

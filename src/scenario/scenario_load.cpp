@@ -1,6 +1,6 @@
 #include "crashrank/scenario/scenario.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "scenario/text_file.hpp"
 
 #include <algorithm>

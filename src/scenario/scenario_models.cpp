@@ -1,6 +1,6 @@
 #include "crashrank/scenario/scenario_models.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model_file.hpp"
 #include "crashrank/vehicle/body_kind.hpp"

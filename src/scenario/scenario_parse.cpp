@@ -1,4 +1,4 @@
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "scenario/json_object.hpp"
 #include "scenario/json_text.hpp"

@@ -1,4 +1,4 @@
-#include "crashrank/vehicle/silhouettes.hpp"
+#include "crashrank/internal/vehicle/silhouettes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "crashrank/vehicle/strength.hpp"
+#include "crashrank/internal/vehicle/strength.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "crashrank/vehicle/vehicle.hpp"
 
-#include "crashrank/base/guarded.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
 
 #include <algorithm>

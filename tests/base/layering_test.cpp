@@ -24,7 +24,8 @@ int level(const std::string& stage) {
 
 // Data flows in this order: a stage may include itself and the stages to its left.
 std::vector<std::string> violations(const fs::path& root) {
-  static const std::regex include(R"re(^\s*#\s*include\s*[<"](?:crashrank/)?([a-z]+)/)re");
+  static const std::regex include(
+      R"re(^\s*#\s*include\s*[<"](?:crashrank/)?(?:internal/)?([a-z]+)/)re");
   std::vector<std::string> found;
   for (const std::string& stage : stages) {
     const fs::path folder = root / stage;
@@ -47,7 +48,8 @@ std::vector<std::string> violations(const fs::path& root) {
 
 TEST(Layering, NoStageKnowsALaterOne) {
   const fs::path source(CRASHRANK_SOURCE_DIR);
-  for (const fs::path& root : {source / "include/crashrank", source / "src"}) {
+  for (const fs::path& root :
+       {source / "include/crashrank", source / "include/crashrank/internal", source / "src"}) {
     ASSERT_TRUE(fs::exists(root / "base"));
     EXPECT_EQ(violations(root), std::vector<std::string>{});
   }
@@ -59,6 +61,23 @@ TEST(Layering, AnUpwardIncludeIsSeen) {
   std::ofstream(root / "tree/bad.hpp") << "#include \"crashrank/rank/rank.hpp\"\n";
   EXPECT_EQ(violations(root).size(), 1U);
   fs::remove_all(root);
+}
+
+// Names of `detail` are for the library itself: public headers may use them, not declare them.
+TEST(Layering, PublicHeadersDeclareNothingInternal) {
+  static const std::regex opens(R"re(^\s*namespace (?:crashrank::)?detail\b)re");
+  const fs::path include = fs::path(CRASHRANK_SOURCE_DIR) / "include/crashrank";
+  std::vector<std::string> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(include)) {
+    const fs::path within = entry.path().lexically_relative(include);
+    if (!entry.is_regular_file() || *within.begin() == "internal") continue;
+    std::ifstream in(entry.path());
+    std::string line;
+    while (std::getline(in, line)) {
+      if (std::regex_search(line, opens)) found.push_back(within.string());
+    }
+  }
+  EXPECT_EQ(found, std::vector<std::string>{});
 }
 
 // Who includes a public header needs Eigen, the language's library and the system's, nothing else.

@@ -1,4 +1,4 @@
-#include "crashrank/base/sha256.hpp"
+#include "crashrank/internal/base/sha256.hpp"
 
 #include <gtest/gtest.h>
 

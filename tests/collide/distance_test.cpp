@@ -2,6 +2,8 @@
 
 #include "base/random.hpp"
 #include "crashrank/collide/collide.hpp"
+#include "crashrank/internal/collide/triangle_distance.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/tree/build.hpp"
 #include "oracle/triangle_oracle.hpp"
 #include "oracle/triangle_pairs.hpp"

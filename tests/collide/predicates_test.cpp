@@ -1,4 +1,6 @@
-#include "crashrank/collide/predicates.hpp"
+#include "crashrank/internal/collide/predicates.hpp"
+
+#include "crashrank/internal/base/products.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include "crashrank/collide/wide_collide.hpp"
 
 #include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/wide_tree.hpp"

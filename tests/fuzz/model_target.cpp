@@ -3,6 +3,7 @@
 // same bytes.
 
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"
 #include "fuzz/target.hpp"

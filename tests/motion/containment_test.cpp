@@ -1,4 +1,4 @@
-#include "crashrank/motion/containment.hpp"
+#include "crashrank/internal/motion/containment.hpp"
 
 #include "crashrank/tree/build.hpp"
 

@@ -5,7 +5,7 @@
 // that of every planted fault, each time under a function name, and for a fault a namespace, of its
 // own.
 
-#include "crashrank/collide/box_test.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
 #include "oracle/box_checks.hpp"
 #include "oracle/random.hpp"
 #include "oracle/triangle_oracle.hpp"

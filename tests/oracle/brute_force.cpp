@@ -1,6 +1,6 @@
 #include "oracle/brute_force.hpp"
 
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "oracle/triangle_oracle.hpp"
 
 #include <algorithm>

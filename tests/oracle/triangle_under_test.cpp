@@ -1,7 +1,7 @@
 // Compiled once with the library's headers and once with those of every planted fault, each time
 // under a function name, and for a fault a namespace, of its own.
 
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "oracle/triangle_oracle.hpp"
 
 namespace oracle {

@@ -1,5 +1,5 @@
-#include "crashrank/collide/triangle_test.hpp"
 #include "crashrank/crash/contact_law.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/rank/rank.hpp"
 
 #include "oracle/random.hpp"

@@ -1,4 +1,4 @@
-#include "crashrank/report/table.hpp"
+#include "crashrank/internal/report/table.hpp"
 
 #include <gtest/gtest.h>
 

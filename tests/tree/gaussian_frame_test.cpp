@@ -1,8 +1,8 @@
-#include "crashrank/tree/gaussian_frame.hpp"
+#include "crashrank/internal/tree/gaussian_frame.hpp"
 
 #include "crashrank/base/pose.hpp"
+#include "crashrank/internal/tree/projection.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/projection.hpp"
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The figures of Wiseman & Grinberg 2016, rebuilt from what the text says about them.
 
+#include "crashrank/internal/tree/literal_split.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/literal_split.hpp"
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
 // The searches for a cut, which work on four places at a time, against one place at a time.
 
-#include "crashrank/tree/binned_split.hpp"
-#include "crashrank/tree/small_split.hpp"
-#include "crashrank/tree/split_cost.hpp"
+#include "crashrank/internal/tree/binned_split.hpp"
+#include "crashrank/internal/tree/lanes.hpp"
+#include "crashrank/internal/tree/small_split.hpp"
+#include "crashrank/internal/tree/split_cost.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "crashrank/tree/wide_tree.hpp"
 
+#include "crashrank/internal/tree/wide_build.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/wide_build.hpp"
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

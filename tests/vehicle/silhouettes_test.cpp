@@ -1,4 +1,4 @@
-#include "crashrank/vehicle/silhouettes.hpp"
+#include "crashrank/internal/vehicle/silhouettes.hpp"
 
 #include "base/random.hpp"
 #include "crashrank/vehicle/vehicle.hpp"

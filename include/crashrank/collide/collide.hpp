@@ -1,10 +1,10 @@
 #pragma once
 
 #include "crashrank/base/pose.hpp"
-#include "crashrank/collide/box_test.hpp"
 #include "crashrank/collide/pair.hpp"
-#include "crashrank/collide/traverse.hpp"
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
+#include "crashrank/internal/collide/traverse.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 
 #include <cstddef>

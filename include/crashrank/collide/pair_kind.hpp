@@ -3,7 +3,7 @@
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/collide/pair.hpp"
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <algorithm>

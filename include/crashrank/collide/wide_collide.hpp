@@ -1,9 +1,9 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/pair.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <cstddef>

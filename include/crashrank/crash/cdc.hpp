@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
-#include "crashrank/base/export.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 #include <string>
 

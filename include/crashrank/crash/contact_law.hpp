@@ -1,9 +1,9 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 

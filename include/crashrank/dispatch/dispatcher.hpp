@@ -1,6 +1,5 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
@@ -9,6 +8,7 @@
 #include "crashrank/dispatch/part_index.hpp"
 #include "crashrank/dispatch/policy.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 #include <atomic>
 #include <cstddef>

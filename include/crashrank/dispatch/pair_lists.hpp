@@ -1,32 +1,15 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/collide/pair.hpp"
+#include "crashrank/internal/base/export.hpp"
+#include "crashrank/internal/dispatch/found_pairs.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace crashrank {
-
-namespace detail {
-
-/// Consecutive pairs of one query in one worker's buffer.
-struct PairRun {
-  std::uint32_t query = 0;
-  std::uint32_t worker = 0;
-  std::size_t first = 0;
-  std::size_t count = 0;
-};
-
-/// What one worker found. A cache line apart from the next, which another thread writes.
-struct alignas(64) FoundPairs {
-  std::vector<Pair> pairs;
-  std::vector<PairRun> runs;
-};
-
-}  // namespace detail
 
 /// All pairs of many queries, where the workers wrote them: the caller's buffers, kept between
 /// dispatches so that a warm one allocates nothing. A query's pairs lie in a few runs, each

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/internal/base/export.hpp"
+#include "crashrank/internal/tree/tree_view.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 #include "crashrank/tree/model.hpp"
-#include "crashrank/tree/tree_view.hpp"
 
 #include <cstddef>
 #include <cstdint>

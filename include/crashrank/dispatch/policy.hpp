@@ -1,8 +1,8 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/base/pose.hpp"
+#include "crashrank/internal/interop/pi.hpp"
 
 #include <Eigen/Core>
 
@@ -11,10 +12,6 @@ namespace crashrank {
 // From other programs' frames to the library's and back: x forward, y left, z up, right-handed
 // (ISO 8855, REP-103). Functions without state, safe from any thread, a few ns each; no errors.
 // Axes of mesh files are the importer's affair: ImportTransform.
-
-namespace detail {
-inline constexpr double pi = 3.14159265358979323846;
-}
 
 /// Angles of `pose_from_angles`, rad: R = Rz(yaw)·Ry(pitch)·Rx(roll). Yaw to the left, nose down
 /// and left side up are positive.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>

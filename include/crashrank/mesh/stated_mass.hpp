@@ -1,8 +1,8 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 #include <Eigen/Core>
 

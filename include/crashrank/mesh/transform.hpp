@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>

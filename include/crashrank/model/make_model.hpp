@@ -1,11 +1,11 @@
 #pragma once
 
-#include "crashrank/base/guarded.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/internal/base/guarded.hpp"
+#include "crashrank/internal/tree/build_tree.hpp"
+#include "crashrank/internal/tree/wide_build.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
-#include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
-#include "crashrank/tree/wide_build.hpp"
 
 #include <utility>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 #include <Eigen/Core>
 

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/scenario/candidate.hpp"

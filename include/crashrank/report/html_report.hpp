@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/motion/motion.hpp"

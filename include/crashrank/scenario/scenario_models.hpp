@@ -1,11 +1,11 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/build.hpp"
+#include "crashrank/tree/build_options.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <string>

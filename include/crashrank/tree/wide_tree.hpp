@@ -2,13 +2,9 @@
 
 #include "crashrank/base/column.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 
 namespace crashrank {
 
@@ -76,33 +72,5 @@ struct WideTree {
 
 /// Binary trees deeper than this (the literal rule makes them) have no wide tree.
 inline constexpr std::uint32_t max_wide_depth = 512;
-
-namespace detail {
-
-/// Smallest float that is not below x.
-inline float round_up(double x) {
-  const auto f = static_cast<float>(x);
-  if (static_cast<double>(f) >= x) return f;
-  if (!(f >= 0.0F)) return std::nextafter(f, std::numeric_limits<float>::infinity());
-  // Positive floats are in the order of their bits.
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &f, sizeof bits);
-  ++bits;
-  float next = 0.0F;
-  std::memcpy(&next, &bits, sizeof next);
-  return next;
-}
-
-/// Centre and half extent that enclose [min, max]. Both differences are exact or rounded by 2^-53
-/// relative; the factor covers that before rounding up to float.
-inline void center_half(float min, float max, float& center, float& half) {
-  const double lo = min;
-  const double hi = max;
-  center = static_cast<float>(0.5 * lo + 0.5 * hi);
-  const double reach = std::max(hi - center, center - lo);
-  half = round_up(reach * (1.0 + 0x1p-50));
-}
-
-}  // namespace detail
 
 }  // namespace crashrank

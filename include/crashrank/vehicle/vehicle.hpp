@@ -1,12 +1,12 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/internal/base/export.hpp"
+#include "crashrank/internal/vehicle/silhouettes.hpp"
+#include "crashrank/internal/vehicle/strength.hpp"
 #include "crashrank/mesh/profile.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
-#include "crashrank/vehicle/silhouettes.hpp"
-#include "crashrank/vehicle/strength.hpp"
 #include "crashrank/vehicle/surface.hpp"
 
 #include <Eigen/Core>

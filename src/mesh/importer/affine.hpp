@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/base/pose.hpp"
+#include "crashrank/internal/base/products.hpp"
 
 #include <assimp/matrix4x4.h>
 

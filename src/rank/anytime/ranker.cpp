@@ -1,8 +1,8 @@
 #include "crashrank/rank/anytime/ranker.hpp"
 
 #include "base/hidden.hpp"
-#include "crashrank/base/guarded.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
+#include "crashrank/internal/base/guarded.hpp"
 #include "rank/anytime/race.hpp"
 #include "rank/anytime/refine.hpp"
 #include "rank/anytime/step_rounds.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/dispatch/part_index.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
 #include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/internal/base/export.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
 #include "crashrank/dispatch/study/replay.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/tree/model.hpp"
 
 #include <cstddef>

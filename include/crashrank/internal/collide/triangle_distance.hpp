@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/collide/triangle_test.hpp"
+#include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <Eigen/Core>
 

@@ -1,11 +1,12 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
-#include "crashrank/base/huge_pages.hpp"
+#include "crashrank/internal/base/huge_pages.hpp"
+#include "crashrank/internal/tree/build_records.hpp"
+#include "crashrank/internal/tree/lanes.hpp"
+#include "crashrank/internal/tree/parallel_build.hpp"
+#include "crashrank/internal/tree/round_up.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/build_records.hpp"
-#include "crashrank/tree/lanes.hpp"
-#include "crashrank/tree/parallel_build.hpp"
 #include "crashrank/tree/wide_tree.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "crashrank/internal/tree/lanes.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/lanes.hpp"
 
 #include <algorithm>
 #include <cstddef>

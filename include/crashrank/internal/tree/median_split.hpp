@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
-#include "crashrank/tree/build_records.hpp"
+#include "crashrank/internal/tree/build_records.hpp"
 
 #include <algorithm>
 #include <cstddef>

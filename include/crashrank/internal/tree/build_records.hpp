@@ -1,11 +1,11 @@
 #pragma once
 
-#include "crashrank/base/huge_pages.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/internal/base/huge_pages.hpp"
+#include "crashrank/internal/tree/lanes.hpp"
+#include "crashrank/internal/tree/projection.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
-#include "crashrank/tree/lanes.hpp"
-#include "crashrank/tree/projection.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/pose.hpp"
-#include "crashrank/collide/predicates.hpp"
+#include "crashrank/internal/collide/predicates.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
-#include "crashrank/tree/build_records.hpp"
-#include "crashrank/tree/cut_search.hpp"
-#include "crashrank/tree/lanes.hpp"
-#include "crashrank/tree/split_cost.hpp"
+#include "crashrank/internal/tree/build_records.hpp"
+#include "crashrank/internal/tree/cut_search.hpp"
+#include "crashrank/internal/tree/lanes.hpp"
+#include "crashrank/internal/tree/split_cost.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
-#include "crashrank/tree/build_records.hpp"
-#include "crashrank/tree/greedy_build.hpp"
-#include "crashrank/tree/tree_writer.hpp"
+#include "crashrank/internal/tree/build_records.hpp"
+#include "crashrank/internal/tree/greedy_build.hpp"
+#include "crashrank/internal/tree/tree_writer.hpp"
 
 #include <algorithm>
 #include <condition_variable>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/base/export.hpp"
 #include "crashrank/base/pose.hpp"
+#include "crashrank/internal/base/export.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 
 #include <Eigen/Core>

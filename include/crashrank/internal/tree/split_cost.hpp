@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/tree/lanes.hpp"
+#include "crashrank/internal/tree/lanes.hpp"
 
 namespace crashrank::detail {
 

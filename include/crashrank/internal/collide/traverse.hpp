@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/collide/box_test.hpp"
 #include "crashrank/collide/pair.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 
 #include <cassert>
