@@ -9,7 +9,6 @@
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model_file.hpp"
 #include "crashrank/tree/validate.hpp"
-#include "crashrank/tree/validate_wide.hpp"
 #include "model/file_bytes.hpp"
 #include "model/model_layout.hpp"
 

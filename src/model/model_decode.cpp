@@ -1,4 +1,4 @@
-#include "crashrank/tree/validate_wide.hpp"
+#include "crashrank/tree/validate.hpp"
 #include "model/model_layout.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "base/crc32c.hpp"
 #include "base/utf8.hpp"
 #include "crashrank/internal/base/guarded.hpp"
-#include "crashrank/tree/validate_wide.hpp"
+#include "crashrank/tree/validate.hpp"
 #include "model/model_layout.hpp"
 
 #include <algorithm>

@@ -5,9 +5,9 @@
 
 #include "crashrank/collide/pair_hash.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
+#include "crashrank/internal/tree/wide_tree.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/wide_tree.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

@@ -1,4 +1,4 @@
-#include "crashrank/tree/validate_wide.hpp"
+#include "crashrank/tree/validate.hpp"
 #include "model/model_file_checks.hpp"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/validate_wide.hpp"
+#include "crashrank/tree/validate.hpp"
 #include "model/model_file_checks.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "crashrank/tree/validate_wide.hpp"
+#include "crashrank/tree/validate.hpp"
 
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"

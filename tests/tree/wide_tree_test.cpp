@@ -1,4 +1,4 @@
-#include "crashrank/tree/wide_tree.hpp"
+#include "crashrank/internal/tree/wide_tree.hpp"
 
 #include "crashrank/internal/tree/wide_build.hpp"
 #include "crashrank/tree/build.hpp"

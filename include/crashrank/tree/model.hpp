@@ -1,9 +1,9 @@
 #pragma once
 
+#include "crashrank/internal/tree/wide_tree.hpp"
 #include "crashrank/mesh/profile.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/wide_tree.hpp"
 
 #include <memory>
 

@@ -3,8 +3,8 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/internal/tree/lanes.hpp"
 #include "crashrank/internal/tree/validate_tree.hpp"
+#include "crashrank/internal/tree/wide_tree.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/wide_tree.hpp"
 
 #include <algorithm>
 #include <array>

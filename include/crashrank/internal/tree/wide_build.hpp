@@ -6,8 +6,8 @@
 #include "crashrank/internal/tree/lanes.hpp"
 #include "crashrank/internal/tree/parallel_build.hpp"
 #include "crashrank/internal/tree/round_up.hpp"
+#include "crashrank/internal/tree/wide_tree.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/wide_tree.hpp"
 
 #include <algorithm>
 #include <array>
