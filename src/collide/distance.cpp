@@ -1,9 +1,9 @@
 #include "crashrank/collide/distance.hpp"
 
-#include "crashrank/internal/collide/box_gap.hpp"
+#include "collide/box_gap.hpp"
+#include "collide/triangle_distance.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
-#include "crashrank/internal/collide/triangle_distance.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #include "motion/impact_search.hpp"
 
+#include "collide/box_gap.hpp"
+#include "collide/triangle_distance.hpp"
 #include "crashrank/collide/distance.hpp"
-#include "crashrank/internal/collide/box_gap.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
-#include "crashrank/internal/collide/triangle_distance.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <Eigen/LU>

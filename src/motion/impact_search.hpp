@@ -2,8 +2,8 @@
 
 #include "motion/relative_motion.hpp"
 
+#include "collide/triangle_distance.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
-#include "crashrank/internal/collide/triangle_distance.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/tree/aabb_tree.hpp"

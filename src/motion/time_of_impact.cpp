@@ -4,12 +4,12 @@
 #include "motion/impact_search.hpp"
 #include "motion/relative_motion.hpp"
 
+#include "collide/triangle_distance.hpp"
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/distance.hpp"
 #include "crashrank/internal/base/products.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
-#include "crashrank/internal/collide/triangle_distance.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/internal/motion/containment.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <string>
@@ -78,6 +79,28 @@ TEST(Layering, PublicHeadersDeclareNothingInternal) {
     }
   }
   EXPECT_EQ(found, std::vector<std::string>{});
+}
+
+// But those of the libraries that link more.
+TEST(Layering, TheUmbrellaHeaderIncludesEveryPublicHeader) {
+  const fs::path include = fs::path(CRASHRANK_SOURCE_DIR) / "include";
+  std::ifstream in(include / "crashrank/crashrank.hpp");
+  const std::string umbrella{std::istreambuf_iterator<char>(in), {}};
+  std::vector<std::string> missing;
+  for (const char* const stage :
+       {"base", "interop", "mesh", "tree", "collide", "dispatch", "motion", "vehicle", "model",
+        "crash", "scenario", "rank", "report"}) {
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(include / "crashrank" / stage)) {
+      const std::string name = entry.path().lexically_relative(include).generic_string();
+      const bool elsewhere = name.find("/study/") != std::string::npos ||
+                             name == "crashrank/mesh/import.hpp" ||
+                             name == "crashrank/scenario/scenario_models.hpp";
+      if (!entry.is_regular_file() || elsewhere) continue;
+      if (umbrella.find('"' + name + '"') == std::string::npos) missing.push_back(name);
+    }
+  }
+  EXPECT_EQ(missing, std::vector<std::string>{});
 }
 
 // Who includes a public header needs Eigen, the language's library and the system's, nothing else.

@@ -1,6 +1,6 @@
 #include "crashrank/mesh/quality.hpp"
 
-#include "crashrank/internal/mesh/degenerate.hpp"
+#include "mesh/degenerate.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 
