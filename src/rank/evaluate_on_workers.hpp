@@ -7,8 +7,9 @@
 namespace crashrank::detail {
 
 /// Evaluates all of `result.candidates` into `result.ranking`, in the same order, on
-/// `options.workers` threads. Contacts are looked for candidate by candidate; the queries of all
-/// their damage are one dispatch, in which parts of the ego serve every candidate. Where the system
+/// `options.workers` threads. Contacts are looked for candidate by candidate; the damage
+/// queries of every 16 candidates a thread are one dispatch, in which parts of the ego serve all of
+/// them. Where the system
 /// refuses threads the calling one does all. Errors: usage for a depth out of range; internal when
 /// a worker failed.
 Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result);

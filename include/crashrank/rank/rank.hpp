@@ -30,8 +30,8 @@ namespace crashrank {
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
   /// Threads that share the work, 64 at most; 0 or 1: the calling thread does all. They share the
-  /// candidates when looking for contacts, and one dispatch holds the queries of all candidates'
-  /// damage. The answer has the same bits for every number, policy and depth.
+  /// candidates when looking for contacts, and one dispatch holds the damage queries of every 16
+  /// candidates a thread. The answer has the same bits for every number, policy and depth.
   unsigned workers = 1;
   Policy policy = Policy::late_match;  ///< how the dispatch's jobs find their workers
   std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
