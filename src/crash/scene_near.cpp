@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace crashrank::detail {
 namespace {
@@ -11,27 +12,61 @@ constexpr double listed_m = 5.0;
 
 }  // namespace
 
-/// No smaller than the distance of their outlines: the greatest along the axes of both boxes.
+void SceneRun::measure(const Vehicle& vehicle, Member& m) {
+  const Silhouettes& s = vehicle.silhouettes;
+  m.half_x = 0.5 * static_cast<double>(s.max_x - s.min_x);
+  m.half_y = 0.5 * static_cast<double>(s.max_y - s.min_y);
+  m.box_x = static_cast<double>(s.min_x) + m.half_x - vehicle.center_m.x();
+  m.box_y = static_cast<double>(s.min_y) + m.half_y - vehicle.center_m.y();
+  m.rim_m = std::hypot(std::abs(m.box_x) + m.half_x, std::abs(m.box_y) + m.half_y);
+}
+
 double SceneRun::gap_m(std::size_t i, std::size_t j) const {
-  const Member& m = members_[i];
-  const Member& n = members_[j];
-  const PlanarBody& p = body(i);
-  const PlanarBody& q = body(j);
+  return gap_m(members_[i], body(i), members_[j], body(j));
+}
+
+/// The distance of both boxes seen from above, no larger than that of the outlines; below 0 where
+/// they overlap. Beyond `listed_m` a lower bound of it. It changes no faster than the two close:
+/// what is listed early or late changes no step.
+double SceneRun::gap_m(const Member& m, const PlanarBody& p, const Member& n, const PlanarBody& q) {
   const double x =
       q.x + q.cosine * n.box_x - q.sine * n.box_y - (p.x + p.cosine * m.box_x - p.sine * m.box_y);
   const double y =
       q.y + q.sine * n.box_x + q.cosine * n.box_y - (p.y + p.sine * m.box_x + p.cosine * m.box_y);
-  const double c = std::abs(p.cosine * q.cosine + p.sine * q.sine);
-  const double s = std::abs(p.cosine * q.sine - p.sine * q.cosine);
-  const double along_p =
-      std::abs(p.cosine * x + p.sine * y) - m.half_x - c * n.half_x - s * n.half_y;
-  const double beside_p =
-      std::abs(p.cosine * y - p.sine * x) - m.half_y - s * n.half_x - c * n.half_y;
-  const double along_q =
-      std::abs(q.cosine * x + q.sine * y) - n.half_x - c * m.half_x - s * m.half_y;
-  const double beside_q =
-      std::abs(q.cosine * y - q.sine * x) - n.half_y - s * m.half_x - c * m.half_y;
-  return std::max(std::max(along_p, beside_p), std::max(along_q, beside_q));
+  const double cosine = p.cosine * q.cosine + p.sine * q.sine;
+  const double sine = p.cosine * q.sine - p.sine * q.cosine;
+  const double c = std::abs(cosine);
+  const double s = std::abs(sine);
+  const double ahead_p = p.cosine * x + p.sine * y;
+  const double left_p = p.cosine * y - p.sine * x;
+  const double ahead_q = q.cosine * x + q.sine * y;
+  const double left_q = q.cosine * y - q.sine * x;
+  const double along_p = std::abs(ahead_p) - m.half_x - c * n.half_x - s * n.half_y;
+  const double beside_p = std::abs(left_p) - m.half_y - s * n.half_x - c * n.half_y;
+  const double along_q = std::abs(ahead_q) - n.half_x - c * m.half_x - s * m.half_y;
+  const double beside_q = std::abs(left_q) - n.half_y - s * m.half_x - c * m.half_y;
+  const double apart = std::max(std::max(along_p, beside_p), std::max(along_q, beside_q));
+  if (!(apart > 0.0) || apart > listed_m) return apart;
+  // Of two boxes that are apart a corner of one is nearest to the other.
+  return std::sqrt(std::min(corner_distance2(m, n, ahead_p, left_p, cosine, sine),
+                            corner_distance2(n, m, ahead_q, left_q, cosine, -sine)));
+}
+
+/// Square of the distance of the nearest corner of `of` from `box`, whose middle is the origin:
+/// `of` lies at x, y, turned.
+double SceneRun::corner_distance2(const Member& box, const Member& of, double x, double y,
+                                  double cosine, double sine) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double ahead : {-of.half_x, of.half_x}) {
+    for (const double left : {-of.half_y, of.half_y}) {
+      const double along = std::abs(x + (cosine * ahead - sine * left)) - box.half_x;
+      const double beside = std::abs(y + (sine * ahead + cosine * left)) - box.half_y;
+      const double dx = std::max(along, 0.0);
+      const double dy = std::max(beside, 0.0);
+      least = std::min(least, dx * dx + dy * dy);
+    }
+  }
+  return least;
 }
 
 /// No two of their points are faster against each other.
@@ -55,13 +90,19 @@ void SceneRun::list_near(std::size_t i) {
   Member& m = members_[i];
   m.near = 0;
   m.slack_m = listed_m;
+  if (options_.records_lists && listings_.size() < most_listings) {
+    listings_.push_back({now_s_, static_cast<std::uint32_t>(i), body(i)});
+  }
   std::uint32_t* const list = near_.data() + i * most_near;
   const Vehicle& own = *bodies_[i].vehicle;
   for (std::size_t j = 0; j < bodies_.size(); ++j) {
     if (j == i || !can_press(own, *bodies_[j].vehicle)) continue;
-    place(j);
-    const double gap = gap_m(i, j);
+    const PlanarBody at =
+        members_[j].state == State::planned ? make_planar(given(j), origin_m_) : body(j);
+    const double gap = gap_m(m, body(i), members_[j], at);
     if (gap > listed_m) continue;
+    // What was near before is where the last step placed it, whenever this list is made.
+    if (members_[j].placed_s < placed_s_) place(j);
     if (m.near < most_near) {
       list[m.near++] = static_cast<std::uint32_t>(j);
       continue;
@@ -75,9 +116,26 @@ void SceneRun::list_near(std::size_t i) {
   }
 }
 
+bool SceneRun::would_list(const SceneBody& body) const {
+  if (listings_.size() == most_listings) return true;
+  Member member;
+  measure(*body.vehicle, member);
+  ContactBody given;
+  given.vehicle = body.vehicle;
+  for (const Listing& listing : listings_) {
+    if (!can_press(*bodies_[listing.body].vehicle, *body.vehicle)) continue;
+    body.plan->state_at(listing.time_s, given.pose, given.velocity);
+    if (!body.vehicle->movable()) given.velocity = {};
+    const PlanarBody at = make_planar(given, origin_m_);
+    if (!(gap_m(members_[listing.body], listing.at, member, at) > listed_m)) return true;
+  }
+  return false;
+}
+
 void SceneRun::list_near() {
-  // Before the next list none that is left out comes so near as to press.
-  const double needed_m = live_m + 2.0 * options_.rolling_step_s * fastest_mps_;
+  // Before the next list none that is left out comes so near as to press or to shorten a step, even
+  // seen half a step late: so no step depends on when lists are made.
+  const double needed_m = live_m + 3.0 * options_.rolling_step_s * fastest_mps_;
   for (const std::uint32_t i : chain_) {
     if (members_[i].slack_m < needed_m) list_near(i);
   }

@@ -32,6 +32,7 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   live_.reserve(most_at_once);
   spare_.reserve(most_at_once);
   contacts_.reserve(most_contacts);
+  listings_.reserve(most_listings);
   memory_.pairs.resize(most_pairs);
   for (BodyPair& pair : memory_.pairs) {
     pair.of_first.resize(pieces);
@@ -59,20 +60,16 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
     spare_.push_back(static_cast<std::uint32_t>(k - 1));
   contacts_.clear();
   first_run_ = nullptr;
-  start_s_ = now_s_ = last_force_s_ = start_s;
-  fastest_plan_mps_ = 0.0;
+  start_s_ = now_s_ = placed_s_ = last_force_s_ = start_s;
+  fastest_plan_mps_ = options.fastest_plan_mps;
+  listings_.clear();
   crowded_ = false;
   steps_ = 0;
   ended_work_ = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Vehicle& v = *bodies[i].vehicle;
     Member& m = members_[i];
-    const Silhouettes& s = v.silhouettes;
-    m.half_x = 0.5 * static_cast<double>(s.max_x - s.min_x);
-    m.half_y = 0.5 * static_cast<double>(s.max_y - s.min_y);
-    m.box_x = static_cast<double>(s.min_x) + m.half_x - v.center_m.x();
-    m.box_y = static_cast<double>(s.min_y) + m.half_y - v.center_m.y();
-    m.rim_m = std::hypot(std::abs(m.box_x) + m.half_x, std::abs(m.box_y) + m.half_y);
+    measure(v, m);
     m.state = v.movable() ? State::planned : State::fixed;
     ContactBody given;
     given.vehicle = &v;
@@ -338,11 +335,13 @@ void SceneRun::press() {
 void SceneRun::step() {
   list_near();
   const double step_s = next_step_s();
+  const double fastest_before_mps = fastest_mps_;
   fastest_mps_ = fastest_plan_mps_;
   for (const std::uint32_t i : chain_) {
     if (members_[i].state == State::free) motion_of(i).move(0.5 * step_s);
   }
   now_s_ += 0.5 * step_s;
+  placed_s_ = now_s_;
   for (const std::uint32_t i : chain_) {
     place(i);
     for (std::size_t k = 0; k < members_[i].near; ++k) place(near_[i * most_near + k]);
@@ -383,7 +382,8 @@ void SceneRun::step() {
     live_.erase(live_.begin() + static_cast<std::ptrdiff_t>(k));
   }
   // Both of a pair may have moved as far.
-  for (const std::uint32_t i : chain_) members_[i].slack_m -= 2.0 * step_s * fastest_mps_;
+  const double fastest_mps = std::max(fastest_before_mps, fastest_mps_);
+  for (const std::uint32_t i : chain_) members_[i].slack_m -= 2.0 * step_s * fastest_mps;
   settle();
 }
 

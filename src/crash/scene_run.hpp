@@ -36,6 +36,9 @@ struct SceneOptions {
   double after_last_contact_s = 3.0;          ///< the scene ends so long after the last force
   double until_s = 0.0;                       ///< but while anything moves not before this time
   double longest_s = 30.0;                    ///< and so long after its start at the latest
+  /// Bodies that are asked about with `would_list` are no faster on their plans.
+  double fastest_plan_mps = 0.0;
+  bool records_lists = false;  ///< needed by `would_list`
 };
 
 /// A contact between two bodies of a scene. Its velocities are those of the contact law's end; what
@@ -101,6 +104,10 @@ public:
   bool touched(std::size_t i) const { return members_[i].state >= State::free; }
   /// Pose of its origin now.
   Pose pose(std::size_t i) const { return given(i).pose; }
+  /// Whether a body that follows its plan would have come so near the chain that it was listed. A
+  /// body that is not listed changes no bit of a run: with it, without it or on another such plan
+  /// all steps, contacts and outcomes are the same.
+  bool would_list(const SceneBody& body) const;
   /// Some bodies were too many to be followed: see the limits.
   bool crowded() const noexcept { return crowded_; }
   std::uint64_t steps() const noexcept { return steps_; }
@@ -108,6 +115,14 @@ public:
   std::uint64_t work() const noexcept;
 
 private:
+  /// When and where the bodies near one of the chain were listed.
+  struct Listing {
+    double time_s = 0.0;
+    std::uint32_t body = 0;
+    PlanarBody at;
+  };
+  /// Enough for most scenes; after more every body counts as listed.
+  static constexpr std::size_t most_listings = 8192;
   /// Bodies nearer than this may press within the next steps, m.
   static constexpr double live_m = 0.15;
 
@@ -143,6 +158,10 @@ private:
   void touch(std::size_t i);
   void set_wheels(std::size_t i);
   double gap_m(std::size_t i, std::size_t j) const;
+  static double gap_m(const Member& m, const PlanarBody& p, const Member& n, const PlanarBody& q);
+  static double corner_distance2(const Member& box, const Member& of, double x, double y,
+                                 double cosine, double sine);
+  static void measure(const Vehicle& vehicle, Member& member);
   double closing_bound(std::size_t i, std::size_t j) const;
   bool lists(std::size_t i, std::size_t j) const;
   void list_near();
@@ -175,9 +194,11 @@ private:
   std::vector<std::uint32_t> live_;   ///< runs that go on
   std::vector<std::uint32_t> spare_;  ///< runs that do not
   std::vector<SceneContact> contacts_;
+  std::vector<Listing> listings_;
   const ContactRun* first_run_ = nullptr;  ///< with the first body's partner
   double start_s_ = 0.0;
   double now_s_ = 0.0;
+  double placed_s_ = 0.0;  ///< middle of the last step, for which near bodies were placed
   double last_force_s_ = 0.0;
   double fastest_plan_mps_ = 0.0;  ///< of any point of a planned body
   double fastest_mps_ = 0.0;       ///< and of those that were touched

@@ -37,6 +37,8 @@ SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
   options.grip = scene.grip;
   // A candidate that touches nobody is looked at until the horizon, and so is what follows here.
   options.until_s = scene.slice_s.back();
+  options.fastest_plan_mps = scene.fastest_plan_mps;
+  options.records_lists = scene.futures.size() > 1;
   return options;
 }
 
@@ -69,8 +71,8 @@ void CrashChain::prepare(const Scene& scene) {
   run_.prepare(scene.actors.size() + 1, pieces);
 }
 
-void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Contact& first,
-                       const HarmSample& sample) {
+void CrashChain::begin(const Scene& scene, const Candidate& candidate, std::size_t future,
+                       const Contact& first, const HarmSample& sample) {
   first_ = &first;
   bodies_.clear();
   actors_.clear();
@@ -93,12 +95,15 @@ void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Con
   const double speed = across.norm();
   if (speed > 0.0) ego.shift_m = (sample.shift_m / speed) * across;
   for (std::size_t i = 0; i < scene.actors.size(); ++i) {
+    const std::uint32_t plan = scene.futures.plan(future, i);
+    if (plan == Futures::absent) continue;
+    const Motion& motion = scene.futures.plans[plan].motion;
     const std::size_t joined = scene.joined_of[i];
     if (joined == Scene::alone) {
-      add(i, scene.actors[i].vehicle, scene.actors[i].motion);
+      add(i, scene.actors[i].vehicle, motion);
     } else if (scene.joined[joined].members.front() == i) {
       const bool hit = scene.joined_of[first.actor] == joined;
-      add(hit ? first.actor : i, scene.joined[joined].vehicle, scene.actors[i].motion);
+      add(hit ? first.actor : i, scene.joined[joined].vehicle, motion);
     }
   }
   sort_actors(first.time_of_impact_s);
@@ -123,6 +128,17 @@ void CrashChain::sort_actors(double time_s) {
   for (std::size_t i = 1; i < placed_.size(); ++i) {
     bodies_[i] = placed_[i].body;
     actors_[i] = placed_[i].actor;
+  }
+}
+
+void CrashChain::feel(const Scene& scene, std::vector<char>& felt) const {
+  const std::vector<Plan>& plans = scene.futures.plans;
+  for (std::size_t p = 0; p < plans.size(); ++p) {
+    if (felt[p] != 0 || scene.futures.is_certain(plans[p].actor)) continue;
+    SceneBody body;
+    body.vehicle = &scene.actors[plans[p].actor].vehicle;
+    body.plan = &plans[p].motion;
+    if (run_.would_list(body)) felt[p] = 1;
   }
 }
 

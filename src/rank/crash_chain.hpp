@@ -20,9 +20,10 @@ public:
   /// Room for the scene: nothing allocates after it.
   void prepare(const Scene& scene);
 
-  /// Begins with the ego on its plan at its first contact; scene and candidate outlive the run.
-  void begin(const Scene& scene, const Candidate& candidate, const Contact& first,
-             const HarmSample& sample);
+  /// Begins with the ego on its plan at its first contact, the actors on theirs of a future; scene
+  /// and candidate outlive the run.
+  void begin(const Scene& scene, const Candidate& candidate, std::size_t future,
+             const Contact& first, const HarmSample& sample);
   /// Takes at most so many steps; false once everything rests.
   bool advance(int steps) { return run_.advance(steps); }
   void finish();
@@ -39,6 +40,8 @@ public:
   /// Effects of all contacts by their begins. `order`: the index of each in `contacts`.
   void effects(std::vector<ContactEffect>& effects, std::vector<std::size_t>& order) const;
   const SceneRun& run() const noexcept { return run_; }
+  /// Marks the plans that came near the chain while it was simulated, or would have.
+  void feel(const Scene& scene, std::vector<char>& felt) const;
 
 private:
   struct Placed {

@@ -144,7 +144,7 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
     const Body& body = scene.actors[actor];
     // Of joined bodies the record has the common pose.
     const bool stands = !body.vehicle.movable();
-    const Pose standing = body.motion.pose_at(0.0);
+    const Pose standing = body.standing;
     DamagePath path;
     path.actor = actor;
     for (const std::size_t i : chosen) {
@@ -157,7 +157,7 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
     if (actor != query.b) add_path(actor);
   }
   const Body& b = scene.actors[query.b];
-  plan.pose_b = b.vehicle.movable() ? record[0].b : b.motion.pose_at(0.0);
+  plan.pose_b = b.vehicle.movable() ? record[0].b : b.standing;
   return plan;
 }
 

@@ -1,6 +1,7 @@
 #include "rank/evaluate.hpp"
 
 #include "rank/anytime/bounds.hpp"
+#include "rank/combine_futures.hpp"
 #include "rank/hits.hpp"
 #include "rank/measure_table.hpp"
 
@@ -14,12 +15,13 @@
 namespace crashrank::detail {
 namespace {
 
-void add_grazes(const Scratch& scratch, CandidateResult& result) {
+void add_grazes(const Scene& scene, const Scratch& scratch, std::size_t future,
+                CandidateResult& result) {
   const double until = result.collides ? result.contacts.front().time_of_impact_s
                                        : std::numeric_limits<double>::infinity();
   for (const Scratch::Hit& hit : scratch.hits) {
     const bool grazing = hit.impact.state == ImpactState::grazing;
-    if (!grazing && !hit.impact.grazed) continue;
+    if (!scene.futures.has(future, hit.plan) || (!grazing && !hit.impact.grazed)) continue;
     const double time = grazing ? hit.impact.time_s : hit.impact.graze_time_s;
     if (time <= until) result.grazes.push_back({hit.actor, time});
   }
@@ -78,12 +80,13 @@ std::vector<std::size_t> effect_of_sample(const Scene& scene) {
   return places;
 }
 
-/// Simulates the chain of a first contact in a sample.
-void simulate(const Scene& scene, const Candidate& candidate, const Contact& first,
-              const HarmSample& sample, Scratch& scratch, RankWork& work,
+/// Simulates the chain of a first contact in a future and a sample.
+void simulate(const Scene& scene, const Candidate& candidate, std::size_t future,
+              const Contact& first, const HarmSample& sample, Scratch& scratch, RankWork& work,
               std::vector<ContactEffect>& effects) {
-  scratch.chain.begin(scene, candidate, first, sample);
+  scratch.chain.begin(scene, candidate, future, first, sample);
   scratch.chain.finish();
+  scratch.chain.feel(scene, scratch.felt);
   scratch.chain.effects(effects, scratch.order);
   work.crash_steps += scratch.chain.run().steps();
   work.crash_pieces += scratch.chain.run().work();
@@ -140,80 +143,65 @@ double tally_up(const Scene& scene, const Approach& from, Tally& tally, Candidat
   return tally.score(scene);
 }
 
-// What the candidate scores in every sample, and the interval of those under its own risk model.
+/// What the candidate scores in every sample.
 void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
                  Tally& tally, CandidateResult& result) {
   const std::vector<std::size_t> place = effect_of_sample(scene);
-  const bool counts_people = measure_row(scene.measure).counts_people;
   for (std::size_t i = 0; i < scene.samples.size(); ++i) {
-    const HarmSample& sample = scene.samples[i];
     double score = 0.0;
     if (!effects.empty()) {
       tally.begin();
-      for (const ContactEffect& effect : effects[place[i]]) tally.add(scene, effect, sample);
+      for (const ContactEffect& effect : effects[place[i]]) {
+        tally.add(scene, effect, scene.samples[i]);
+      }
       score = tally.score(scene);
     }
     result.sample_scores.push_back(score);
-    if (counts_people && sample.model != scene.harm.model) continue;
-    ScoreInterval& interval =
-        is_numerical(sample) ? result.numerical_interval : result.score_interval;
-    interval.lowest = std::min(interval.lowest, score);
-    interval.highest = std::max(interval.highest, score);
   }
 }
 
-}  // namespace
-
-void Scratch::prepare(const Scene& scene) {
-  std::uint32_t deepest = scene.ego.model->tree.depth;
-  for (const Body& actor : scene.actors) deepest = std::max(deepest, actor.model->tree.depth);
-  impact.prepare(deepest, deepest);
-  near.reserve(scene.actors.size());
-  place.reserve(scene.actors.size());
-  hits.reserve(scene.actors.size());
-  chain.prepare(scene);
-  effects.reserve(SceneRun::most_contacts + 1);
-  order.reserve(SceneRun::most_contacts + 1);
-  tally.prepare(scene.actors.size() + 1);
-}
-
-Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
-                  RankWork& work) {
-  Approach stopped;
-  stopped.decided = false;
-  Approach found;
-  found.decided = find_hits(scene, candidate.motion, scratch, work);
-  if (scratch.stopped()) return stopped;
-  const auto hit = std::find_if(scratch.hits.begin(), scratch.hits.end(),
-                                [](const Scratch::Hit& h) { return h.impact.hit(); });
+/// Follows one candidate through its crash in a future. False where it was stopped.
+bool approach_future(const Scene& scene, const Candidate& candidate, std::size_t future,
+                     Scratch& scratch, RankWork& work, Approach& found) {
+  std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
+  const Scratch::Hit* const hit = first_hit(scene, scratch, future);
+  feel_hits(scratch, hit, scratch.felt);
   CandidateResult& result = found.result;
-  result.collides = hit != scratch.hits.end();
+  result.collides = found.outcome.collides = hit != nullptr;
   if (result.collides) {
-    result.contacts.push_back(first_contact(scene, candidate.motion, hit->actor, hit->impact));
+    const Motion& other = scene.futures.plans[hit->plan].motion;
+    result.contacts.push_back(
+        first_contact(scene, candidate.motion, hit->actor, other, hit->impact));
     const Contact first = result.contacts.front();
     result.contacts.front().severity.simulated = needs_crash(scene.measure);
+    found.outcome.actor = first.actor;
+    found.outcome.time_of_impact_s = first.time_of_impact_s;
+    found.outcome.closing_speed_mps = first.closing_speed_mps;
     found.effects.emplace_back();
-    simulate(scene, candidate, first, scene.plain, scratch, work, found.effects.back());
+    simulate(scene, candidate, future, first, scene.plain, scratch, work, found.effects.back());
     result.crowded = scratch.chain.run().crowded();
-    found.told =
-        tell_contacts(scene, scratch.chain, scratch.order, hit->impact,
-                      candidate.motion.pose_at(first.time_of_impact_s), result, found.plans);
+    found.outcome.contacts = scratch.chain.contacts().size();
+    found.told = tell_contacts(scene, scratch.chain, scratch.order, hit->impact,
+                               candidate.motion.pose_at(first.time_of_impact_s),
+                               other.pose_at(first.time_of_impact_s), result, found.plans);
     std::size_t last = 0;
     const std::vector<std::size_t> places = effect_of_sample(scene);
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (places[i] == last) continue;
       last = places[i];
-      if (scratch.stopped()) return stopped;
+      if (scratch.stopped()) return false;
       found.effects.emplace_back();
-      simulate(scene, candidate, first, scene.samples[i], scratch, work, found.effects.back());
+      simulate(scene, candidate, future, first, scene.samples[i], scratch, work,
+               found.effects.back());
     }
   }
-  add_grazes(scratch, result);
-  return found;
+  add_grazes(scene, scratch, future, result);
+  return true;
 }
 
-CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&& approach,
-                       FoundDamage found, Scratch& scratch, RankWork& work) {
+/// Reads the damage of one outcome and scores it.
+CandidateResult finish_outcome(const Scene& scene, Approach& approach, FoundDamage& found,
+                               Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(approach.result);
   for (std::size_t i = 0; i < approach.plans.size(); ++i) {
     const std::size_t k = i - std::min(i, result.contacts.size());
@@ -225,21 +213,83 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&
   }
   const std::map<std::size_t, BodyDamage> damage = whole_damage(scene, result);
   if (result.collides) result.ego = damage.at(ego_body);
-  if (approach.decided) {
-    const double simulated =
-        approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
-    result.score = scored_by_damage(scene.measure)
-                       ? damage_score(damage, measure_row(scene.measure))
-                       : simulated;
-    result.score_interval = {*result.score, *result.score};
-    result.numerical_interval = result.score_interval;
-    add_samples(scene, approach.effects, scratch.tally, result);
-  } else {
-    ScoreBounds bounds;
-    bounds.prepare(scene);
-    result.score_interval = {0.0, bounds.most(scene, candidate.motion)};
-    result.numerical_interval = result.score_interval;
+  const double simulated =
+      approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
+  result.score = scored_by_damage(scene.measure) ? damage_score(damage, measure_row(scene.measure))
+                                                 : simulated;
+  add_samples(scene, approach.effects, scratch.tally, result);
+  return result;
+}
+
+}  // namespace
+
+void Scratch::prepare(const Scene& scene) {
+  std::uint32_t deepest = scene.ego.model->tree.depth;
+  for (const Body& actor : scene.actors) deepest = std::max(deepest, actor.model->tree.depth);
+  impact.prepare(deepest, deepest);
+  const Futures& futures = scene.futures;
+  place.reserve(futures.plans.size());
+  near.reserve(futures.plans.size());
+  hits.reserve(futures.plans.size());
+  felt.resize(futures.plans.size());
+  first_s.reserve(futures.size());
+  until_s.reserve(futures.size());
+  weighted.reserve(futures.size());
+  for (auto* const each : {&same, &open, &others}) each->reserve(futures.size());
+  chain.prepare(scene);
+  effects.reserve(SceneRun::most_contacts + 1);
+  order.reserve(SceneRun::most_contacts + 1);
+  tally.prepare(scene.actors.size() + 1);
+}
+
+Approaches approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
+                    RankWork& work) {
+  Approaches stopped;
+  stopped.decided = false;
+  Approaches found;
+  const Futures& futures = scene.futures;
+  scratch.felt.resize(futures.plans.size());
+  found.decided = find_hits(scene, candidate.motion, scratch, work);
+  if (scratch.stopped()) return stopped;
+  scratch.open.clear();
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    scratch.open.push_back(static_cast<std::uint32_t>(f));
   }
+  while (!scratch.open.empty()) {
+    const bool is_first = found.outcomes.empty();
+    const std::size_t future = is_first ? futures.likeliest() : scratch.open.front();
+    found.outcomes.emplace_back();
+    Approach& each = found.outcomes.back();
+    if (!approach_future(scene, candidate, future, scratch, work, each)) return stopped;
+    scratch.same.swap(scratch.open);
+    scratch.open.clear();
+    futures.split(future, scratch.felt, scratch.same, scratch.open);
+    each.futures.assign(scratch.same.begin(), scratch.same.end());
+    each.outcome.futures = each.futures.size();
+    each.outcome.is_likeliest = is_first;
+    for (const std::uint32_t f : scratch.same) each.outcome.probability += futures.probability(f);
+    each.result.collision_probability = collision_probability(scene, scratch);
+  }
+  return found;
+}
+
+CandidateResult finish(const Scene& scene, const Candidate& candidate, Approaches&& approaches,
+                       FoundDamage found, Scratch& scratch, RankWork& work) {
+  std::vector<CandidateResult> results;
+  for (Approach& each : approaches.outcomes) {
+    results.push_back(finish_outcome(scene, each, found, scratch, work));
+  }
+  if (approaches.decided) {
+    return combine_futures(scene, std::move(results), approaches.outcomes, scratch);
+  }
+  CandidateResult result;
+  if (!results.empty()) result = std::move(results.front());
+  result.score.reset();
+  result.sample_scores.clear();
+  ScoreBounds bounds;
+  bounds.prepare(scene);
+  result.score_interval = {0.0, bounds.most(scene, candidate.motion)};
+  result.numerical_interval = result.score_interval;
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "rank/crash_chain.hpp"
 #include "rank/damage.hpp"
+#include "rank/risk.hpp"
 #include "rank/scene.hpp"
 #include "rank/tally.hpp"
 #include "rank/tell_contacts.hpp"
@@ -13,19 +14,27 @@ namespace crashrank::detail {
 
 /// Memory that evaluating candidates reuses, one for each worker.
 struct Scratch {
-  /// An actor whose swept box meets the ego's, and in which slices.
+  /// A plan on which an actor's swept box overlaps the ego's, and in which slices.
   struct Near {
-    std::size_t actor = 0;
+    std::size_t plan = 0;
     std::size_t first_slice = 0;
     std::size_t last_slice = 0;
   };
   struct Hit {
-    std::size_t actor = 0;
+    std::size_t plan = 0;
+    std::size_t actor = 0;  ///< whose plan it is
     Impact impact;
   };
   std::vector<Near> near;
-  std::vector<std::size_t> place;  ///< by actor: where it is in `near`, or none
+  std::vector<std::size_t> place;  ///< by plan: where it is in `near`, or none
   std::vector<Hit> hits;
+  std::vector<double> first_s;  ///< by future, while hits are searched
+  std::vector<double> until_s;
+  std::vector<char> felt;               ///< by plan, see Futures::split
+  std::vector<std::uint32_t> same;      ///< futures that share an outcome
+  std::vector<std::uint32_t> open;      ///< and those still to be evaluated
+  std::vector<std::uint32_t> others;    ///< while these are split
+  std::vector<WeightedScore> weighted;  ///< while futures are combined
   ImpactWorkspace impact;
   CrashChain chain;
   std::vector<ContactEffect> effects;
@@ -42,23 +51,32 @@ struct Scratch {
   void prepare(const Scene& scene);
 };
 
-/// A candidate followed through its crash, with the damage still to be read.
+/// A candidate followed through its crash in futures that do not differ for it, with the damage
+/// still to be read.
 struct Approach {
   CandidateResult result;         ///< contacts without damage, grazes
   std::vector<DamagePlan> plans;  ///< by contact, then by further contact
   std::vector<ToldContact> told;  ///< by effect of the plain variant
   /// Of the plain variant, then of those of the samples.
   std::vector<std::vector<ContactEffect>> effects;
-  bool decided = true;  ///< else the search came to no end or was stopped
+  FutureOutcome outcome;               ///< without its score
+  std::vector<std::uint32_t> futures;  ///< that it is of
+};
+
+/// The same in all futures.
+struct Approaches {
+  std::vector<Approach> outcomes;  ///< the likeliest future's first
+  bool decided = true;             ///< else the search came to no end or was stopped
 };
 
 /// Follows one candidate through its crash. Depends on the scene and the candidate alone, as do
 /// the others here, unless it is stopped: then nothing is known of it.
-Approach approach(const Scene& scene, const Candidate& candidate, Scratch& scratch, RankWork& work);
+Approaches approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
+                    RankWork& work);
 
-/// Reads the damage and scores it. `found` is of the first contact's first pose; those of the
-/// contacts after it follow.
-CandidateResult finish(const Scene& scene, const Candidate& candidate, Approach&& approach,
+/// Reads the damage, scores it and combines the futures. `found` is of the first contact's first
+/// pose; those of the contacts after it follow.
+CandidateResult finish(const Scene& scene, const Candidate& candidate, Approaches&& approaches,
                        FoundDamage found, Scratch& scratch, RankWork& work);
 
 /// Both at once, on the calling thread.

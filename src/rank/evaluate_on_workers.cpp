@@ -74,7 +74,7 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
   for (Scratch& own : scratch) progress.watch(own);
   std::vector<RankWork> work(scratch.size());
   const std::size_t batch_candidates = candidates_each * scratch.size();
-  std::vector<Approach> approaches;
+  std::vector<Approaches> approaches;
   std::vector<std::size_t> first_query;
   std::vector<DispatchQuery> queries;
   PairLists lists;
@@ -90,17 +90,23 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
 
     queries.clear();
     first_query.clear();
-    for (const Approach& found : approaches) {
+    const auto add_queries = [&](const DamagePlan& plan) -> Status {
+      for (const DamagePath& path : plan.paths) {
+        const Result<const PartIndex*> a = indices_a.of(*body_of(scene, plan.query.a).model);
+        if (!a) return a.error();
+        const Result<const PartIndex*> b = indices_b.of(*scene.actors[path.actor].model);
+        if (!b) return b.error();
+        for (std::size_t i = plan.first_pose; i < path.poses.size(); ++i) {
+          queries.push_back({*a, *b, path.poses[i]});
+        }
+      }
+      return Success{};
+    };
+    for (const Approaches& found : approaches) {
       first_query.push_back(queries.size());
-      for (const DamagePlan& plan : found.plans) {
-        for (const DamagePath& path : plan.paths) {
-          const Result<const PartIndex*> a = indices_a.of(*body_of(scene, plan.query.a).model);
-          if (!a) return a.error();
-          const Result<const PartIndex*> b = indices_b.of(*scene.actors[path.actor].model);
-          if (!b) return b.error();
-          for (std::size_t i = plan.first_pose; i < path.poses.size(); ++i) {
-            queries.push_back({*a, *b, path.poses[i]});
-          }
+      for (const Approach& outcome : found.outcomes) {
+        for (const DamagePlan& plan : outcome.plans) {
+          if (Status added = add_queries(plan); !added) return added;
         }
       }
     }

@@ -4,12 +4,19 @@
 
 namespace crashrank::detail {
 
-/// Fills `scratch.hits` with what happens between the ego on its planned motion and the actors
-/// until its first contact, in time order, everything but clean misses. Returns false when some
-/// question stayed undecided.
+/// Fills `scratch.hits` with the impacts between the ego on its planned motion and the actors on
+/// each of their plans, in time order, everything but clean misses; no plan is searched beyond the
+/// first contacts of all of its futures. Returns false when some question stayed undecided.
 bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work);
 
-/// Whether one of those is a pass within the tolerance before a time.
-bool grazes_before(const Scratch& scratch, double until_s);
+/// The first contact of those in a future; null without one.
+const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::size_t future);
+
+/// Marks the plans whose contact comes before the first contact of a future, and that contact's:
+/// another future with another choice of these begins its crash otherwise.
+void feel_hits(const Scratch& scratch, const Scratch::Hit* first, std::vector<char>& felt);
+
+/// Whether the ego passes an actor within the tolerance before a time in a future.
+bool grazes_before(const Scene& scene, const Scratch& scratch, std::size_t future, double until_s);
 
 }  // namespace crashrank::detail

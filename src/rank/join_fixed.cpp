@@ -21,7 +21,7 @@ struct Rectangle {
 
 Rectangle rectangle_of(const Body& body) {
   const Box box = body.model->mesh.bounds();
-  const Pose pose = body.motion.pose_at(0.0);
+  const Pose pose = body.standing;
   const Eigen::Vector3d center = pose.rotation * box.center().cast<double>() + pose.translation;
   const Eigen::Vector3d size = box.extent().cast<double>();
   return {
@@ -50,10 +50,10 @@ bool adjoin(const Rectangle& p, const Rectangle& q) {
 /// All triangles of the members, in the body coordinates of the first.
 TriangleMesh common_mesh(const Scene& scene, const std::vector<std::size_t>& members) {
   TriangleMesh mesh;
-  const Pose first = scene.actors[members.front()].motion.pose_at(0.0);
+  const Pose first = scene.actors[members.front()].standing;
   for (const std::size_t i : members) {
     const TriangleMesh& part = scene.actors[i].model->mesh;
-    const Pose to = relative(first, scene.actors[i].motion.pose_at(0.0));
+    const Pose to = relative(first, scene.actors[i].standing);
     const auto begin = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const Eigen::Vector3f& vertex : part.vertices) {
       mesh.vertices.push_back(carry(to, vertex).cast<float>());
@@ -79,7 +79,7 @@ Status join_fixed(Scene& scene) {
   std::vector<std::size_t> fixed;
   std::vector<Rectangle> rectangles;
   for (std::size_t i = 0; i < count; ++i) {
-    if (scene.actors[i].vehicle.movable()) continue;
+    if (scene.actors[i].vehicle.movable() || !scene.futures.is_certain(i)) continue;
     fixed.push_back(i);
     rectangles.push_back(rectangle_of(scene.actors[i]));
   }

@@ -10,23 +10,23 @@ void find_near(const Scene& scene, const Motion& ego, double from_s, double unti
                Scratch& scratch, RankWork& work) {
   constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
   scratch.near.clear();
-  scratch.place.assign(scene.actors.size(), nowhere);
+  scratch.place.assign(scene.futures.plans.size(), nowhere);
   for (std::size_t s = 0; s < scene.slices.size(); ++s) {
     if (scene.slice_s[s + 1] < from_s || scene.slice_s[s] > until_s) continue;
     const Box box = swept_box(scene.ego, ego, std::max(scene.slice_s[s], from_s),
                               std::min(scene.slice_s[s + 1], until_s), scene.impact.tolerance_m);
-    work.box_tests += scene.slices[s].query(box, [&](std::size_t actor) {
-      std::size_t& place = scratch.place[actor];
+    work.box_tests += scene.slices[s].query(box, [&](std::size_t plan) {
+      std::size_t& place = scratch.place[plan];
       if (place == nowhere) {
         place = scratch.near.size();
-        scratch.near.push_back({actor, s, s});
+        scratch.near.push_back({plan, s, s});
       }
       scratch.near[place].last_slice = s;
     });
   }
   std::sort(
       scratch.near.begin(), scratch.near.end(), [](const Scratch::Near& p, const Scratch::Near& q) {
-        return p.first_slice != q.first_slice ? p.first_slice < q.first_slice : p.actor < q.actor;
+        return p.first_slice != q.first_slice ? p.first_slice < q.first_slice : p.plan < q.plan;
       });
 }
 

@@ -14,6 +14,9 @@ int compare(const CandidateResult& a, const CandidateResult& b) {
   const auto before = [](bool first) { return first ? -1 : 1; };
   if (worth_a != worth_b) return before(worth_a < worth_b);
   if (a.score.has_value() != b.score.has_value()) return before(a.score.has_value());
+  if (a.collision_probability != b.collision_probability) {
+    return before(a.collision_probability < b.collision_probability);
+  }
   if (a.collides != b.collides) return before(!a.collides);
   if (a.grazes.empty() != b.grazes.empty()) return before(a.grazes.empty());
   if (a.collides && !a.contacts.empty() && !b.contacts.empty()) {

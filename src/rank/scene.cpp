@@ -1,9 +1,9 @@
 #include "rank/scene.hpp"
 
+#include "crash/scene_run.hpp"
 #include "crashrank/crash/injury.hpp"
 #include "rank/join_fixed.hpp"
 #include "rank/measure_table.hpp"
-#include "scenario/motion_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +20,10 @@ constexpr double slice_length_s = 0.25;
 constexpr double max_slices = 64.0;
 constexpr float infinity_f = std::numeric_limits<float>::infinity();
 
-Body make_body(const Model& model, double mass_kg, Motion motion) {
+Body make_body(const Model& model, double mass_kg) {
   Body body;
   body.model = &model;
   body.mass_kg = mass_kg;
-  body.motion = std::move(motion);
   const Box& root = model.tree.nodes.front().box;
   const Eigen::Vector3d low = root.min.cast<double>();
   const Eigen::Vector3d high = root.max.cast<double>();
@@ -84,6 +83,29 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
   return vehicle;
 }
 
+/// A body that nothing moves has one place.
+Status check_fixed(const Scene& scene, const Scenario& scenario) {
+  const std::vector<Plan>& plans = scene.futures.plans;
+  for (std::size_t i = 1; i < plans.size(); ++i) {
+    const std::size_t actor = plans[i].actor;
+    if (plans[i - 1].actor != actor || scene.actors[actor].vehicle.movable()) continue;
+    return Error{ErrorCode::bad_input,
+                 {},
+                 "actors." + scenario.actors[actor].name,
+                 "has several motions, and nothing moves it",
+                 "give it one pose, or its model a mass"};
+  }
+  return Success{};
+}
+
+/// Puts the bodies that nothing moves where they are.
+void stand(Scene& scene) {
+  for (const Plan& plan : scene.futures.plans) {
+    Body& body = scene.actors[plan.actor];
+    if (!body.vehicle.movable()) body.standing = plan.motion.pose_at(0.0);
+  }
+}
+
 }  // namespace
 
 Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
@@ -139,7 +161,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
         std::string("is missing, and a ") + body_kind_name(model.kind) + " does not move by itself",
         "give the ego's model a mass"};
   }
-  scene.ego = make_body(models[ego->model], ego->mass_kg, {});
+  scene.ego = make_body(models[ego->model], ego->mass_kg);
   // By model: its outline takes milliseconds to cut, and many actors share one.
   std::vector<std::optional<Vehicle>> described(models.size());
   const auto describe = [&](std::size_t model, Vehicle& vehicle) -> Status {
@@ -159,19 +181,21 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   for (const ScenarioActor& actor : scenario.actors) {
     const Result<RankedBody> body = ranked_body(scenario, models, actor.model);
     if (!body) return body.error();
-    Result<Motion> motion = make_motion(actor);
-    if (!motion) return motion.error();
-    if (const char* const fault = motion_fault(*motion, scenario.horizon_s)) {
-      return refused_motion("actors." + actor.name, "its motion", fault);
-    }
     result.actors.push_back(*body);
-    scene.actors.push_back(make_body(models[body->model], body->mass_kg, std::move(*motion)));
+    scene.actors.push_back(make_body(models[body->model], body->mass_kg));
     Body& added = scene.actors.back();
     if (Status own = describe(body->model, added.vehicle); !own) return own.error();
     if (added.vehicle.movable()) added.footing = footing_of(added.vehicle);
     added.occupants = actor.occupants;
   }
 
+  Result<Futures> futures = Futures::make(scenario, options.sampled_futures);
+  if (!futures) return futures.error();
+  scene.futures = std::move(*futures);
+  if (options.risk) scene.futures.summary.risk = *options.risk;
+  result.futures = scene.futures.summary;
+  if (Status one = check_fixed(scene, scenario); !one) return one.error();
+  stand(scene);
   if (Status joined = join_fixed(scene); !joined) return joined.error();
   const auto slices =
       static_cast<int>(std::clamp(std::ceil(scenario.horizon_s / slice_length_s), 1.0, max_slices));
@@ -179,17 +203,29 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.slice_s.push_back(scenario.horizon_s * (static_cast<double>(i) / slices));
   }
   scene.slices.resize(scene.slice_s.size() - 1);
-  scene.boxes.resize(scene.actors.size());
-  scene.apart_at_start.resize(scene.actors.size());
+  scene.boxes.resize(scene.futures.plans.size());
+  scene.apart_at_start.resize(scene.futures.plans.size());
   ImpactWorkspace workspace;
   place_actors(scene, workspace);
   return scene;
 }
 
 void place_actors(Scene& scene, ImpactWorkspace& workspace) {
+  stand(scene);
+  const std::vector<Plan>& plans = scene.futures.plans;
+  scene.fastest_plan_mps = 0.0;
+  for (const Plan& plan : plans) {
+    const Body& actor = scene.actors[plan.actor];
+    if (!actor.vehicle.movable()) continue;
+    const MotionBound bound =
+        plan.motion.bound(0.0, scene.slice_s.back() + SceneOptions{}.longest_s);
+    // About a centre of mass, which lies within the radius, too.
+    scene.fastest_plan_mps = std::max(scene.fastest_plan_mps,
+                                      bound.speed_mps + 3.0 * actor.radius_m * bound.angular_radps);
+  }
   for (std::size_t s = 0; s < scene.slices.size(); ++s) {
-    for (std::size_t i = 0; i < scene.actors.size(); ++i) {
-      scene.boxes[i] = swept_box(scene.actors[i], scene.actors[i].motion, scene.slice_s[s],
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      scene.boxes[i] = swept_box(scene.actors[plans[i].actor], plans[i].motion, scene.slice_s[s],
                                  scene.slice_s[s + 1], scene.impact.tolerance_m);
     }
     scene.slices[s].build(scene.boxes);
@@ -198,9 +234,9 @@ void place_actors(Scene& scene, ImpactWorkspace& workspace) {
   const Motion standing = Motion::at_rest(scene.ego_start);
   const Box ego = swept_box(scene.ego, standing, 0.0, 0.0, scene.impact.tolerance_m);
   scene.work.box_tests += scene.slices.front().query(ego, [&](std::size_t i) {
-    const Body& actor = scene.actors[i];
+    const Body& actor = scene.actors[plans[i].actor];
     const Impact impact = initial_state(scene.ego.model->tree, scene.ego_start, actor.model->tree,
-                                        actor.motion.pose_at(0.0), workspace, scene.impact);
+                                        plans[i].motion.pose_at(0.0), workspace, scene.impact);
     scene.apart_at_start[i] = impact.state == ImpactState::none ? 1 : 0;
     scene.work.impact += impact.work;
   });

@@ -10,6 +10,7 @@
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/tree/model.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
+#include "rank/futures.hpp"
 
 #include <Eigen/Core>
 
@@ -23,7 +24,7 @@ namespace crashrank::detail {
 struct Body {
   const Model* model = nullptr;
   double mass_kg = 0.0;
-  Motion motion;  ///< of actors; the ego's comes with each candidate
+  Pose standing;                                          ///< of what nothing moves
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
   double radius_m = 0.0;            ///< no point of the body is further from its origin
@@ -51,11 +52,13 @@ struct Scene {
   std::vector<JoinedBodies> joined;
   std::vector<std::size_t> joined_of;  ///< by actor: its place in `joined`, or `alone`
   static constexpr std::size_t alone = static_cast<std::size_t>(-1);
-  /// Time is cut into slices; in each the actors' swept boxes are ready to be asked.
+  /// Time is cut into slices; in each the swept boxes of the actors' plans are ready to be asked.
   std::vector<double> slice_s;  ///< ends of the slices, from 0 to the horizon
-  std::vector<BroadPhase> slices;
-  std::vector<Box> boxes;  ///< of the actors, while slices are built
-  /// Whether the ego at its start is known to be clear of an actor, by actor.
+  Futures futures;
+  double fastest_plan_mps = 0.0;   ///< no point of an actor that follows a plan is faster
+  std::vector<BroadPhase> slices;  ///< of the plans
+  std::vector<Box> boxes;          ///< of the plans, while slices are built
+  /// Whether the ego at its start is known to be clear of an actor on a plan, by plan.
   std::vector<char> apart_at_start;
   Measure measure = Measure::polygons;
   HarmOptions harm;
@@ -74,8 +77,8 @@ inline const Body& body_of(const Scene& scene, std::size_t index) {
 Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
                          const RankOptions& options, RankResult& result);
 
-/// Reads the actors' motions: sweeps their boxes, and says which actors the ego at its start is
-/// clear of. Allocates only to grow beyond what was held before.
+/// Reads the plans: sweeps their boxes, and finds which the ego at its start is clear of. Allocates
+/// only to grow beyond what was held before.
 void place_actors(Scene& scene, ImpactWorkspace& workspace);
 
 }  // namespace crashrank::detail

@@ -100,7 +100,7 @@ std::vector<std::size_t> pressed_actors(const Scene& scene, const CrashChain& ch
 
 }  // namespace
 
-Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor,
+Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor, const Motion& plan,
                       const Impact& impact) {
   const Body& other = scene.actors[actor];
   Contact contact;
@@ -114,7 +114,7 @@ Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor,
   ego.state_at(impact.time_s, ego_pose, ego_velocity);
   Pose other_pose;
   Velocity other_velocity;
-  other.motion.state_at(impact.time_s, other_pose, other_velocity);
+  plan.state_at(impact.time_s, other_pose, other_velocity);
   if (impact.triangle_a >= 0 && impact.triangle_b >= 0) {
     contact.point_m = 0.5 * (impact.point_a_m + impact.point_b_m);
   } else {
@@ -146,7 +146,7 @@ OutcomePair outcomes_of(CandidateResult& result, const ToldContact& told) {
 
 std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& chain,
                                        const std::vector<std::size_t>& order, const Impact& impact,
-                                       const Pose& ego, CandidateResult& result,
+                                       const Pose& ego, const Pose& other, CandidateResult& result,
                                        std::vector<DamagePlan>& plans) {
   std::vector<ToldContact> told;
   std::vector<DamagePlan> further_plans;
@@ -196,7 +196,7 @@ std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& cha
     ContactMotion motion;
     motion.count = 1;
     motion.poses[0].a = ego;
-    motion.poses[0].b = scene.actors[contact.actor].motion.pose_at(contact.time_of_impact_s);
+    motion.poses[0].b = other;
     plans.front() = plan_damage(scene,
                                 {ego_body, contact.actor, contact.state, contact.gap_m,
                                  impact.triangle_a, impact.triangle_b, contact.point_m},

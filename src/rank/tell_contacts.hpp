@@ -11,7 +11,7 @@ namespace crashrank::detail {
 
 /// The first contact of a candidate as the two bodies meet; damage and severity are still to be
 /// told.
-Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor,
+Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor, const Motion& plan,
                       const Impact& impact);
 
 /// Where in a result a simulated contact is told.
@@ -22,12 +22,12 @@ struct ToldContact {
 
 /// Adds the contacts of a chain that is over to a result whose only contact so far is the first,
 /// with what they do to both bodies; `order` is theirs, see `CrashChain::effects`;
-/// `ego` its pose at the first. Returns where
+/// `ego` and `other` are the poses at the first. Returns where
 /// each of that order is told. `plans` gets where their damage is to be read: of the result's
 /// contacts, then of the further ones.
 std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& chain,
                                        const std::vector<std::size_t>& order, const Impact& impact,
-                                       const Pose& ego, CandidateResult& result,
+                                       const Pose& ego, const Pose& other, CandidateResult& result,
                                        std::vector<DamagePlan>& plans);
 
 /// The two outcomes of a contact.

@@ -229,16 +229,20 @@ Result<std::vector<Candidate>> make_candidates(const Scenario& scenario, double 
   return detail::guarded([&] { return make_all(scenario, ego_length_m); });
 }
 
-Result<Motion> make_motion(const ScenarioActor& actor) {
+Result<Motion> make_motion(const ActorMotion& motion, const std::string& place) {
   return detail::guarded([&]() -> Result<Motion> {
-    if (!actor.poses.empty()) return timed_motion(actor.poses, "actors." + actor.name);
+    if (!motion.poses.empty()) return timed_motion(motion.poses, place);
     TurnMotion turn;
-    turn.start = actor.pose;
-    turn.speed_mps = actor.speed_mps;
-    turn.yaw_rate_radps = actor.yaw_rate_radps;
-    turn.acceleration_mps2 = actor.acceleration_mps2;
+    turn.start = motion.pose;
+    turn.speed_mps = motion.speed_mps;
+    turn.yaw_rate_radps = motion.yaw_rate_radps;
+    turn.acceleration_mps2 = motion.acceleration_mps2;
     return Motion(turn);
   });
+}
+
+Result<Motion> make_motion(const ScenarioActor& actor) {
+  return make_motion(actor, "actors." + actor.name);
 }
 
 }  // namespace crashrank

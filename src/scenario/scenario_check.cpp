@@ -1,8 +1,8 @@
 #include "scenario/scenario_check.hpp"
 
 #include "crashrank/dispatch/worker_pool.hpp"
+#include "scenario/key_ranges.hpp"
 #include "scenario/motion_check.hpp"
-#include "scenario/number_range.hpp"
 
 #include <cmath>
 #include <set>
@@ -15,7 +15,7 @@ namespace {
 
 namespace limits = scenario_limits;
 
-constexpr double rad_per_deg = 0.017453292519943295;
+using ranges::rad_per_deg;
 // Conversion from degrees and back rounds.
 constexpr double rounding = 1.0 - 1e-12;
 
@@ -157,6 +157,14 @@ void check_candidates(const Scenario& scenario, Check& check) {
   }
 }
 
+void check_motion(const std::string& path, const ActorMotion& motion, Check& check) {
+  check.pose(path + ".pose", motion.pose);
+  check.at_most(path + ".speed_mps", motion.speed_mps, limits::speed_mps);
+  check.at_most(path + ".acceleration_mps2", motion.acceleration_mps2, limits::acceleration_mps2);
+  check.at_most(path + ".yaw_rate_dps", motion.yaw_rate_radps, limits::yaw_rate_dps, rad_per_deg);
+  check.poses(path + ".poses", motion.poses);
+}
+
 void check_actors(const Scenario& scenario, Check& check) {
   for (std::size_t i = 0; i < scenario.actors.size() && check.status.ok(); ++i) {
     const ScenarioActor& actor = scenario.actors[i];
@@ -164,12 +172,44 @@ void check_actors(const Scenario& scenario, Check& check) {
     if (actor.model >= scenario.models.size()) {
       check.refuse(path + ".model", "is not among the models", "add the model first");
     }
-    check.pose(path + ".pose", actor.pose);
-    check.at_most(path + ".speed_mps", actor.speed_mps, limits::speed_mps);
-    check.at_most(path + ".acceleration_mps2", actor.acceleration_mps2, limits::acceleration_mps2);
-    check.at_most(path + ".yaw_rate_dps", actor.yaw_rate_radps, limits::yaw_rate_dps, rad_per_deg);
-    check.poses(path + ".poses", actor.poses);
+    check_motion(path, actor, check);
     check.not_negative(path + ".occupants", actor.occupants.value_or(0.0), harm_limits::people);
+    check.within(path + ".existence_probability", actor.existence_probability, ranges::existence);
+    for (std::size_t k = 0; k < actor.predictions.size() && check.status.ok(); ++k) {
+      check_motion(path + "." + ranges::indexed("predictions", k), actor.predictions[k], check);
+    }
+  }
+}
+
+void check_futures(const Scenario& scenario, Check& check) {
+  for (std::size_t i = 0; i < scenario.futures.size() && check.status.ok(); ++i) {
+    for (const FutureMotion& moved : scenario.futures[i].motions) {
+      const std::string path = ranges::indexed("futures", i) + ".motions";
+      check_motion(path + "." + scenario.actors[moved.actor].name, moved.motion, check);
+    }
+  }
+}
+
+void check_risk(const RiskMeasure& risk, Check& check) {
+  const bool has_level = risk.kind == RiskKind::cvar || risk.kind == RiskKind::quantile;
+  if (has_level && !(risk.level > 0.0 && risk.level < 1.0)) {
+    check.refuse("risk", "has a level of " + number_text(risk.level),
+                 "give one above 0 and below 1");
+  }
+}
+
+template <class Weighted>
+void check_sum(const std::vector<Weighted>& weighted, const std::string& path, Check& check) {
+  if (weighted.empty()) return;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weighted.size(); ++i) {
+    check.within(path + "[" + std::to_string(i) + "].probability", weighted[i].probability,
+                 ranges::probability);
+    sum += weighted[i].probability;
+  }
+  if (std::abs(sum - 1.0) > limits::probability_sum) {
+    check.refuse(path, "has probabilities that sum to " + number_text(sum),
+                 "let them sum to 1 within 1e-6");
   }
 }
 
@@ -223,13 +263,50 @@ Status check_names(const Scenario& scenario) {
   return check.status;
 }
 
+Status check_probabilities(const Scenario& scenario) {
+  Check check;
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    const ScenarioActor& actor = scenario.actors[i];
+    const std::string path = ranges::indexed("actors", i);
+    if (actor.predictions.size() > limits::predictions) {
+      check.refuse(path + ".predictions", "has more than 32", "keep the likeliest");
+    }
+    check_sum(actor.predictions, path + ".predictions", check);
+    const bool uncertain = !actor.predictions.empty() || actor.existence_probability != 1.0;
+    if (uncertain && !scenario.futures.empty()) {
+      check.refuse(path, "has predictions or an existence probability beside futures",
+                   "let the futures say it all");
+    }
+  }
+  if (scenario.futures.size() > limits::futures) {
+    check.refuse("futures", "are more than 1000", "keep the likeliest");
+  }
+  check_sum(scenario.futures, "futures", check);
+  for (std::size_t i = 0; i < scenario.futures.size(); ++i) {
+    std::set<std::size_t> moved;
+    for (const FutureMotion& each : scenario.futures[i].motions) {
+      const std::string path = ranges::indexed("futures", i) + ".motions";
+      if (each.actor >= scenario.actors.size()) {
+        check.refuse(path, "names an actor that is not there", "use indices of actors");
+      } else if (!moved.insert(each.actor).second) {
+        check.refuse(path, "moves '" + scenario.actors[each.actor].name + "' twice",
+                     "keep one motion");
+      }
+    }
+  }
+  return check.status;
+}
+
 Status check_scenario(const Scenario& scenario) {
   if (Status named = check_names(scenario); !named) return named;
+  if (Status weighted = check_probabilities(scenario); !weighted) return weighted;
   Check check;
   check_models(scenario, check);
   check_ego(scenario, check);
   check_candidates(scenario, check);
   check_actors(scenario, check);
+  check_futures(scenario, check);
+  check_risk(scenario.risk, check);
   check.within("horizon_s", scenario.horizon_s, {0.0, limits::horizon_s, true});
   check_harm(scenario.harm, "harm", check);
   check.within("grip", scenario.grip, {limits::min_grip, limits::max_grip});

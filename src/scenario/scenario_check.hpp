@@ -15,6 +15,10 @@ Status check_scenario(const Scenario& scenario);
 /// about. Those without one cannot be mistaken for each other. A part of `check_scenario`.
 Status check_names(const Scenario& scenario);
 
+/// Whether probabilities are positive and sum to 1, and whether futures name each actor once and
+/// stand in place of predictions. A part of `check_scenario`.
+Status check_probabilities(const Scenario& scenario);
+
 /// Whether so many threads may share the work; 0 counts as 1. Errors: usage.
 Status check_workers(unsigned workers);
 

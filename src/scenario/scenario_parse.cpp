@@ -2,6 +2,8 @@
 #include "crashrank/scenario/scenario.hpp"
 #include "scenario/json_object.hpp"
 #include "scenario/json_text.hpp"
+#include "scenario/key_ranges.hpp"
+#include "scenario/read_actors.hpp"
 #include "scenario/read_harm.hpp"
 #include "scenario/scenario_check.hpp"
 
@@ -18,58 +20,8 @@ namespace {
 
 namespace limits = scenario_limits;
 using detail::JsonObject;
-using detail::NumberRange;
+using namespace detail::ranges;
 using nlohmann::json;
-
-constexpr double rad_per_deg = 0.017453292519943295;
-constexpr NumberRange position{-limits::position_m, limits::position_m};
-constexpr NumberRange angle{-limits::angle_deg, limits::angle_deg};
-constexpr NumberRange speed{-limits::speed_mps, limits::speed_mps};
-constexpr NumberRange acceleration{-limits::acceleration_mps2, limits::acceleration_mps2};
-constexpr NumberRange yaw_rate{-limits::yaw_rate_dps, limits::yaw_rate_dps};
-constexpr NumberRange occupants{0.0, harm_limits::people};
-constexpr NumberRange steering{-limits::steering_deg, limits::steering_deg};
-
-std::string indexed(const char* key, std::size_t index) {
-  return std::string(key) + "[" + std::to_string(index) + "]";
-}
-
-Pose read_pose_members(const JsonObject& object) {
-  const Eigen::Vector3d translation(object.number("x_m", position, 0.0),
-                                    object.number("y_m", position, 0.0),
-                                    object.number("z_m", position, 0.0));
-  return pose_from_angles(translation, rad_per_deg * object.number("yaw_deg", angle, 0.0),
-                          rad_per_deg * object.number("pitch_deg", angle, 0.0),
-                          rad_per_deg * object.number("roll_deg", angle, 0.0));
-}
-
-Pose read_pose(const JsonObject& parent) {
-  if (!parent.has("pose")) return {};
-  const JsonObject object(parent.at("pose"), parent.path_of("pose"), parent.status(),
-                          {"x_m", "y_m", "z_m", "yaw_deg", "pitch_deg", "roll_deg"});
-  return read_pose_members(object);
-}
-
-std::vector<TimedPose> read_poses(const JsonObject& parent) {
-  std::vector<TimedPose> poses;
-  const json* array = parent.array("poses", 1, limits::poses);
-  if (array == nullptr) return poses;
-  poses.reserve(array->size());
-  for (std::size_t i = 0; i < array->size(); ++i) {
-    const JsonObject object((*array)[i], parent.path_of(indexed("poses", i).c_str()),
-                            parent.status(),
-                            {"t_s", "x_m", "y_m", "z_m", "yaw_deg", "pitch_deg", "roll_deg"});
-    object.require("t_s");
-    const double time = object.number("t_s", {0.0, limits::horizon_s}, 0.0);
-    if (poses.empty() ? time != 0.0 : time <= poses.back().time_s) {
-      object.refuse("t_s", poses.empty() ? "the first pose is not at time 0" : "does not rise",
-                    "start at 0 and let times rise from pose to pose");
-    }
-    poses.push_back({time, read_pose_members(object)});
-    if (!parent.status().ok()) break;
-  }
-  return poses;
-}
 
 BodyKind read_kind(const JsonObject& object) {
   constexpr std::array<BodyKind, 9> kinds{
@@ -153,25 +105,13 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
   return model;
 }
 
-std::size_t read_model_name(const JsonObject& object, const std::vector<ScenarioModel>& models) {
-  object.require("model");
-  const std::string name = object.name("model", limits::name_characters);
-  std::string known;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    if (models[i].name == name) return i;
-    if (i < 10) known += (known.empty() ? "" : ", ") + models[i].name;
-  }
-  object.refuse("model", "'" + name + "' is not among the models", "the models are " + known);
-  return 0;
-}
-
 ScenarioEgo read_ego(const json& value, const std::vector<ScenarioModel>& models, Status& status) {
   const JsonObject object(value, "ego", status,
                           {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m",
                            "max_acceleration_mps2", "max_steering_deg", "occupants"});
   ScenarioEgo ego;
-  ego.model = read_model_name(object, models);
-  ego.pose = read_pose(object);
+  ego.model = detail::read_model_name(object, models);
+  ego.pose = detail::read_pose(object);
   object.require("speed_mps");
   ego.speed_mps = object.number("speed_mps", speed, 0.0);
   ego.yaw_rate_radps = rad_per_deg * object.number("yaw_rate_dps", yaw_rate, 0.0);
@@ -191,7 +131,7 @@ ListedCandidate read_candidate(const json& value, const std::string& path, Statu
   ListedCandidate candidate;
   object.require("name");
   candidate.name = object.name("name", limits::name_characters);
-  candidate.poses = read_poses(object);
+  candidate.poses = detail::read_poses(object);
   candidate.acceleration_mps2 = object.number("acceleration_mps2", acceleration, 0.0);
   if (const auto degrees = object.optional_number("steering_deg", steering)) {
     candidate.steering_rad = rad_per_deg * *degrees;
@@ -207,29 +147,6 @@ ListedCandidate read_candidate(const json& value, const std::string& path, Statu
     object.refuse("yaw_rate_dps", "stands beside steering_deg", "keep one of them");
   }
   return candidate;
-}
-
-ScenarioActor read_actor(const json& value, const std::string& path,
-                         const std::vector<ScenarioModel>& models, Status& status) {
-  const JsonObject object(value, path, status,
-                          {"name", "model", "pose", "speed_mps", "acceleration_mps2",
-                           "yaw_rate_dps", "poses", "occupants"});
-  ScenarioActor actor;
-  object.require("name");
-  actor.name = object.name("name", limits::name_characters);
-  actor.model = read_model_name(object, models);
-  actor.pose = read_pose(object);
-  actor.speed_mps = object.number("speed_mps", speed, 0.0);
-  actor.acceleration_mps2 = object.number("acceleration_mps2", acceleration, 0.0);
-  actor.yaw_rate_radps = rad_per_deg * object.number("yaw_rate_dps", yaw_rate, 0.0);
-  actor.poses = read_poses(object);
-  actor.occupants = object.optional_number("occupants", occupants);
-  if (object.has("poses")) {
-    for (const char* key : {"pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps"}) {
-      if (object.has(key)) object.refuse(key, "stands beside poses", "keep one of them");
-    }
-  }
-  return actor;
 }
 
 void read_candidates(const JsonObject& root, Scenario& scenario) {
@@ -253,16 +170,6 @@ void read_candidates(const JsonObject& root, Scenario& scenario) {
                                   grid.count("steerings", 1, limits::grid_side, 15)};
   }
   scenario.add_straight_braking = object.flag("add_straight_braking", true);
-}
-
-void read_actors(const JsonObject& root, Scenario& scenario) {
-  const json* actors = root.array("actors", 0, limits::actors);
-  if (actors == nullptr) return;
-  scenario.actors.reserve(actors->size());
-  for (std::size_t i = 0; i < actors->size() && root.status().ok(); ++i) {
-    const std::string path = indexed("actors", i);
-    scenario.actors.push_back(read_actor((*actors)[i], path, scenario.models, root.status()));
-  }
 }
 
 void read_models(const JsonObject& root, Scenario& scenario) {
@@ -298,13 +205,16 @@ std::vector<std::string> find_keys_without_effect(const json& document) {
 
 Scenario read_scenario(const json& document, Status& status) {
   Scenario scenario;
-  const JsonObject root(document, {}, status,
-                        {"$schema", "scenario_version", "name", "description", "models", "ego",
-                         "candidates", "actors", "horizon_s", "crush", "measure", "harm", "grip"});
+  const JsonObject root(
+      document, {}, status,
+      {"$schema", "scenario_version", "name", "description", "models", "ego", "candidates",
+       "actors", "horizon_s", "crush", "measure", "harm", "grip", "futures", "risk"});
   root.require("scenario_version");
   root.text("$schema", limits::path_characters);
-  if (root.has("scenario_version") && root.at("scenario_version") != 1) {
-    root.refuse("scenario_version", "is not a version this program reads", "it reads version 1");
+  if (root.has("scenario_version") && root.at("scenario_version") != 1 &&
+      root.at("scenario_version") != 2) {
+    root.refuse("scenario_version", "is not a version this program reads",
+                "it reads versions 1 and 2");
   }
   scenario.name = root.name("name", limits::name_characters);
   scenario.description = root.text("description", limits::description_characters);
@@ -313,7 +223,8 @@ Scenario read_scenario(const json& document, Status& status) {
   if (!status.ok()) return scenario;
   scenario.ego = read_ego(root.at("ego"), scenario.models, status);
   read_candidates(root, scenario);
-  read_actors(root, scenario);
+  detail::read_actors(root, scenario);
+  detail::read_futures(root, scenario);
   scenario.horizon_s = root.number("horizon_s", {0.0, limits::horizon_s, true}, 4.0);
   if (root.has("measure")) {
     const Result<Measure> measure =
@@ -345,6 +256,7 @@ Result<Scenario> parse(const std::string& text, const std::string& file) {
   Status status = Success{};
   Scenario scenario = read_scenario(*document, status);
   if (status.ok()) status = detail::check_names(scenario);
+  if (status.ok()) status = detail::check_probabilities(scenario);
   if (!status.ok()) return detail::told_of(file, status.error());
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
   return scenario;

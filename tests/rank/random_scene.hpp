@@ -154,4 +154,32 @@ inline Scene congestion(std::uint64_t seed) {
   return scene;
 }
 
+/// Gives up to `uncertain` actors that move two or three predictions, and some a chance not to
+/// exist.
+inline void add_predictions(oracle::Random& random, Scene& scene, int uncertain) {
+  for (ScenarioActor& actor : scene.scenario.actors) {
+    if (actor.model >= pole_model) {
+      if (random.chance(0.2) && uncertain-- > 0) actor.existence_probability = random.real(0.1, 1);
+      continue;
+    }
+    if (uncertain <= 0 || !random.chance(0.6)) continue;
+    --uncertain;
+    const std::int64_t count = random.integer(2, 3);
+    double sum = 0.0;
+    for (std::int64_t k = 0; k < count; ++k) {
+      Prediction prediction;
+      static_cast<ActorMotion&>(prediction) = actor;
+      prediction.speed_mps *= random.real(0, 2);
+      prediction.acceleration_mps2 += random.real(-3, 2);
+      prediction.yaw_rate_radps += random.real(-0.4, 0.4);
+      if (random.chance(0.3)) prediction.pose.translation.y() += random.real(-2, 2);
+      prediction.probability = random.real(0.1, 1);
+      sum += prediction.probability;
+      actor.predictions.push_back(prediction);
+    }
+    for (Prediction& prediction : actor.predictions) prediction.probability /= sum;
+    if (random.chance(0.3)) actor.existence_probability = random.real(0.1, 0.9);
+  }
+}
+
 }  // namespace crashrank::scenes

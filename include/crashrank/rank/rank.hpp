@@ -26,6 +26,9 @@
 
 namespace crashrank {
 
+/// Most futures that are drawn.
+inline constexpr std::size_t max_sampled_futures = 10'000;
+
 /// How candidates are ranked.
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
@@ -36,7 +39,11 @@ struct RankOptions {
   Policy policy = Policy::late_match;  ///< how the dispatch's jobs find their workers
   std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
   std::optional<HarmOptions> harm;     ///< absent: the scenario's
-  ImpactOptions impact;                ///< `start_is_apart` is decided inside
+  std::optional<RiskMeasure> risk;     ///< absent: the scenario's
+  /// Futures that are drawn where combinations of predictions are too many, 1 to
+  /// `max_sampled_futures`.
+  std::size_t sampled_futures = 64;
+  ImpactOptions impact;  ///< `start_is_apart` is decided inside
   /// Called before each simulation and after each candidate with the number of candidates evaluated
   /// and of all, by all workers, also concurrently; must return within microseconds and not throw.
   /// Returning false cancels the ranking: candidates not evaluated yet get bounds on their scores.
@@ -159,7 +166,39 @@ struct Graze {
   double time_s = 0.0;    ///< s
 };
 
-/// What choosing a candidate leads to.
+/// Where the futures of a ranking come from.
+enum class FutureMethod {
+  certain,  ///< every actor exists and follows one motion: there is one future
+  joint,    ///< the scenario lists joint futures
+  all,      ///< all combinations of independent predictions
+  sampled,  ///< a Latin hypercube sample of them, the same for all candidates and in every run
+};
+
+/// The futures of a ranking.
+struct FutureSummary {
+  FutureMethod method = FutureMethod::certain;  ///< where they come from
+  std::size_t futures = 1;    ///< evaluated; with `sampled`, the likeliest is one more
+  std::size_t sampled = 0;    ///< of these drawn, each with the same probability
+  double combinations = 1.0;  ///< that the scenario allows
+  RiskMeasure risk;           ///< how their scores become one
+};
+
+/// What a candidate leads to in futures that do not differ for it: no body that its crash comes
+/// within 5 m of moves otherwise.
+struct FutureOutcome {
+  double probability = 0.0;        ///< of these futures together; 0: the likeliest, beside a sample
+  std::size_t futures = 1;         ///< how many
+  bool is_likeliest = false;       ///< the likeliest future is one of them
+  double score = 0.0;              ///< in the measure's unit
+  bool collides = false;           ///< the ego touches somebody
+  std::size_t actor = 0;           ///< where it collides: whom first, index into Scenario::actors
+  double time_of_impact_s = 0.0;   ///< from the decision
+  double closing_speed_mps = 0.0;  ///< of the points that meet first
+  std::size_t contacts = 0;        ///< with a force, those between others included
+};
+
+/// What choosing a candidate leads to. Contacts, damage and grazes are those of the likeliest
+/// future; scores, samples and places are of all futures.
 struct CandidateResult {
   std::size_t candidate = 0;    ///< index into RankResult::candidates
   std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
@@ -168,7 +207,7 @@ struct CandidateResult {
   /// Least and greatest of the score and its numerical samples (`is_numerical`); the score alone
   /// where there are none, the score's interval where the score is not known.
   ScoreInterval numerical_interval;
-  bool collides = false;  ///< it touches somebody
+  bool collides = false;  ///< it touches somebody in the likeliest future
   /// The ego's, in the order of their begins: the first, which the exact search found, then those
   /// of the simulated scene that follows from it.
   std::vector<Contact> contacts;
@@ -181,6 +220,12 @@ struct CandidateResult {
   /// The ego's damage from all contacts together; a triangle hit twice counts once.
   BodyDamage ego;
   std::vector<double> sample_scores;  ///< by RankResult::samples; empty where there are none
+  /// Where the score is known: what the futures lead to, the likeliest first, then by probability.
+  std::vector<FutureOutcome> futures;
+  double collision_probability = 0.0;  ///< of a contact of the ego's
+  /// Standard error of the score that comes from drawing a sample of futures; an upper bound,
+  /// since strata are drawn evenly. Absent without a sample, and for worst and quantile.
+  std::optional<double> sampling_error;
   /// Place in the ranking, from 1. Candidates that are tied share it: 1, 2, 2, 4.
   std::size_t place = 1;
   /// Number of candidates in that place, this one included; 1: not tied. They are neighbours in
@@ -269,6 +314,7 @@ struct RankResult {
   std::vector<std::size_t> in_race;
   RankedBody ego;                      ///< the ego
   std::vector<RankedBody> actors;      ///< in the scenario's order
+  FutureSummary futures;               ///< that the candidates were evaluated in
   RankWork work;                       ///< done for all
   double elapsed_s = 0.0;              ///< wall time of the call
   std::optional<RankerEffort> effort;  ///< where a Ranker told it
@@ -302,10 +348,16 @@ struct RankResult {
 /// weighted. An event is a body's contacts that begin less than 0.1 s after the end of one before;
 /// the risk of the people in a body is that of injury in at least one of its events.
 ///
-/// Order: lower score; then what touches
-/// nothing before what does, a clean miss before a graze; then the later first contact; then the
-/// lower closing speed. Candidates that agree in all of these are tied: they share a place and are
-/// listed in the order of the candidates.
+/// Where actors have predictions, may not exist, or joint futures are listed, every candidate is
+/// evaluated in each future and its scores become one by the risk measure. Futures that do not
+/// differ for a candidate are simulated once; what such a simulation may share is decided by the
+/// bodies that came near it, so that sharing changes no bit. A body that nothing moves follows one
+/// plan, and one that may not exist adjoins no other.
+///
+/// Order: lower score; then the lower probability of a collision; then, in the likeliest future, a
+/// clean miss before a graze, the later first contact, and the lower closing speed. Candidates that
+/// agree in all of these are tied: they share a place and are listed in the order of the
+/// candidates.
 ///
 /// Cost: about the candidates times the bodies they come near. Errors: bad_input (numbers out
 /// of `scenario_limits` or not finite, poses not rigid or out of order, missing or empty model, ego

@@ -52,7 +52,9 @@ CRASHRANK_API Result<std::vector<Candidate>> make_candidates(const Scenario& sce
 CRASHRANK_API std::optional<double> grip_demand(const Candidate& candidate,
                                                 const Scenario& scenario, double until_s) noexcept;
 
-/// The motion of an actor. Errors: bad_input for poses that are out of order or not rigid.
+/// An actor's own motion. Errors: bad_input for poses that are out of order or not rigid.
 CRASHRANK_API Result<Motion> make_motion(const ScenarioActor& actor);
+/// A motion as a scenario writes it; `place` names it in errors.
+CRASHRANK_API Result<Motion> make_motion(const ActorMotion& motion, const std::string& place);
 
 }  // namespace crashrank

@@ -8,6 +8,7 @@
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/scenario/harm_options.hpp"
 #include "crashrank/scenario/measure.hpp"
+#include "crashrank/scenario/risk.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
 #include "crashrank/vehicle/surface.hpp"
 
@@ -60,18 +61,43 @@ struct ScenarioEgo {
   std::optional<double> occupants;
 };
 
-/// Something that can be hit, and how it moves: from its pose with speed, acceleration and yaw
-/// rate, or through timed poses when there are any.
-struct ScenarioActor {
-  std::string name;                ///< unique
-  std::size_t model = 0;           ///< index into Scenario::models
+/// A motion as scenarios write it: from its pose with speed, acceleration and yaw rate, or through
+/// timed poses when there are any.
+struct ActorMotion {
   Pose pose;                       ///< body to world at time 0
   double speed_mps = 0.0;          ///< along its forward axis
   double acceleration_mps2 = 0.0;  ///< along its forward axis; against the speed it brakes
   double yaw_rate_radps = 0.0;     ///< held while it moves
-  std::vector<TimedPose> poses;    ///< where there are any, they say all
+  std::vector<TimedPose> poses;    ///< where there are any, they determine the whole motion
+};
+
+/// One of the motions that an actor may follow.
+struct Prediction : ActorMotion {
+  double probability = 1.0;  ///< above 0; those of an actor sum to 1
+};
+
+/// Something that can be hit, and how it moves.
+struct ScenarioActor : ActorMotion {
+  std::string name;       ///< unique
+  std::size_t model = 0;  ///< index into Scenario::models
   /// Persons in or on it, 0 allowed; absent: the number that HarmWeights has for its kind.
   std::optional<double> occupants;
+  /// Motions that exclude each other, independent of those of other actors. Where there are any,
+  /// the actor's own motion is not used.
+  std::vector<Prediction> predictions;
+  double existence_probability = 1.0;  ///< that it is there at all, [0, 1]
+};
+
+/// The motion of an actor in a joint future.
+struct FutureMotion {
+  std::size_t actor = 0;  ///< index into Scenario::actors
+  ActorMotion motion;     ///< replaces the actor's own
+};
+
+/// One joint future of all actors; those that it does not list keep their own motion.
+struct JointFuture {
+  double probability = 1.0;           ///< above 0; those of a scenario sum to 1
+  std::vector<FutureMotion> motions;  ///< each actor at most once
 };
 
 /// A manoeuvre written out: acceleration with steering or yaw rate, or timed poses when there are
@@ -90,7 +116,8 @@ struct CandidateGrid {
   std::size_t steerings = 15;      ///< levels between right and left
 };
 
-/// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json.
+/// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json;
+/// predictions, existence, futures and risk belong to its version 2.
 struct Scenario {
   std::string name;                                     ///< unique
   std::string description;                              ///< for people
@@ -104,6 +131,9 @@ struct Scenario {
   Measure measure = Measure::harm;                      ///< what is compared
   HarmOptions harm;   ///< weights and ranges; the defaults where the file is silent
   double grip = 0.8;  ///< friction between tyre and road
+  /// Joint futures, in place of predictions of single actors.
+  std::vector<JointFuture> futures;
+  RiskMeasure risk;  ///< how the scores of several futures become one
   /// Key paths of the text that are accepted but change nothing, as "crush"; `parse_scenario` fills
   /// it, in the order of the schema.
   std::vector<std::string> keys_without_effect;
@@ -117,6 +147,8 @@ inline constexpr std::size_t actors = 1000;                       ///< most
 inline constexpr std::size_t listed_candidates = 10'000;          ///< most
 inline constexpr std::size_t grid_side = 101;                     ///< most levels of each
 inline constexpr std::size_t poses = 10'000;                      ///< most of one motion
+inline constexpr std::size_t predictions = 32;                    ///< most of one actor
+inline constexpr std::size_t futures = 1000;                      ///< most joint ones
 inline constexpr std::size_t name_characters = 128;               ///< most
 inline constexpr std::size_t description_characters = 4000;       ///< most
 inline constexpr std::size_t path_characters = 4096;              ///< most
@@ -139,6 +171,7 @@ inline constexpr double min_scale = 1e-6;          ///< metres per file unit
 inline constexpr double max_scale = 1e6;           ///< metres per file unit
 inline constexpr double min_grip = 0.01;           ///< least friction
 inline constexpr double max_grip = 3.0;            ///< most friction
+inline constexpr double probability_sum = 1e-6;    ///< probabilities sum to 1 within this
 }  // namespace scenario_limits
 
 /// Reads a scenario from its text; `file` only names it in errors and lends it its name when the

@@ -71,7 +71,17 @@ void ScoreBounds::add(const Scene& scene, std::size_t index) {
 
 void ScoreBounds::update(const Scene& scene) {
   energy_sum_j_ = 0.0;
-  for (const Body& actor : scene.actors) energy_sum_j_ += most_energy(scene, actor, actor.motion);
+  std::size_t last = Scene::alone;
+  double most_j = 0.0;
+  for (const Plan& plan : scene.futures.plans) {
+    if (plan.actor != last) {
+      energy_sum_j_ += most_j;
+      most_j = 0.0;
+      last = plan.actor;
+    }
+    most_j = std::max(most_j, most_energy(scene, scene.actors[plan.actor], plan.motion));
+  }
+  energy_sum_j_ += most_j;
 }
 
 double ScoreBounds::most(const Scene& scene, const Motion& ego) const {

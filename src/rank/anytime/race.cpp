@@ -44,9 +44,9 @@ bool Race::can_win(const RankedCandidate& candidate, const std::vector<Refined>&
   // At the same score a candidate that touches nothing stands before all that touch or graze, and
   // before those after it.
   const RankedCandidate& best = states[best_known_].told;
-  const bool clean = !best.collides && !best.grazes;
-  const bool behind =
-      candidate.collides || candidate.grazes || best.candidate < candidate.candidate;
+  const bool clean = !(best.collision_probability > 0.0) && !best.collides && !best.grazes;
+  const bool behind = candidate.collision_probability > 0.0 || candidate.collides ||
+                      candidate.grazes || best.candidate < candidate.candidate;
   return !(clean && best.score == limit_ && behind);
 }
 

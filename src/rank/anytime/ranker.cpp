@@ -256,10 +256,11 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->bodies = std::move(bodies);
     state->bounds.prepare(state->scene);
     state->states.resize(options.limits.candidates);
+    for (Refined& each : state->states) each.scores.reserve(state->scene.futures.size());
     state->ranking.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
-    state->coming.resize(state->scene.actors.size());
+    state->coming.resize(state->scene.futures.plans.size());
     state->prepare_s = seconds_between(start, Watch::Clock::now());
     return Ranker(std::move(state));
   });
@@ -270,9 +271,10 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
   return detail::guarded([&]() -> Status {
     detail::Scene& scene = state_->scene;
     std::vector<Motion>& coming = state_->coming;
-    if (actors.size() != scene.actors.size()) {
-      return make_error(ErrorCode::usage, "there is not one motion for each actor",
-                        "give them in the scenario's order");
+    std::vector<detail::Plan>& plans = scene.futures.plans;
+    if (actors.size() != plans.size()) {
+      return make_error(ErrorCode::usage, "there is not one motion for each actor's plan",
+                        "give them in the order of Ranker::plans");
     }
     if (const char* const fault = detail::pose_fault(ego_start)) {
       return detail::refused_motion("ego", "its pose", fault);
@@ -284,10 +286,47 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
       coming[i] = actors[i];
     }
     // From here on nothing can fail.
-    for (std::size_t i = 0; i < actors.size(); ++i) std::swap(scene.actors[i].motion, coming[i]);
+    for (std::size_t i = 0; i < actors.size(); ++i) std::swap(plans[i].motion, coming[i]);
     scene.ego_start = ego_start;
     detail::place_actors(scene, state_->rounds.own().impact);
     state_->bounds.update(scene);
+    return Success{};
+  });
+}
+
+std::vector<Ranker::Plan> Ranker::plans() const {
+  std::vector<Plan> plans;
+  for (const detail::Plan& plan : state_->scene.futures.plans) {
+    plans.push_back({plan.actor, plan.probability});
+  }
+  return plans;
+}
+
+Status Ranker::weigh_plans(View<const double> probabilities) noexcept {
+  state_->rounds.await();
+  return detail::guarded([&]() -> Status {
+    detail::Futures& futures = state_->scene.futures;
+    if (futures.summary.method == FutureMethod::joint ||
+        probabilities.size() != futures.plans.size()) {
+      return make_error(ErrorCode::usage, "there is not one probability for each actor's plan",
+                        "give them in the order of Ranker::plans; joint futures have none");
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < probabilities.size(); ++i) {
+      sum += probabilities[i];
+      const std::size_t actor = futures.plans[i].actor;
+      const bool is_last = i + 1 == probabilities.size() || futures.plans[i + 1].actor != actor;
+      const bool sums = std::abs(sum - 1.0) <= scenario_limits::probability_sum;
+      if (!(probabilities[i] > 0.0) || (is_last && !sums)) {
+        return Error{ErrorCode::bad_input,
+                     {},
+                     "probabilities[" + std::to_string(i) + "]",
+                     "is not above 0, or those of its actor do not sum to 1",
+                     "let them be positive and sum to 1 within 1e-6"};
+      }
+      if (is_last) sum = 0.0;
+    }
+    futures.weigh(probabilities);
     return Success{};
   });
 }

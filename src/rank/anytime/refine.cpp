@@ -1,5 +1,6 @@
 #include "rank/anytime/refine.hpp"
 
+#include "rank/combine_futures.hpp"
 #include "rank/hits.hpp"
 #include "rank/measure_table.hpp"
 #include "rank/near.hpp"
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -34,29 +36,115 @@ void look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork&
   if (scratch.near.empty()) settle(state, 0.0);
 }
 
-/// Finds the first contact of the planned motion. False when time was up.
+constexpr double unknown = -1.0;
+
+/// Narrows the interval to what is known of the futures, of the one that is simulated that its
+/// score is no less than `least`; settles it where all are known.
+void combine(const RefineQuery& q, double least, Refined& state, Scratch& scratch) {
+  const auto risk_with = [&](double of_future, double of_others) {
+    scratch.first_s = state.scores;  // room that is free between searches
+    for (std::size_t f = 0; f < scratch.first_s.size(); ++f) {
+      double& score = scratch.first_s[f];
+      if (score < 0.0) score = f == state.future ? of_future : of_others;
+    }
+    return risk_of_futures(q.scene, {scratch.first_s.data(), scratch.first_s.size()},
+                           scratch.weighted);
+  };
+  const bool known = std::none_of(state.scores.begin(), state.scores.end(),
+                                  [](double score) { return score < 0.0; });
+  if (known) {
+    settle(state, risk_with(0.0, 0.0));
+  } else if (state.scores.size() == 1) {
+    narrow(state, least, state.told.interval.highest);
+  } else {
+    // Sums round.
+    constexpr double rounding = 1e-12;
+    narrow(state, (1.0 - rounding) * risk_with(least, 0.0),
+           (1.0 + rounding) * risk_with(state.most, state.most));
+  }
+}
+
+/// Chooses the future whose crash is simulated next: the likeliest, then the most probable of those
+/// that are not known.
+void choose_future(const Scene& scene, Refined& state) {
+  const Futures& futures = scene.futures;
+  state.future = futures.likeliest();
+  state.simulated = 0;
+  if (state.scores[state.future] < 0.0) return;
+  double most = unknown;
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    if (state.scores[f] < 0.0 && futures.probability(f) > most) {
+      most = futures.probability(f);
+      state.future = f;
+    }
+  }
+}
+
+Contact first_contact_of(const RefineQuery& q, const Scratch::Hit& hit) {
+  return first_contact(q.scene, q.candidate.motion, hit.actor,
+                       q.scene.futures.plans[hit.plan].motion, hit.impact);
+}
+
+/// Finds the first contacts of the planned motion. False when time was up.
 bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
   const bool decided = find_hits(q.scene, q.candidate.motion, scratch, work);
   if (!decided && q.watch.expired()) return false;
-  state.told.stage = RankStage::searched;
-  const auto first = std::find_if(scratch.hits.begin(), scratch.hits.end(),
-                                  [](const Scratch::Hit& hit) { return hit.impact.hit(); });
-  state.told.collides = first != scratch.hits.end();
+  const Futures& futures = q.scene.futures;
+  RankedCandidate& told = state.told;
+  told.stage = RankStage::searched;
+  const Scratch::Hit* const first = first_hit(q.scene, scratch, futures.likeliest());
+  told.collides = first != nullptr;
+  told.collision_probability = collision_probability(q.scene, scratch);
   const double until_s =
-      state.told.collides ? first->impact.time_s : std::numeric_limits<double>::infinity();
-  state.told.grazes = grazes_before(scratch, until_s);
-  if (state.told.collides) {
-    state.first = first_contact(q.scene, q.candidate.motion, first->actor, first->impact);
-    state.told.actor = state.first.actor;
-    state.told.time_of_impact_s = state.first.time_of_impact_s;
-    state.told.closing_speed_mps = state.first.closing_speed_mps;
+      first != nullptr ? first->impact.time_s : std::numeric_limits<double>::infinity();
+  told.grazes = grazes_before(q.scene, scratch, futures.likeliest(), until_s);
+  if (first != nullptr) {
+    state.first = first_contact_of(q, *first);
+    told.actor = state.first.actor;
+    told.time_of_impact_s = state.first.time_of_impact_s;
+    told.closing_speed_mps = state.first.closing_speed_mps;
   }
   state.stuck = !decided;
-  if (decided && !state.told.collides) settle(state, 0.0);
+  if (!decided) return true;
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    if (first_hit(q.scene, scratch, f) == nullptr) state.scores[f] = 0.0;
+  }
+  choose_future(q.scene, state);
+  combine(q, 0.0, state, scratch);
   return true;
 }
 
-/// Simulates what follows from the first contact. False when time was up.
+/// What the first contact of the future that is simulated is, where it is another than that of the
+/// search. False when time was up.
+bool search_future(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+  if (state.scores.size() == 1) return true;
+  find_hits(q.scene, q.candidate.motion, scratch, work);
+  if (q.watch.expired()) return false;
+  const Scratch::Hit* const hit = first_hit(q.scene, scratch, state.future);
+  std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
+  feel_hits(scratch, hit, scratch.felt);
+  state.first = first_contact_of(q, *hit);
+  return true;
+}
+
+/// All futures that are not known and do not differ from the simulated one have its score.
+void spread(const RefineQuery& q, double score, Refined& state, Scratch& scratch) {
+  if (state.scores.size() == 1) {
+    state.scores.front() = score;
+    return;
+  }
+  scratch.chain.feel(q.scene, scratch.felt);
+  scratch.same.clear();
+  scratch.others.clear();
+  for (std::size_t f = 0; f < state.scores.size(); ++f) {
+    if (state.scores[f] < 0.0) scratch.same.push_back(static_cast<std::uint32_t>(f));
+  }
+  q.scene.futures.split(state.future, scratch.felt, scratch.same, scratch.others);
+  for (const std::uint32_t f : scratch.same) state.scores[f] = score;
+  choose_future(q.scene, state);
+}
+
+/// Simulates what follows from the first contact in one future. False when time was up.
 ///
 /// To find the first place, candidates take turns, each with several times the work of its last
 /// turn: most are beaten by their first contact alone. A simulation begins anew with each turn, for
@@ -69,7 +157,8 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   const std::uint64_t turn = std::max(first_turn, more * state.simulated);
   const HarmSample& plain = q.scene.plain;
   CrashChain& chain = scratch.chain;
-  chain.begin(q.scene, q.candidate, state.first, plain);
+  if (!search_future(q, state, scratch, work)) return false;
+  chain.begin(q.scene, q.candidate, state.future, state.first, plain);
   std::size_t over = 0;
   scratch.tally.begin();
   bool going = true;
@@ -77,10 +166,11 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   while (going) {
     going = chain.advance(steps_at_a_time);
     if (!going) break;
+    const bool more_is_over = over < chain.contacts().size();
     for (; over < chain.contacts().size(); ++over) {
       scratch.tally.add(q.scene, chain.effect(over), plain);
-      narrow(state, scratch.tally.least_score(q.scene), state.told.interval.highest);
     }
+    if (more_is_over) combine(q, scratch.tally.least_score(q.scene), state, scratch);
     in_time = !q.watch.expired();
     if (!in_time || state.told.interval.lowest > q.give_up_above) break;
     if (in_turns && chain.run().work() > turn) break;
@@ -92,7 +182,8 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   chain.effects(scratch.effects, scratch.order);
   scratch.tally.begin();
   for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, plain);
-  settle(state, scratch.tally.score(q.scene));
+  spread(q, scratch.tally.score(q.scene), state, scratch);
+  combine(q, 0.0, state, scratch);
   return true;
 }
 
@@ -100,9 +191,13 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
 
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Refined& state) {
+  std::vector<double> scores = std::move(state.scores);  // keeps its memory
   state = {};
+  state.scores = std::move(scores);
+  state.scores.assign(scene.futures.size(), unknown);
   state.told.candidate = index;
-  state.told.interval = {0.0, bounds.most(scene, candidate.motion)};
+  state.most = bounds.most(scene, candidate.motion);
+  state.told.interval = {0.0, state.most};
 }
 
 void settle_as_clear(Refined& state) {
@@ -153,6 +248,9 @@ bool promises_more(const RankedCandidate& a, const RankedCandidate& b) {
   const double worth_b = b.known ? b.score : b.interval.highest;
   if (worth_a != worth_b) return worth_a < worth_b;
   if (a.known != b.known) return a.known;
+  if (a.collision_probability != b.collision_probability) {
+    return a.collision_probability < b.collision_probability;
+  }
   if (a.collides != b.collides) return !a.collides;
   if (a.grazes != b.grazes) return !a.grazes;
   if (a.collides) {

@@ -15,10 +15,13 @@ namespace crashrank::detail {
 /// A candidate on its way to its score, between two steps.
 struct Refined {
   RankedCandidate told;
-  bool stuck = false;  ///< a question about it stayed undecided: no step follows
-  Contact first;       ///< from which its crash is simulated
-  /// Pieces of outline that the simulation of its crash has moved so far.
+  bool stuck = false;      ///< a question about it stayed undecided: no step follows
+  Contact first;           ///< of `future`: from which its crash is simulated
+  std::size_t future = 0;  ///< whose crash is simulated next
+  /// Pieces of outline that the simulation of that crash has moved so far.
   std::uint64_t simulated = 0;
+  double most = 0.0;           ///< no future's score is above
+  std::vector<double> scores;  ///< by future; below 0: not known
 
   bool open() const noexcept { return !told.known && !stuck; }
 };

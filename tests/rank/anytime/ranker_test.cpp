@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crashrank {
@@ -182,6 +183,36 @@ TEST(RankerProperty, IntervalsHoldWhereOneCrashLeadsToOthers) {
       static_cast<unsigned long long>(scenes), static_cast<unsigned long long>(seed), chains,
       contacts, crowded);
   EXPECT_GT(chains, 2 * scenes);
+}
+
+TEST(RankerProperty, IntervalsHoldOverFuturesThatAreNotEvaluatedYet) {
+  const std::uint64_t seed = first_seed(1700);
+  const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 8);
+  const std::uint64_t scenes = scenes_to_try(6);
+  constexpr std::array<const char*, 4> risks{"expected", "cvar:0.8", "worst", "quantile:0.6"};
+  Widths widths;
+  std::size_t outcomes = 0;
+  for (std::uint64_t i = 0; i < scenes; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed + i));
+    oracle::Random random(seed + i);
+    Scene scene = i % 2 == 0 ? traffic(seed + i) : scenes::congestion(seed + i);
+    scenes::add_predictions(random, scene, 3);
+    scene.scenario.risk = *risk_from_name(risks[i % risks.size()]);
+    const Case c(std::move(scene), Measure::harm);
+    for (const CandidateResult& result : c.plain.ranking) outcomes += result.futures.size();
+    cut_everywhere(c, Measure::harm, cuts, widths);
+    if (HasFatalFailure()) return;
+    // All of it, in any number of threads.
+    Ranker ranker = c.ranker(Measure::harm, 3);
+    const RankerAnswer answer = ranker.rank(c.candidates);
+    ASSERT_TRUE(answer.complete);
+    for (std::size_t k = 0; k < answer.ranking.size(); ++k) {
+      ASSERT_EQ(answer.ranking[k].candidate, c.plain.ranking[k].candidate);
+      ASSERT_EQ(answer.ranking[k].score, *c.plain.ranking[k].score);
+    }
+  }
+  std::printf("%llu scenes from seed %llu: %zu outcomes\n", static_cast<unsigned long long>(scenes),
+              static_cast<unsigned long long>(seed), outcomes);
 }
 
 TEST(RankerProperty, IntervalsHoldWhereTwoBodiesMeetAgain) {

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <vector>
 
 namespace crashrank {
 
@@ -60,7 +61,9 @@ struct RankedCandidate {
   bool in_race = true;                  ///< can still be first
   double score = 0.0;                   ///< where it is known
   ScoreInterval interval;               ///< holds the final score, whatever was left undone
-  /// From the stage `searched` on: its first contact.
+  /// From the stage `searched` on: that the ego touches somebody in a future.
+  double collision_probability = 0.0;
+  /// From the stage `searched` on: its first contact in the likeliest future.
   bool collides = false;
   bool grazes = false;            ///< passes something within the tolerance before that
   std::size_t actor = 0;          ///< index into Scenario::actors
@@ -118,12 +121,29 @@ public:
   /// Ends the workers.
   ~Ranker();
 
-  /// The situation has changed: where the ego starts, and how each actor moves from now on, in the
-  /// scenario's order. Begins by waiting for workers that an answer at its deadline left behind,
-  /// then costs some µs an actor and allocates nothing but for timed motions. Errors, and nothing
-  /// changes: usage where their number is another; bad_input for a pose or motion that is not
-  /// finite or beyond `scenario_limits` within the horizon; out_of_memory.
+  /// What moves on its own: the actors' plans by actor, of each its predictions in their order, or
+  /// the motions that joint futures give it, then its own where a future does not replace it.
+  /// Stands until the next call.
+  struct Plan {
+    std::size_t actor = 0;     ///< index into Scenario::actors
+    double probability = 1.0;  ///< that the actor follows it, if it exists; not of joint futures
+  };
+  /// Allocates.
+  std::vector<Plan> plans() const;
+
+  /// The situation has changed: where the ego starts, and how each actor moves from now on, on each
+  /// of its plans, in the order of `plans`: one for each actor where nothing is uncertain. Begins
+  /// by waiting for workers that an answer at its deadline left behind, then costs some µs an actor
+  /// and allocates nothing but for timed motions. Errors, and nothing changes: usage where their
+  /// number is another; bad_input for a pose or motion that is not finite or beyond
+  /// `scenario_limits` within the horizon; out_of_memory.
   Status move_actors(const Pose& ego_start, View<const Motion> actors) noexcept;
+
+  /// The plans have other probabilities from now on: above 0, summing to 1 for each actor. Draws
+  /// samples anew from the same strata, so that they change as little as the probabilities do.
+  /// Begins like `move_actors`, allocates nothing. Errors, and nothing changes: usage where their
+  /// number is another, or the futures are joint; bad_input for what is not a probability.
+  Status weigh_plans(View<const double> probabilities) noexcept;
 
   /// Candidates have to stay until the call returns. Errors (in the answer, which is empty then):
   /// usage where there are more than the limits allow or the deadline is NaN; bad_input for a

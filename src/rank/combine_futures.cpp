@@ -1,0 +1,87 @@
+#include "rank/combine_futures.hpp"
+
+#include "rank/hits.hpp"
+#include "rank/measure_table.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace crashrank::detail {
+namespace {
+
+/// Least and greatest of the score and its samples under its own risk model.
+void add_intervals(const Scene& scene, CandidateResult& result) {
+  result.score_interval = {*result.score, *result.score};
+  result.numerical_interval = result.score_interval;
+  const bool counts_people = measure_row(scene.measure).counts_people;
+  for (std::size_t i = 0; i < result.sample_scores.size(); ++i) {
+    const HarmSample& sample = scene.samples[i];
+    if (counts_people && sample.model != scene.harm.model) continue;
+    const double score = result.sample_scores[i];
+    ScoreInterval& interval =
+        is_numerical(sample) ? result.numerical_interval : result.score_interval;
+    interval.lowest = std::min(interval.lowest, score);
+    interval.highest = std::max(interval.highest, score);
+  }
+}
+
+}  // namespace
+
+double risk_of_futures(const Scene& scene, View<const double> scores,
+                       std::vector<WeightedScore>& weighted) {
+  weighted.clear();
+  for (std::size_t f = 0; f < scores.size(); ++f) {
+    weighted.push_back({scores[f], scene.futures.probability(f)});
+  }
+  return risk_of(scene.futures.summary.risk, weighted);
+}
+
+CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>&& results,
+                                const std::vector<Approach>& outcomes, Scratch& scratch) {
+  const FutureSummary& summary = scene.futures.summary;
+  std::vector<double> scores(scene.futures.size());
+  const auto risk_over = [&](const auto& score_of) {
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      for (const std::uint32_t f : outcomes[k].futures) scores[f] = score_of(results[k]);
+    }
+    return risk_of_futures(scene, {scores.data(), scores.size()}, scratch.weighted);
+  };
+  std::vector<double> samples;
+  for (std::size_t i = 0; i < scene.samples.size(); ++i) {
+    samples.push_back(
+        risk_over([i](const CandidateResult& result) { return result.sample_scores[i]; }));
+  }
+  std::vector<FutureOutcome> told;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    told.push_back(outcomes[k].outcome);
+    told.back().score = *results[k].score;
+  }
+  std::stable_sort(
+      told.begin() + 1, told.end(),
+      [](const FutureOutcome& p, const FutureOutcome& q) { return p.probability > q.probability; });
+  const double score = risk_over([](const CandidateResult& result) { return *result.score; });
+  CandidateResult combined = std::move(results.front());
+  combined.score = score;
+  if (summary.method == FutureMethod::sampled) {
+    combined.sampling_error = sampling_error(summary.risk, scratch.weighted, summary.sampled);
+  }
+  combined.sample_scores = std::move(samples);
+  combined.futures = std::move(told);
+  for (std::size_t k = 1; k < results.size(); ++k) {
+    combined.crowded = combined.crowded || results[k].crowded;
+  }
+  add_intervals(scene, combined);
+  return combined;
+}
+
+double collision_probability(const Scene& scene, const Scratch& scratch) {
+  const Futures& futures = scene.futures;
+  if (futures.size() == 1) return first_hit(scene, scratch, 0) != nullptr ? 1.0 : 0.0;
+  double sum = 0.0;
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    if (first_hit(scene, scratch, f) != nullptr) sum += futures.probability(f);
+  }
+  return sum;
+}
+
+}  // namespace crashrank::detail

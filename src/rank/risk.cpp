@@ -1,0 +1,85 @@
+#include "rank/risk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crashrank::detail {
+namespace {
+
+double mean_of(const std::vector<WeightedScore>& scores) {
+  double sum = 0.0;
+  for (const WeightedScore& s : scores) sum += s.probability * s.score;
+  return sum;
+}
+
+/// The least score that is not exceeded with probability `level`. Sorts.
+double quantile_of(double level, std::vector<WeightedScore>& scores) {
+  std::sort(scores.begin(), scores.end(), [](const WeightedScore& p, const WeightedScore& q) {
+    return p.score != q.score ? p.score < q.score : p.probability < q.probability;
+  });
+  // Sums of probabilities round.
+  constexpr double rounding = 1e-12;
+  double reached = 0.0;
+  double last = 0.0;
+  for (const WeightedScore& s : scores) {
+    if (!(s.probability > 0.0)) continue;
+    reached += s.probability;
+    last = s.score;
+    if (reached >= level - rounding) return s.score;
+  }
+  return last;
+}
+
+double worst_of(const std::vector<WeightedScore>& scores) {
+  double worst = 0.0;
+  for (const WeightedScore& s : scores) {
+    if (s.probability > 0.0) worst = std::max(worst, s.score);
+  }
+  return worst;
+}
+
+}  // namespace
+
+double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores) {
+  if (scores.size() == 1) return scores.front().score;
+  switch (risk.kind) {
+    case RiskKind::expected:
+      return mean_of(scores);
+    case RiskKind::worst:
+      return worst_of(scores);
+    case RiskKind::quantile:
+      return quantile_of(risk.level, scores);
+    case RiskKind::cvar: {
+      // Rockafellar & Uryasev 2002: the quantile and the mean excess over it, which splits a future
+      // at the border.
+      const double quantile = quantile_of(risk.level, scores);
+      double excess = 0.0;
+      for (const WeightedScore& s : scores) {
+        excess += s.probability * std::max(s.score - quantile, 0.0);
+      }
+      return quantile + excess / (1.0 - risk.level);
+    }
+  }
+  return mean_of(scores);
+}
+
+std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
+                                     std::size_t sampled) {
+  if (risk.kind != RiskKind::expected && risk.kind != RiskKind::cvar) return std::nullopt;
+  const bool tail = risk.kind == RiskKind::cvar;
+  const double from = tail ? quantile_of(risk.level, scores) : 0.0;
+  const auto value = [&](const WeightedScore& s) {
+    return tail ? std::max(s.score - from, 0.0) / (1.0 - risk.level) : s.score;
+  };
+  double mean = 0.0;
+  for (const WeightedScore& s : scores) mean += s.probability * value(s);
+  double variance = 0.0;
+  for (const WeightedScore& s : scores) {
+    variance += s.probability * (value(s) - mean) * (value(s) - mean);
+  }
+  const auto count = static_cast<double>(sampled);
+  // Of a single future nothing is known of the spread.
+  return count > 1.0 ? std::sqrt(variance / (count - 1.0)) : worst_of(scores);
+}
+
+}  // namespace crashrank::detail
