@@ -43,6 +43,8 @@ struct Options {
   std::string scenario;
   std::string measure;
   std::string risk_model;
+  std::string risk;
+  std::size_t futures = RankOptions{}.sampled_futures;
   std::string profile;
   std::string damage_folder;
   std::size_t damage_top = 5;
@@ -223,6 +225,12 @@ int run(const Options& options) {
     if (!measure) return fail(measure.error());
     how.measure = *measure;
   }
+  if (!options.risk.empty()) {
+    const Result<RiskMeasure> risk = risk_from_name(options.risk);
+    if (!risk) return fail(risk.error());
+    how.risk = *risk;
+  }
+  how.sampled_futures = options.futures;
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return fail(build.error());
   }
@@ -326,6 +334,15 @@ void add_rank(CLI::App& app, Action& action) {
   add_choice(*command, "--risk-model", options->risk_model, "Curves that harm is counted with",
              {"tum", "malliaris-monfort", "malliaris-rosen", "joksch-monfort"},
              "as the scenario says, else tum");
+  command
+      ->add_option("--risk", options->risk,
+                   "How the scores of several futures become one: expected, worst, cvar:X or "
+                   "quantile:X with X above 0 and below 1 [default: as the scenario says, else "
+                   "expected]")
+      ->type_name("RISK");
+  add_count(*command, "--futures", options->futures,
+            "Futures that are drawn where combinations of predictions are more than 1024", 1,
+            max_sampled_futures);
   add_file(*command, "--profile", options->profile,
            "Whose harm counts for how much, and ranges of what is not known: a file after "
            "data/profile.schema.json, over what the scenario says");

@@ -181,6 +181,10 @@ void doubt_overlaps(const Scenario& scenario, const std::vector<Placed>& actors,
     for (std::size_t k = i + 1; k < actors.size(); ++k) {
       // Walls and poles may be put together from pieces.
       if (plausible(actors[i].kind) == nullptr && plausible(actors[k].kind) == nullptr) continue;
+      const auto exists = [&](std::size_t of) {
+        return scenario.actors[of].existence_probability > 0.0;
+      };
+      if (!exists(i) || !exists(k)) continue;
       if (!bodies_overlap(actors[i], actors[k], workspace, pairs)) continue;
       overlaps.add(fmt::format("'{}' and '{}'", scenario.actors[i].name, scenario.actors[k].name));
     }

@@ -164,8 +164,10 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
 
 }  // namespace
 
-std::vector<std::string> ranking_doubts(const Scenario& scenario, View<const Model> models,
+std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model> models,
                                         const RankResult& result) {
+  const Scenario made = is_uncertain(asked) ? likeliest_future(asked) : Scenario{};
+  const Scenario& scenario = is_uncertain(asked) ? made : asked;
   std::vector<std::string> doubts;
   doubt_speeds(result, doubts);
   doubt_crowds(result, doubts);

@@ -5,6 +5,7 @@
 #include "report/base64.hpp"
 #include "report/contact_table.hpp"
 #include "report/damage_summary.hpp"
+#include "report/future_words.hpp"
 #include "report/page/embedded.hpp"
 #include "report/parts_table.hpp"
 #include "report/plan_view.hpp"
@@ -78,9 +79,9 @@ private:
     if (!scenario_.description.empty()) {
       out_ += "<p>" + escape_xml(scenario_.description) + "</p>\n";
     }
-    const auto free =
-        std::count_if(result_.ranking.begin(), result_.ranking.end(),
-                      [](const CandidateResult& r) { return r.score && !r.collides; });
+    const auto free = std::count_if(
+        result_.ranking.begin(), result_.ranking.end(),
+        [](const CandidateResult& r) { return r.score && !(r.collision_probability > 0.0); });
     out_ += fmt::format(
         "<p class='facts'>{} candidates, {} others on the road, {} {}touch nothing. Ranked by {} "
         "[{}], lower is better, in {:.1f} ms{}.</p></header>\n",
@@ -114,6 +115,14 @@ private:
       for (std::size_t i = 0; i < result_.in_race.size(); ++i) {
         if (i > 0) out_ += ", ";
         out_ += escape_xml(result_.candidates[result_.in_race[i]].name);
+      }
+      out_ += "</p>\n";
+    }
+    const std::vector<std::string> futures = detail::future_words(result_);
+    if (!futures.empty()) {
+      out_ += "<p class='note' id='futures'>";
+      for (std::size_t i = 0; i < futures.size(); ++i) {
+        out_ += (i > 0 ? "<br>" : "") + escape_xml(futures[i]);
       }
       out_ += "</p>\n";
     }
@@ -376,7 +385,9 @@ private:
 
 std::string html_report(const Scenario& scenario, View<const Model> models,
                         const RankResult& result, const HtmlReportOptions& options) {
-  return Page(scenario, models, result, options).html();
+  if (!is_uncertain(scenario)) return Page(scenario, models, result, options).html();
+  const Scenario shown = likeliest_future(scenario);
+  return Page(shown, models, result, options).html();
 }
 
 }  // namespace crashrank

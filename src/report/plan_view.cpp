@@ -184,6 +184,7 @@ std::string PlanView::draw(std::size_t place) const {
          "</title>\n";
   std::string labels;
   for (std::size_t i = 0; i < scenario_.actors.size(); ++i) {
+    if (scenario_.actors[i].existence_probability == 0.0) continue;
     const Pose pose = motions_[i].pose_at(time_s);
     const Eigen::Vector2d at = pose.translation.head<2>();
     if (!canvas.shows(at, 30.0)) continue;

@@ -4,6 +4,7 @@
 #include "crashrank/scenario/candidate.hpp"
 #include "report/contact_order.hpp"
 #include "report/damage_summary.hpp"
+#include "report/future_words.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -216,6 +217,25 @@ Json tied_json(const RankResult& result, std::size_t index) {
   return names;
 }
 
+/// What the futures lead to; those that do not differ for the candidate are one.
+Json futures_json(const Scenario& scenario, const CandidateResult& ranked) {
+  Json futures = Json::array();
+  for (const FutureOutcome& outcome : ranked.futures) {
+    Json entry{{"probability", outcome.probability}, {"score", outcome.score},
+               {"futures", outcome.futures},         {"likeliest", outcome.is_likeliest},
+               {"collides", outcome.collides},       {"other", nullptr},
+               {"time_of_impact_s", nullptr},        {"closing_speed_mps", nullptr},
+               {"contacts", outcome.contacts}};
+    if (outcome.collides) {
+      entry["other"] = scenario.actors[outcome.actor].name;
+      entry["time_of_impact_s"] = outcome.time_of_impact_s;
+      entry["closing_speed_mps"] = outcome.closing_speed_mps;
+    }
+    futures.push_back(std::move(entry));
+  }
+  return futures;
+}
+
 Json candidate_json(const Scenario& scenario, View<const Model> models, const RankResult& result,
                     std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
@@ -235,28 +255,32 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
   for (const Graze& graze : ranked.grazes) {
     grazes.push_back({{"other", scenario.actors[graze.actor].name}, {"time_s", graze.time_s}});
   }
-  Json entry{{"rank", ranked.place},
-             {"candidate", candidate.name},
-             {"tied_with", tied_json(result, place)},
-             {"grip_demand", demand ? Json(*demand) : Json(nullptr)},
-             {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
-             {"score_interval",
-              Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},
-             {"numerical_interval", result.samples.empty()
-                                        ? Json(nullptr)
-                                        : Json::array({ranked.numerical_interval.lowest,
-                                                       ranked.numerical_interval.highest})},
-             {"places", Json::array({ranked.best_place + 1, ranked.worst_place + 1})},
-             {"separable_from_next", sampled ? Json(ranked.separable) : Json(nullptr)},
-             {"overtaken_share", sampled ? Json(ranked.overtaken) : Json(nullptr)},
-             {"collides", ranked.score || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
-             {"contacts", std::move(contacts)},
-             {"crowded", ranked.crowded},
-             {"other", nullptr},
-             {"time_of_impact_s", nullptr},
-             {"closing_speed_mps", nullptr},
-             {"delta_v_mps", nullptr},
-             {"pdof_deg", nullptr}};
+  Json entry{
+      {"rank", ranked.place},
+      {"candidate", candidate.name},
+      {"tied_with", tied_json(result, place)},
+      {"grip_demand", demand ? Json(*demand) : Json(nullptr)},
+      {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
+      {"score_interval",
+       Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},
+      {"numerical_interval",
+       result.samples.empty()
+           ? Json(nullptr)
+           : Json::array({ranked.numerical_interval.lowest, ranked.numerical_interval.highest})},
+      {"places", Json::array({ranked.best_place + 1, ranked.worst_place + 1})},
+      {"separable_from_next", sampled ? Json(ranked.separable) : Json(nullptr)},
+      {"overtaken_share", sampled ? Json(ranked.overtaken) : Json(nullptr)},
+      {"collision_probability", ranked.score ? Json(ranked.collision_probability) : Json(nullptr)},
+      {"futures", futures_json(scenario, ranked)},
+      {"sampling_error", ranked.sampling_error ? Json(*ranked.sampling_error) : Json(nullptr)},
+      {"collides", ranked.score || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
+      {"contacts", std::move(contacts)},
+      {"crowded", ranked.crowded},
+      {"other", nullptr},
+      {"time_of_impact_s", nullptr},
+      {"closing_speed_mps", nullptr},
+      {"delta_v_mps", nullptr},
+      {"pdof_deg", nullptr}};
   if (!ranked.contacts.empty()) {
     const Contact& first = ranked.contacts.front();
     entry["other"] = scenario.actors[first.actor].name;
@@ -302,8 +326,10 @@ Json effort_json(const RankerEffort& effort) {
 
 }  // namespace
 
-std::string ranking_json(const Scenario& scenario, View<const Model> models,
-                         const RankResult& result, View<const std::string> warnings) {
+std::string ranking_json(const Scenario& asked, View<const Model> models, const RankResult& result,
+                         View<const std::string> warnings) {
+  const Scenario made = is_uncertain(asked) ? likeliest_future(asked) : Scenario{};
+  const Scenario& scenario = is_uncertain(asked) ? made : asked;
   Json all_warnings = Json::array();
   for (const std::string& warning : warnings) all_warnings.push_back(warning);
   for (std::string& doubt : ranking_doubts(scenario, models, result)) {
@@ -341,6 +367,12 @@ std::string ranking_json(const Scenario& scenario, View<const Model> models,
                   {"numerical_samples", result.samples.size() - range_sample_count(result)},
                   {"not_separable_above_share", separable_share},
                   {"not_separable", std::move(not_separable)}}},
+                {"futures",
+                 {{"method", detail::future_method_name(result.futures.method)},
+                  {"evaluated", result.futures.futures},
+                  {"sampled", result.futures.sampled},
+                  {"combinations", result.futures.combinations},
+                  {"risk", risk_name(result.futures.risk)}}},
                 {"complete", result.complete},
                 {"proved", result.proved},
                 {"in_race", std::move(in_race)},

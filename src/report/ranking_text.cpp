@@ -2,6 +2,7 @@
 #include "crashrank/internal/report/table.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "report/damage_summary.hpp"
+#include "report/future_words.hpp"
 #include "report/ranking_words.hpp"
 #include "report/score_text.hpp"
 
@@ -36,6 +37,10 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   if (simulated) {
     row.push_back(detail::interval_text(ranked));
     row.push_back(detail::places_text(ranked));
+  }
+  if (result.futures.method != FutureMethod::certain) {
+    row.push_back(ranked.score ? fmt::format("{:.0f} %", 100.0 * ranked.collision_probability)
+                               : std::string());
   }
   if (ranked.contacts.empty()) {
     if (!ranked.score) {
@@ -79,8 +84,10 @@ bool overlaps_first(const CandidateResult& ranked) {
 
 }  // namespace
 
-std::string ranking_text(const Scenario& scenario, View<const Model> models,
-                         const RankResult& result, const RankingTextOptions& options) {
+std::string ranking_text(const Scenario& asked, View<const Model> models, const RankResult& result,
+                         const RankingTextOptions& options) {
+  const Scenario made = is_uncertain(asked) ? likeliest_future(asked) : Scenario{};
+  const Scenario& scenario = is_uncertain(asked) ? made : asked;
   const std::size_t all = result.ranking.size();
   const std::size_t shown = options.top == 0 ? all : std::min(options.top, all);
   const bool simulated = needs_crash(result.measure);
@@ -93,6 +100,7 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
     columns.push_back({"interval"});
     columns.push_back({"may rank", true});
   }
+  if (result.futures.method != FutureMethod::certain) columns.push_back({"collides", true});
   columns.push_back({"hits"});
   columns.push_back({"after s", true});
   columns.push_back({"closing m/s", true});
@@ -113,8 +121,12 @@ std::string ranking_text(const Scenario& scenario, View<const Model> models,
                         measure_unit(result.measure));
   }
   const auto free = static_cast<std::size_t>(std::count_if(
-      result.ranking.begin(), result.ranking.end(),
-      [](const CandidateResult& ranked) { return ranked.score && !ranked.collides; }));
+      result.ranking.begin(), result.ranking.end(), [](const CandidateResult& ranked) {
+        return ranked.score && !(ranked.collision_probability > 0.0);
+      }));
+  for (const std::string& words : detail::future_words(result)) {
+    text += escape_terminal(words) + "\n";
+  }
   for (const std::string& words : detail::not_separable_words(result, shown)) {
     text += escape_terminal(words) + "\n";
   }

@@ -66,6 +66,11 @@ bool is_pushed(const Scenario& scenario, const CandidateResult& ranked, std::siz
 
 /// Which tie-break decides between equal scores; the two are not tied.
 std::string tie_words(const CandidateResult& first, const CandidateResult& second) {
+  if (first.futures.size() + second.futures.size() > 2 &&
+      first.collision_probability != second.collision_probability) {
+    return fmt::format("a collision is less probable, {:.3g} % against {:.3g} %",
+                       100.0 * first.collision_probability, 100.0 * second.collision_probability);
+  }
   if (first.collides != second.collides) return "it touches nothing";
   if (!first.collides) return "it passes everything with more than a hair's breadth";
   const Contact& p = first.contacts.front();
@@ -168,7 +173,9 @@ std::string score_words(const CandidateResult& ranked, const std::string& score,
   return score + " " + measure_unit(measure) + (interval.empty() ? "" : " (" + interval + ")");
 }
 
-std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
+namespace {
+
+std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult& ranked) {
   if (ranked.contacts.empty() && !ranked.score) return "has not been looked at to the end";
   if (ranked.contacts.empty()) {
     return fmt::format("touches nothing within {:.1f} s{}", scenario.horizon_s,
@@ -195,6 +202,15 @@ std::string outcome_words(const Scenario& scenario, const CandidateResult& ranke
     text += fmt::format(", and {} more pairs of others collide", pairs.size() - described);
   }
   return text;
+}
+
+}  // namespace
+
+std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
+  const std::string likeliest = outcome_of_likeliest(scenario, ranked);
+  if (ranked.futures.size() < 2) return likeliest;
+  return likeliest + fmt::format(" in the likeliest future ({:.0f} % of all futures collide)",
+                                 100.0 * ranked.collision_probability);
 }
 
 std::string reason_words(const Scenario& scenario, View<const Model> models,

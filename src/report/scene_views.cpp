@@ -21,6 +21,7 @@ std::vector<SceneView> scene_views(const Scenario& scenario, View<const Model> m
   Pose& ego = views.front().damage.pose;
   ego = result.candidates[ranked.candidate].motion.pose_at(end_s);
   for (const ScenarioActor& actor : scenario.actors) {
+    if (actor.existence_probability == 0.0) continue;
     const Result<Motion> motion = make_motion(actor);
     SceneView view{actor.model, {}};
     view.damage.pose = motion ? motion->pose_at(end_s) : actor.pose;

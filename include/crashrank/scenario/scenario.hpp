@@ -139,6 +139,15 @@ struct Scenario {
   std::vector<std::string> keys_without_effect;
 };
 
+/// Whether an actor has predictions or may not exist, or joint futures are listed.
+CRASHRANK_API bool is_uncertain(const Scenario& scenario) noexcept;
+
+/// The scenario in its likeliest future, without uncertainty: every actor follows its likeliest
+/// prediction, or its motion in the likeliest joint future; of equal ones the first. An actor that
+/// is rather not there than on any of its motions stays in the list with an existence probability
+/// of 0.
+CRASHRANK_API Scenario likeliest_future(const Scenario& scenario);
+
 /// Bounds on what a scenario may ask for; the published schema states the same numbers.
 namespace scenario_limits {
 inline constexpr std::size_t file_bytes = std::size_t{16} << 20;  ///< of the text

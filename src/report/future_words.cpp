@@ -1,0 +1,101 @@
+#include "report/future_words.hpp"
+
+#include "crashrank/scenario/measure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace crashrank::detail {
+namespace {
+
+std::string risk_words(const RiskMeasure& risk) {
+  switch (risk.kind) {
+    case RiskKind::expected:
+      return "A score is the mean over all futures, weighted by their probability.";
+    case RiskKind::cvar:
+      return fmt::format("A score is the mean over the worst {:g} % of the futures.",
+                         100.0 * (1.0 - risk.level));
+    case RiskKind::worst:
+      return "A score is that of the worst future.";
+    case RiskKind::quantile:
+      return fmt::format("A score is the least that is not exceeded with {:g} %.",
+                         100.0 * risk.level);
+  }
+  return {};
+}
+
+std::string method_words(const FutureSummary& summary) {
+  switch (summary.method) {
+    case FutureMethod::certain:
+      return {};
+    case FutureMethod::joint:
+      return fmt::format("{} joint futures are listed.", summary.futures);
+    case FutureMethod::all:
+      return fmt::format("All {} combinations of predictions are evaluated.", summary.futures);
+    case FutureMethod::sampled:
+      return fmt::format(
+          "Of {:.3g} combinations of predictions {} are drawn, the same for all candidates and in "
+          "every run.",
+          summary.combinations, summary.sampled);
+  }
+  return {};
+}
+
+std::string error_words(const RankResult& result) {
+  std::optional<double> most;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (ranked.sampling_error) most = std::max(most.value_or(0.0), *ranked.sampling_error);
+  }
+  if (!most) return "What the choice of the sample leaves open of a score is not known.";
+  return fmt::format("Another sample may change a score by a standard error of up to {:.2g} {}.",
+                     *most, measure_unit(result.measure));
+}
+
+}  // namespace
+
+const char* future_method_name(FutureMethod method) {
+  switch (method) {
+    case FutureMethod::certain:
+      return "certain";
+    case FutureMethod::joint:
+      return "joint";
+    case FutureMethod::all:
+      return "all";
+    case FutureMethod::sampled:
+      return "sampled";
+  }
+  return "certain";
+}
+
+double likeliest_score(const CandidateResult& ranked) {
+  return ranked.futures.empty() ? ranked.score.value_or(0.0) : ranked.futures.front().score;
+}
+
+std::vector<std::string> future_words(const RankResult& result) {
+  const FutureSummary& summary = result.futures;
+  if (summary.method == FutureMethod::certain) return {};
+  std::vector<std::string> words{method_words(summary) + " " + risk_words(summary.risk) +
+                                 " Contacts and damage are those of the likeliest future."};
+  if (!result.complete || result.ranking.empty()) return words;
+  if (summary.method == FutureMethod::sampled) words.push_back(error_words(result));
+  const auto best = std::min_element(result.ranking.begin(), result.ranking.end(),
+                                     [](const CandidateResult& p, const CandidateResult& q) {
+                                       return likeliest_score(p) < likeliest_score(q);
+                                     });
+  if (likeliest_score(*best) < likeliest_score(result.ranking.front())) {
+    const std::size_t last = result.ranking.back().place;
+    words.push_back(fmt::format(
+        "Against the likeliest future alone “{}” would be first ({:.3g} {}); over all futures it "
+        "is {} ({:.3g}).",
+        result.candidates[best->candidate].name, likeliest_score(*best),
+        measure_unit(result.measure),
+        best->place == last ? std::string("in the last place")
+                            : fmt::format("in place {} of {}", best->place, last),
+        *best->score));
+  }
+  return words;
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,42 @@
+#include "crashrank/scenario/scenario.hpp"
+
+#include <algorithm>
+
+namespace crashrank {
+
+bool is_uncertain(const Scenario& scenario) noexcept {
+  return !scenario.futures.empty() || std::any_of(scenario.actors.begin(), scenario.actors.end(),
+                                                  [](const ScenarioActor& actor) {
+                                                    return !actor.predictions.empty() ||
+                                                           actor.existence_probability != 1.0;
+                                                  });
+}
+
+Scenario likeliest_future(const Scenario& scenario) {
+  const auto less_likely = [](const auto& p, const auto& q) {
+    return p.probability < q.probability;
+  };
+  Scenario single = scenario;
+  single.futures.clear();
+  for (ScenarioActor& actor : single.actors) {
+    double most = 1.0;
+    if (!actor.predictions.empty()) {
+      const Prediction likeliest =
+          *std::max_element(actor.predictions.begin(), actor.predictions.end(), less_likely);
+      static_cast<ActorMotion&>(actor) = likeliest;
+      most = likeliest.probability;
+      actor.predictions.clear();
+    }
+    const double exists = actor.existence_probability;
+    actor.existence_probability = exists * most < 1.0 - exists ? 0.0 : 1.0;
+  }
+  if (scenario.futures.empty()) return single;
+  const JointFuture& likeliest =
+      *std::max_element(scenario.futures.begin(), scenario.futures.end(), less_likely);
+  for (const FutureMotion& moved : likeliest.motions) {
+    static_cast<ActorMotion&>(single.actors[moved.actor]) = moved.motion;
+  }
+  return single;
+}
+
+}  // namespace crashrank
