@@ -58,9 +58,8 @@ foreach(component ${components})
   endforeach()
 endforeach()
 
-set(importer_file ${CMAKE_INSTALL_LIBEXECDIR}/crashrank/crashrank-import)
 configure_package_config_file(cmake/crashrank-config.cmake.in crashrank-config.cmake
-  INSTALL_DESTINATION ${package_dir} PATH_VARS importer_file)
+  INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(crashrank-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/crashrank-config.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/crashrank-config-version.cmake DESTINATION ${package_dir}

@@ -7,7 +7,8 @@ int main(int argc, char** argv) {
   crashrank_scenario* scenario = NULL;
   crashrank_models* models = NULL;
   crashrank_ranking* ranking = NULL;
-  crashrank_choice best;
+  crashrank_choice best = {0};
+  best.size = sizeof best;
   if (argc != 2) return 2;
   if (crashrank_scenario_load(argv[1], &scenario, &error) == CRASHRANK_OK &&
       crashrank_models_create(&models, &error) == CRASHRANK_OK &&

@@ -18,6 +18,13 @@
 /// to one thread at a time.
 /// Strings are UTF-8. Units are SI, angles radians. Frames follow ISO 8855: x forward, y left,
 /// z up. A pose is a row-major 4x4 matrix of a rigid motion, 16 numbers, last row 0 0 0 1.
+/// Structs that begin with `size`: the caller sets it to sizeof the struct before every call that
+/// takes one, and all members to 0 that it does not use. A program compiled against an older header
+/// has smaller structs: of what it passes in, missing members take their defaults; of what it asks
+/// for, it gets its own members alone. Larger ones are accepted while what this library does not
+/// know is 0. Errors: usage for a `size` that no version of the struct has.
+/// Enumerations: the values begin at 1; 0 is the default where one is stated, else refused. An
+/// error about a member names it, as "crashrank_body.surface".
 
 #include "crashrank/internal/base/export.hpp"
 
@@ -30,7 +37,7 @@ extern "C" {
 #endif
 
 /// Rises with every change after which programs compiled before would misunderstand the library.
-#define CRASHRANK_ABI_VERSION 1
+#define CRASHRANK_ABI_VERSION 2
 
 /// The library's CRASHRANK_ABI_VERSION; other than the header's: do not go on.
 CRASHRANK_API int32_t crashrank_abi_version(void);
@@ -43,7 +50,7 @@ typedef int32_t crashrank_status;
 enum {
   CRASHRANK_OK = 0,              ///< done
   CRASHRANK_INTERNAL = 1,        ///< the library's or the machine's own failure
-  CRASHRANK_USAGE = 2,           ///< a call that has no meaning: NULL, an index out of range
+  CRASHRANK_USAGE = 2,           ///< a call that has no meaning: NULL, no value of an enumeration
   CRASHRANK_BAD_INPUT = 3,       ///< a file, mesh, scenario or pose is not acceptable
   CRASHRANK_OUT_OF_BUDGET = 4,   ///< a deadline, memory or work budget ended the work
   CRASHRANK_NOT_FOUND = 5,       ///< a file or program is missing or unreadable
@@ -156,32 +163,63 @@ CRASHRANK_API crashrank_status crashrank_scenario_create_from_text(const char* t
                                                                    crashrank_scenario** scenario,
                                                                    crashrank_error* error);
 /// An empty scenario, to be filled by the functions below: no grid of candidates, straight braking
-/// not added, horizon 4 s, grip 0.8. What does not fit together is found by crashrank_rank.
+/// not added, horizon 4 s, grip 0.8. Numbers out of range and what does not fit together are
+/// refused by crashrank_rank, where nothing else is said.
 CRASHRANK_API crashrank_status crashrank_scenario_create(const char* name,
                                                          crashrank_scenario** scenario,
                                                          crashrank_error* error);
 /// Ends it; NULL is left alone.
 CRASHRANK_API void crashrank_scenario_free(crashrank_scenario* scenario);
 
-/// Adds a shape; its index is the number added before. `kind`: car, truck, bus, motorcycle,
-/// bicycle, pedestrian, barrier, pole or building; `mass_kg` 0: as its model file states,
-/// else guessed from kind and size.
+/// What a body is.
+typedef int32_t crashrank_body_kind;
+/// Values of crashrank_body_kind.
+enum {
+  CRASHRANK_KIND_CAR = 1,
+  CRASHRANK_KIND_TRUCK = 2,
+  CRASHRANK_KIND_BUS = 3,
+  CRASHRANK_KIND_MOTORCYCLE = 4,
+  CRASHRANK_KIND_BICYCLE = 5,
+  CRASHRANK_KIND_PEDESTRIAN = 6,
+  CRASHRANK_KIND_BARRIER = 7,
+  CRASHRANK_KIND_POLE = 8,
+  CRASHRANK_KIND_BUILDING = 9
+};
+/// The kind's name in scenario files, "car"; NULL for no value.
+CRASHRANK_API const char* crashrank_body_kind_name(crashrank_body_kind kind);
+
+/// Outer material of a body.
+typedef int32_t crashrank_surface;
+/// Values of crashrank_surface.
+enum {
+  CRASHRANK_SURFACE_SHEET_METAL = 1,  ///< painted panels of a vehicle
+  CRASHRANK_SURFACE_STEEL = 2,        ///< guard rails, steel poles, machinery
+  CRASHRANK_SURFACE_CONCRETE = 3,     ///< walls, barriers, masonry
+  CRASHRANK_SURFACE_WOOD = 4,         ///< trees, timber posts, fences
+  CRASHRANK_SURFACE_RUBBER = 5,       ///< tyres, crash cushions
+  CRASHRANK_SURFACE_PERSON = 6        ///< clothing and skin
+};
+/// The surface's name in scenario files, "sheet-metal"; NULL for no value.
+CRASHRANK_API const char* crashrank_surface_name(crashrank_surface surface);
+
+/// Adds a shape; its index is the number added before. `mass_kg` 0: as its model file states, else
+/// guessed from kind and size. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_scenario_add_model(crashrank_scenario* scenario,
-                                                            const char* name, const char* kind,
+                                                            const char* name,
+                                                            crashrank_body_kind kind,
                                                             double mass_kg, crashrank_error* error);
 
-/// What is known of a body besides its shape, kind and mass. Begin with all zero: that is the
-/// default of everything.
+/// What is known of a body besides its shape, kind and mass; 0 and NULL are defaults.
 typedef struct crashrank_body {
+  size_t size;  ///< sizeof(crashrank_body)
   /// x, y, z in body coordinates, m; NULL: as its model file states, else estimated.
   const double* center_of_mass_m;
   /// About the vertical axis through it, kg m2, at most 1e9; 0: likewise.
   double yaw_inertia_kgm2;
-  double stiffness;     ///< crush strength, times the default, 0.01 to 100; 0: 1
-  const char* surface;  ///< sheet-metal, steel, concrete, wood, rubber or person; NULL: by kind
+  double stiffness;           ///< crush strength, times the default, 0.01 to 100; 0: 1
+  crashrank_surface surface;  ///< 0: by kind
 } crashrank_body;
-/// Sets what is known of the shape with that index. Errors: usage. Numbers out of range are found
-/// by crashrank_rank.
+/// Sets what is known of the shape with that index. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario,
                                                            size_t model, const crashrank_body* body,
                                                            crashrank_error* error);
@@ -194,6 +232,7 @@ typedef struct crashrank_timed_pose {
 
 /// How the ego moves now.
 typedef struct crashrank_ego {
+  size_t size;            ///< sizeof(crashrank_ego)
   size_t model;           ///< index of its shape
   double pose[16];        ///< body to world; the origin is the centre of the rear axle
   double speed_mps;       ///< along its forward axis
@@ -207,6 +246,7 @@ CRASHRANK_API crashrank_status crashrank_scenario_set_ego(crashrank_scenario* sc
 
 /// Something that can be hit.
 typedef struct crashrank_actor {
+  size_t size;                        ///< sizeof(crashrank_actor)
   const char* name;                   ///< unique
   size_t model;                       ///< index of its shape
   double pose[16];                    ///< body to world
@@ -233,6 +273,7 @@ CRASHRANK_API crashrank_status crashrank_scenario_set_actor_occupants(crashrank_
 
 /// A manoeuvre that the ego can choose: constant acceleration and steering, or timed poses.
 typedef struct crashrank_candidate {
+  size_t size;                        ///< sizeof(crashrank_candidate)
   const char* name;                   ///< unique
   double acceleration_mps2;           ///< along the forward axis; against the speed it brakes
   double steering_rad;                ///< of the road wheels, left positive
@@ -247,10 +288,84 @@ CRASHRANK_API crashrank_status crashrank_scenario_add_candidate(
 CRASHRANK_API crashrank_status crashrank_scenario_set_grid(crashrank_scenario* scenario,
                                                            size_t accelerations, size_t steerings,
                                                            crashrank_error* error);
-/// How long the motions are looked at, s, and the friction between tyre and road.
+/// Sets how long motions are followed, s, above 0 and at most 60.
 CRASHRANK_API crashrank_status crashrank_scenario_set_horizon(crashrank_scenario* scenario,
-                                                              double horizon_s, double grip,
+                                                              double horizon_s,
                                                               crashrank_error* error);
+/// Sets the friction between tyre and road, 0.01 to 3.
+CRASHRANK_API crashrank_status crashrank_scenario_set_grip(crashrank_scenario* scenario,
+                                                           double grip, crashrank_error* error);
+
+/// A set of published injury risk curves; crashrank/crash/injury.hpp names their sources.
+typedef int32_t crashrank_risk_model;
+/// Values of crashrank_risk_model.
+enum {
+  CRASHRANK_RISK_MODEL_TUM = 1,                ///< MAIS3+
+  CRASHRANK_RISK_MODEL_MALLIARIS_MONFORT = 2,  ///< MAIS3+
+  CRASHRANK_RISK_MODEL_MALLIARIS_ROSEN = 3,    ///< death
+  CRASHRANK_RISK_MODEL_JOKSCH_MONFORT = 4      ///< death
+};
+/// The risk model's name in scenario files, "malliaris-monfort"; NULL for no value.
+CRASHRANK_API const char* crashrank_risk_model_name(crashrank_risk_model model);
+
+/// What the undamaged wheels of a vehicle do once something has hit it.
+typedef int32_t crashrank_after_contact;
+/// Values of crashrank_after_contact.
+enum {
+  CRASHRANK_AFTER_CONTACT_BRAKES = 1,    ///< brake with one share of the grip, steer as before
+  CRASHRANK_AFTER_CONTACT_RELEASES = 2,  ///< roll freely, steer as before
+  CRASHRANK_AFTER_CONTACT_LOCKS = 3      ///< no wheel turns
+};
+/// The name in scenario files, "brakes"; NULL for no value.
+CRASHRANK_API const char* crashrank_after_contact_name(crashrank_after_contact after);
+
+/// How harm is counted, as "harm" of a scenario file: a member is named after its key there
+/// (weights.pedestrian: weights_pedestrian). 0 is a weight as any other, so begin with what
+/// crashrank_scenario_get_harm returns. Ranges are [least, most]; their corners are the samples by
+/// which a ranking states how stable it is.
+typedef struct crashrank_harm {
+  size_t size;                            ///< sizeof(crashrank_harm)
+  crashrank_risk_model risk_model;        ///< whose curves
+  crashrank_after_contact after_contact;  ///< of all vehicles that were hit
+  double weights_ego_occupant;            ///< of a person in the ego, 0 to 1e6
+  double weights_other_occupant;          ///< of a person in another vehicle, 0 to 1e6
+  double weights_pedestrian;              ///< of a person on foot, 0 to 1e6
+  double weights_cyclist;                 ///< of a person on a bicycle, 0 to 1e6
+  double weights_motorcyclist;            ///< of a person on a motorcycle, 0 to 1e6
+  double weights_property_per_mj;         ///< of every MJ of deformation, 0 to 1e6
+  double people_ego;                      ///< persons in the ego, 0 to 1000
+  double people_car;                      ///< persons in every car, 0 to 1000
+  double people_truck;                    ///< persons in every truck, 0 to 1000
+  double people_bus;                      ///< persons in every bus, 0 to 1000
+  double pedestrian_age_years;   ///< of all pedestrians, 0 to 120; below 0: the curve's mean person
+  double pedestrian_male_share;  ///< probability, 0 to 1; below 0: likewise
+  double friction;               ///< of two painted panels, other surfaces in proportion, 0 to 10
+  double ranges_friction[2];     ///< of that, each 0 to 10
+  double ranges_strength[2];     ///< times the strength of all bodies, each 0.01 to 100
+  double ranges_restitution[2];  ///< times that of the contact law, each 0 to 10
+  double ranges_risk_speed[2];   ///< times the speed at which risk is read, each 0.1 to 10
+  int32_t ranges_all_models;     ///< other than 0: samples of every risk model, not of one alone
+} crashrank_harm;
+/// How the scenario counts harm: the caller sets `harm->size`. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_get_harm(const crashrank_scenario* scenario,
+                                                           crashrank_harm* harm,
+                                                           crashrank_error* error);
+/// Sets how the scenario counts harm. Members that a smaller struct lacks stay as they are. Errors:
+/// usage; bad_input for a number that is not finite or out of range. The scenario is then as
+/// before.
+CRASHRANK_API crashrank_status crashrank_scenario_set_harm(crashrank_scenario* scenario,
+                                                           const crashrank_harm* harm,
+                                                           crashrank_error* error);
+/// Reads a profile of weights (data/profile.schema.json); what it leaves out stays as the scenario
+/// has it. Errors: bad_input naming the key, limit_exceeded (1 MiB), not_found. The scenario is
+/// then as before.
+CRASHRANK_API crashrank_status crashrank_scenario_load_profile(crashrank_scenario* scenario,
+                                                               const char* file,
+                                                               crashrank_error* error);
+/// The same from text; `name` stands for the file in messages.
+CRASHRANK_API crashrank_status
+crashrank_scenario_set_profile_from_text(crashrank_scenario* scenario, const char* text,
+                                         size_t length, const char* name, crashrank_error* error);
 
 /// Number of shapes, in the order in which crashrank_rank wants their models. 0 for NULL.
 CRASHRANK_API size_t crashrank_scenario_model_count(const crashrank_scenario* scenario);
@@ -263,12 +378,27 @@ CRASHRANK_API const char* crashrank_scenario_model_path(const crashrank_scenario
 
 // ---- Ranking ------------------------------------------------------------------------------------
 
-/// Begin with all zero: that is the default of everything.
+/// What a ranking compares. Every measure is 0 without contact, and lower is better.
+typedef int32_t crashrank_measure;
+/// Values of crashrank_measure.
+enum {
+  CRASHRANK_MEASURE_POLYGONS = 1,        ///< triangles that intersect, of both bodies
+  CRASHRANK_MEASURE_AREA = 2,            ///< area of those triangles, m2
+  CRASHRANK_MEASURE_CLOSING_ENERGY = 3,  ///< of the closing speed of first contacts, J
+  CRASHRANK_MEASURE_DELTA_V = 4,         ///< the ego's change of velocity, m/s
+  CRASHRANK_MEASURE_ENERGY = 5,          ///< kinetic energy turned into damage and heat, J
+  CRASHRANK_MEASURE_INTRUSION = 6,       ///< crush into passengers' cages, m
+  CRASHRANK_MEASURE_HARM = 7             ///< people hurt, as crashrank_harm counts them
+};
+/// The measure's name in scenario files, "closing-energy"; NULL for no value.
+CRASHRANK_API const char* crashrank_measure_name(crashrank_measure measure);
+
+/// How candidates are ranked; 0 is the default of every member.
 typedef struct crashrank_rank_options {
-  const char* measure;  ///< polygons, area, closing-energy, delta-v, energy, intrusion or harm;
-                        ///< NULL: as the scenario says (a scenario made here: harm)
-  uint32_t workers;     ///< threads that share the work, 64 at most; the answer is the same
-  int32_t json;         ///< other than 0: crashrank_ranking_json has an answer
+  size_t size;                ///< sizeof(crashrank_rank_options)
+  crashrank_measure measure;  ///< 0: as the scenario says (a scenario made here: harm)
+  uint32_t workers;           ///< threads that share the work, 64 at most; the answer is the same
+  int32_t json;               ///< other than 0: crashrank_ranking_json has an answer
 } crashrank_rank_options;
 
 /// Ranks the candidates by what they would destroy. The model with index i is that of the shape
@@ -289,6 +419,7 @@ CRASHRANK_API void crashrank_ranking_free(crashrank_ranking* ranking);
 /// What choosing a candidate leads to. Of contacts the first is told; without one its numbers are
 /// NaN.
 typedef struct crashrank_choice {
+  size_t size;                 ///< sizeof(crashrank_choice)
   const char* candidate;       ///< its name; the ranking's
   const char* other;           ///< who is hit first, NULL for nobody; the ranking's
   double score;                ///< in the measure's unit, lower is better, 0 without contact; NaN
@@ -307,12 +438,13 @@ typedef struct crashrank_choice {
 
 /// Number of candidates, 0 for NULL.
 CRASHRANK_API size_t crashrank_ranking_size(const crashrank_ranking* ranking);
-/// The candidate in a place, 0 the least harmful. Errors: usage.
+/// The candidate in a place, 0 the least harmful: the caller sets `choice->size`. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_ranking_get(const crashrank_ranking* ranking, size_t place,
                                                      crashrank_choice* choice,
                                                      crashrank_error* error);
 /// A contact between two bodies neither of which is the ego, one of which was hit before.
 typedef struct crashrank_further_contact {
+  size_t size;               ///< sizeof(crashrank_further_contact)
   const char* a;             ///< name of the one body; the ranking's
   const char* b;             ///< and of the other
   double time_s;             ///< when it begins, from now
@@ -326,7 +458,8 @@ typedef struct crashrank_further_contact {
 /// under `index`; 0 for NULL, and where there is no such index.
 CRASHRANK_API size_t crashrank_ranking_further_count(const crashrank_ranking* ranking,
                                                      size_t index);
-/// One of them, by their begins; `contact` is its index from 0. Errors: usage.
+/// One of them, by their begins; `contact` is its index from 0, and the caller sets
+/// `further->size`. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_ranking_further(const crashrank_ranking* ranking,
                                                          size_t index, size_t contact,
                                                          crashrank_further_contact* further,
@@ -355,12 +488,13 @@ CRASHRANK_API const char* crashrank_ranking_json(const crashrank_ranking* rankin
 /// Ranks again and again in memory set aside once.
 typedef struct crashrank_ranker crashrank_ranker;
 
-/// Begin with all zero: that is the default of everything.
+/// What a ranker ranks by and sets aside; 0 is the default of every member.
 typedef struct crashrank_ranker_options {
-  const char* measure;       ///< as in crashrank_rank_options
-  uint32_t workers;          ///< the calling thread and `workers` - 1 more, 64 at most
-  uint32_t most_candidates;  ///< memory is set aside for so many; 0: 1024
-  uint32_t most_actors;      ///< 0: 64
+  size_t size;                ///< sizeof(crashrank_ranker_options)
+  crashrank_measure measure;  ///< 0: as the scenario says
+  uint32_t workers;           ///< the calling thread and `workers` - 1 more, 64 at most
+  uint32_t most_candidates;   ///< memory is set aside for so many; 0: 1024
+  uint32_t most_actors;       ///< 0: 64
 } crashrank_ranker_options;
 
 /// Sets up workers, memory and the scenario's situation. `models`, which have to stay as they are
@@ -375,14 +509,16 @@ CRASHRANK_API crashrank_status crashrank_ranker_create(const crashrank_scenario*
 CRASHRANK_API void crashrank_ranker_free(crashrank_ranker* ranker);
 /// The situation has changed: takes the ego's pose and speed, the motions of the actors and the
 /// candidates from a scenario. Allocates. Errors: usage for more candidates than the limit, and
-/// where shapes, their kinds or masses, the ego's or an actor's shape, their number or the horizon
-/// is not what the ranker was created with; bad_input. The ranker then keeps its situation.
+/// where shapes, their kinds or masses, the ego's or an actor's shape, their number, the horizon,
+/// the grip or the harm is not what the ranker was created with; bad_input. The ranker then keeps
+/// its situation.
 CRASHRANK_API crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
                                                        const crashrank_scenario* scenario,
                                                        crashrank_error* error);
 
 /// When a ranking ends at the latest.
 typedef struct crashrank_budget {
+  size_t size;               ///< sizeof(crashrank_budget)
   double deadline_s;         ///< counted from the call; 0: none, below: already over
   uint64_t work;             ///< in tests, deterministic; 0: none
   int32_t first_place_only;  ///< other than 0: ends as soon as the first place is proved
@@ -402,8 +538,9 @@ typedef struct crashrank_ranked {
 
 /// What was known in time. `ranking`, most promising first, is the ranker's until its next call.
 typedef struct crashrank_answer {
+  size_t size;                      ///< sizeof(crashrank_answer)
   const crashrank_ranked* ranking;  ///< every candidate once
-  size_t size;                      ///< of the ranking
+  size_t count;                     ///< of the ranking
   size_t in_race;                   ///< how many can still be first
   uint64_t hash;     ///< of the ranking, the same on every machine whenever the answer is
   double elapsed_s;  ///< from the call on
@@ -411,10 +548,10 @@ typedef struct crashrank_answer {
   int32_t proved;    ///< no other candidate can still take the first place
 } crashrank_answer;
 
-/// Ranks within a budget; NULL: without end. Allocates nothing, and blocks for its own workers
-/// alone (crashrank/rank/anytime/ranker.hpp names the measures whose last stage allocates). One
-/// thread at a time for each ranker. Errors: usage; bad_input for a situation that cannot be
-/// computed with.
+/// Ranks within a budget; NULL: without end. The caller sets `answer->size`. Allocates nothing, and
+/// blocks for its own workers alone (crashrank/rank/anytime/ranker.hpp names the measures whose
+/// last stage allocates). One thread at a time for each ranker. Errors: usage; bad_input for a
+/// situation that cannot be computed with.
 CRASHRANK_API crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker,
                                                      const crashrank_budget* budget,
                                                      crashrank_answer* answer,
@@ -428,16 +565,36 @@ CRASHRANK_API const char* crashrank_ranker_candidate_name(const crashrank_ranker
 /// Reads a mesh file (OBJ, STL, PLY, OFF, glTF, Collada, FBX, 3DS, AC3D) as it stands, in a process
 /// of its own, or a model file here, and adds its model. Blocks until that has ended. Errors:
 /// bad_input, not_found, limit_exceeded; internal where the importer cannot be started. The program
-/// crashrank-import is looked for where the environment variable CRASHRANK_IMPORTER says, beside
-/// this program, and where the library was configured to be installed.
-CRASHRANK_API crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
-                                                       crashrank_error* error);
+/// crashrank-import is the one that the environment variable CRASHRANK_IMPORTER names, else the
+/// first that exists of: beside this program, in the installation of this program, of the shared
+/// library, of `header`, and where the library was configured to be installed. `header` is the path
+/// of this file as installed, ignored unless absolute; NULL: none.
+CRASHRANK_API crashrank_status crashrank_models_import_with_header(crashrank_models* models,
+                                                                   const char* file,
+                                                                   const char* header,
+                                                                   crashrank_error* error);
 /// Adds the models of all shapes of a loaded scenario, in their order, read as the scenario says;
 /// none where one fails; what model files state counts as crashrank_models_load says. Errors as
 /// above; usage for a shape without a path.
-CRASHRANK_API crashrank_status crashrank_models_import_scenario(crashrank_models* models,
+CRASHRANK_API crashrank_status crashrank_models_import_scenario_with_header(
+    crashrank_models* models, const crashrank_scenario* scenario, const char* header,
+    crashrank_error* error);
+
+// The two as programs in C and C++ call them. A static library has no place of its own from which
+// it could find the importer, but the header that a program includes has: compiled here, __FILE__
+// follows a moved prefix without a compile definition.
+
+/// crashrank_models_import_with_header with this header.
+static inline crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
+                                                       crashrank_error* error) {
+  return crashrank_models_import_with_header(models, file, __FILE__, error);
+}
+/// crashrank_models_import_scenario_with_header with this header.
+static inline crashrank_status crashrank_models_import_scenario(crashrank_models* models,
                                                                 const crashrank_scenario* scenario,
-                                                                crashrank_error* error);
+                                                                crashrank_error* error) {
+  return crashrank_models_import_scenario_with_header(models, scenario, __FILE__, error);
+}
 
 #ifdef __cplusplus
 }

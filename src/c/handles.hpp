@@ -14,8 +14,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
 #include <exception>
+#include <initializer_list>
 #include <new>
 #include <string>
 #include <utility>
@@ -91,9 +93,25 @@ inline crashrank_status refuse(const Error& why, crashrank_error* error) {
   return refuse(status_of(why.code), escape_terminal(why.message()).c_str(), error);
 }
 
-/// NULL where there has to be something.
-inline crashrank_status refuse_null(crashrank_error* error) noexcept {
-  return refuse(CRASHRANK_USAGE, "an argument is NULL that has to be given", error);
+/// An argument or member that has to be given, and its name.
+struct Required {
+  const char* name;
+  const void* given;
+};
+
+/// The name of the first that is NULL; NULL if all are given.
+inline const char* first_null(std::initializer_list<Required> all) noexcept {
+  for (const Required& one : all) {
+    if (one.given == nullptr) return one.name;
+  }
+  return nullptr;
+}
+
+/// Refuses an argument or member of that name because it is NULL. Allocates nothing.
+inline crashrank_status refuse_null(const char* name, crashrank_error* error) noexcept {
+  char message[128];
+  std::snprintf(message, sizeof message, "%s: is NULL; it has to be given", name);
+  return refuse(CRASHRANK_USAGE, message, error);
 }
 
 /// Runs a function that answers a status; nothing that it throws gets out.
@@ -120,9 +138,11 @@ inline Scenario with_stated_masses(const crashrank_scenario& scenario,
   return made;
 }
 
-/// A pose from its 16 numbers. Errors: bad_input.
-inline Result<Pose> to_pose(const double* row_major) {
-  return pose_from_matrix(View<const double>(row_major, 16));
+/// A pose from its 16 numbers. Errors: bad_input naming the argument or member.
+inline Result<Pose> to_pose(const double* row_major, const std::string& member) {
+  Result<Pose> pose = pose_from_matrix(View<const double>(row_major, 16));
+  if (!pose) pose.error().place = member;
+  return pose;
 }
 
 }  // namespace crashrank::c

@@ -13,14 +13,23 @@ using c::guarded;
 using c::refuse;
 using c::refuse_null;
 
+/// The defaults, with the caller's header in place of the one that this library was built with.
+ImportOptions options_with(const char* header) {
+  ImportOptions options;
+  options.header = header == nullptr ? "" : header;
+  return options;
+}
+
 }  // namespace
 
-crashrank_status crashrank_models_import(crashrank_models* models, const char* file,
-                                         crashrank_error* error) {
-  if (models == nullptr || file == nullptr) return refuse_null(error);
+crashrank_status crashrank_models_import_with_header(crashrank_models* models, const char* file,
+                                                     const char* header, crashrank_error* error) {
+  if (const char* null = c::first_null({{"models", models}, {"file", file}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
     if (is_model_file(file)) return crashrank_models_load(models, file, error);
-    Result<ImportedMesh> imported = import_mesh(file);
+    Result<ImportedMesh> imported = import_mesh(file, options_with(header));
     if (!imported) return refuse(imported.error(), error);
     Result<Model> model = make_model(std::move(imported->mesh));
     if (!model) return refuse(model.error(), error);
@@ -29,14 +38,19 @@ crashrank_status crashrank_models_import(crashrank_models* models, const char* f
   });
 }
 
-crashrank_status crashrank_models_import_scenario(crashrank_models* models,
-                                                  const crashrank_scenario* scenario,
-                                                  crashrank_error* error) {
-  if (models == nullptr || scenario == nullptr) return refuse_null(error);
+crashrank_status crashrank_models_import_scenario_with_header(crashrank_models* models,
+                                                              const crashrank_scenario* scenario,
+                                                              const char* header,
+                                                              crashrank_error* error) {
+  if (const char* null = c::first_null({{"models", models}, {"scenario", scenario}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
+    ScenarioModelOptions options;
+    options.import = options_with(header);
     std::vector<LoadedScenarioModel> made;
     for (const ScenarioModel& wanted : scenario->scenario.models) {
-      Result<LoadedScenarioModel> read = load_scenario_model(wanted);
+      Result<LoadedScenarioModel> read = load_scenario_model(wanted, options);
       if (!read) return refuse(read.error(), error);
       made.push_back(std::move(*read));
     }

@@ -45,12 +45,15 @@ bool has(const crashrank_models* models, std::size_t index) {
 /// The pairs of a query, left in its buffer.
 crashrank_status ask(crashrank_query* query, const crashrank_models* models, std::size_t a,
                      std::size_t b, const double* b_in_a, bool any, crashrank_error* error) {
-  if (query == nullptr || models == nullptr || b_in_a == nullptr) return refuse_null(error);
+  if (const char* null =
+          c::first_null({{"query", query}, {"models", models}, {"b_in_a", b_in_a}})) {
+    return refuse_null(null, error);
+  }
   if (!has(models, a) || !has(models, b)) {
     return refuse(CRASHRANK_USAGE, "there is no model with that index", error);
   }
   return guarded(error, [&]() -> crashrank_status {
-    const Result<Pose> pose = c::to_pose(b_in_a);
+    const Result<Pose> pose = c::to_pose(b_in_a, "b_in_a");
     if (!pose) return refuse(pose.error(), error);
     CollideOptions options;
     options.any = any;
@@ -63,7 +66,7 @@ crashrank_status ask(crashrank_query* query, const crashrank_models* models, std
 }  // namespace
 
 crashrank_status crashrank_models_create(crashrank_models** models, crashrank_error* error) {
-  if (models == nullptr) return refuse_null(error);
+  if (models == nullptr) return refuse_null("models", error);
   return guarded(error, [&]() -> crashrank_status {
     *models = new crashrank_models;
     return CRASHRANK_OK;
@@ -76,10 +79,11 @@ crashrank_status crashrank_models_add(crashrank_models* models, const float* ver
                                       size_t vertex_count, const uint32_t* triangles,
                                       size_t triangle_count, const crashrank_part* parts,
                                       size_t part_count, crashrank_error* error) {
-  if (models == nullptr || vertices_m == nullptr || triangles == nullptr ||
-      (parts == nullptr && part_count > 0)) {
-    return refuse_null(error);
+  if (const char* null = c::first_null(
+          {{"models", models}, {"vertices_m", vertices_m}, {"triangles", triangles}})) {
+    return refuse_null(null, error);
   }
+  if (parts == nullptr && part_count > 0) return refuse_null("parts", error);
   return guarded(error, [&]() -> crashrank_status {
     if (triangle_count > max_triangles || vertex_count > 3 * max_triangles) {
       return refuse(CRASHRANK_LIMIT_EXCEEDED, "a model has at most 2147483647 triangles", error);
@@ -105,7 +109,9 @@ crashrank_status crashrank_models_add(crashrank_models* models, const float* ver
 
 crashrank_status crashrank_models_load(crashrank_models* models, const char* file,
                                        crashrank_error* error) {
-  if (models == nullptr || file == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"models", models}, {"file", file}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
     Result<LoadedModel> loaded = load_model(file);
     if (!loaded) return refuse(loaded.error(), error);
@@ -132,7 +138,7 @@ const char* crashrank_models_part_name(const crashrank_models* models, size_t in
 }
 
 crashrank_status crashrank_query_create(crashrank_query** query, crashrank_error* error) {
-  if (query == nullptr) return refuse_null(error);
+  if (query == nullptr) return refuse_null("query", error);
   return guarded(error, [&]() -> crashrank_status {
     *query = new crashrank_query;
     return CRASHRANK_OK;
@@ -144,7 +150,7 @@ void crashrank_query_free(crashrank_query* query) { delete query; }
 crashrank_status crashrank_collide_any(crashrank_query* query, const crashrank_models* models,
                                        size_t a, size_t b, const double b_in_a[16],
                                        int32_t* intersecting, crashrank_error* error) {
-  if (intersecting == nullptr) return refuse_null(error);
+  if (intersecting == nullptr) return refuse_null("intersecting", error);
   const crashrank_status status = ask(query, models, a, b, b_in_a, true, error);
   if (status == CRASHRANK_OK) *intersecting = query->pairs.empty() ? 0 : 1;
   return status;
@@ -154,7 +160,9 @@ crashrank_status crashrank_collide_all(crashrank_query* query, const crashrank_m
                                        size_t a, size_t b, const double b_in_a[16],
                                        const crashrank_pair** pairs, size_t* count,
                                        crashrank_error* error) {
-  if (pairs == nullptr || count == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"pairs", pairs}, {"count", count}})) {
+    return refuse_null(null, error);
+  }
   const crashrank_status status = ask(query, models, a, b, b_in_a, false, error);
   if (status != CRASHRANK_OK) return status;
   return guarded(error, [&]() -> crashrank_status {
@@ -169,7 +177,8 @@ crashrank_status crashrank_collide_all(crashrank_query* query, const crashrank_m
 
 crashrank_status crashrank_pairs_hash(const crashrank_pair* pairs, size_t count, char hash[17],
                                       crashrank_error* error) {
-  if (hash == nullptr || (pairs == nullptr && count > 0)) return refuse_null(error);
+  if (hash == nullptr) return refuse_null("hash", error);
+  if (pairs == nullptr && count > 0) return refuse_null("pairs", error);
   return guarded(error, [&]() -> crashrank_status {
     std::vector<Pair> list(count);
     for (std::size_t i = 0; i < count; ++i) list[i] = {pairs[i].a, pairs[i].b};

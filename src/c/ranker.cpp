@@ -1,5 +1,8 @@
 #include "crashrank/rank/anytime/ranker.hpp"
+#include "c/enums.hpp"
 #include "c/handles.hpp"
+#include "c/harm.hpp"
+#include "c/sized.hpp"
 #include "scenario/scenario_check.hpp"
 
 #include <algorithm>
@@ -35,6 +38,8 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
     return error;
   };
   if (scenario.horizon_s != prepared.horizon_s) return other("horizon_s");
+  if (scenario.grip != prepared.grip) return other("grip");
+  if (!c::same_harm(scenario.harm, prepared.harm)) return other("harm");
   const auto same_model = [](const ScenarioModel& a, const ScenarioModel& b) {
     // What an update leaves out may be stated in a model file.
     const auto same_if_stated = [](const auto& now, const auto& then) {
@@ -92,18 +97,25 @@ crashrank_status crashrank_ranker_create(const crashrank_scenario* scenario,
                                          const crashrank_models* models,
                                          const crashrank_ranker_options* options,
                                          crashrank_ranker** ranker, crashrank_error* error) {
-  if (scenario == nullptr || models == nullptr || ranker == nullptr) return refuse_null(error);
+  if (const char* null =
+          c::first_null({{"scenario", scenario}, {"models", models}, {"ranker", ranker}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
     RankerOptions how;
     if (options != nullptr) {
-      how.rank.workers = options->workers;
-      if (options->measure != nullptr) {
-        const Result<Measure> measure = measure_from_name(options->measure);
+      const Result<crashrank_ranker_options> given =
+          c::read_sized("crashrank_ranker_options", *options);
+      if (!given) return refuse(given.error(), error);
+      how.rank.workers = given->workers;
+      if (given->measure != 0) {
+        const Result<Measure> measure =
+            c::from_c<Measure>(given->measure, "crashrank_ranker_options.measure");
         if (!measure) return refuse(measure.error(), error);
         how.rank.measure = *measure;
       }
-      if (options->most_candidates > 0) how.limits.candidates = options->most_candidates;
-      if (options->most_actors > 0) how.limits.actors = options->most_actors;
+      if (given->most_candidates > 0) how.limits.candidates = given->most_candidates;
+      if (given->most_actors > 0) how.limits.actors = given->most_actors;
     }
     Scenario complete = c::with_stated_masses(*scenario, *models);
     Result<Ranker> made = Ranker::prepare(complete, models->list, how);
@@ -126,7 +138,9 @@ void crashrank_ranker_free(crashrank_ranker* ranker) { delete ranker; }
 crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
                                          const crashrank_scenario* scenario,
                                          crashrank_error* error) {
-  if (ranker == nullptr || scenario == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"ranker", ranker}, {"scenario", scenario}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
     const Status ready = situate(*ranker, scenario->scenario);
     if (!ready) return refuse(ready.error(), error);
@@ -136,13 +150,19 @@ crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
 
 crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank_budget* budget,
                                        crashrank_answer* answer, crashrank_error* error) {
-  if (ranker == nullptr || answer == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"ranker", ranker}, {"answer", answer}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
+    const Status sized = c::check_size("crashrank_answer", *answer);
+    if (!sized) return refuse(sized.error(), error);
     RankBudget within;
     if (budget != nullptr) {
-      if (budget->deadline_s != 0.0) within.deadline_s = budget->deadline_s;
-      if (budget->work > 0) within.work = budget->work;
-      within.first_place_only = budget->first_place_only != 0;
+      const Result<crashrank_budget> given = c::read_sized("crashrank_budget", *budget);
+      if (!given) return refuse(given.error(), error);
+      if (given->deadline_s != 0.0) within.deadline_s = given->deadline_s;
+      if (given->work > 0) within.work = given->work;
+      within.first_place_only = given->first_place_only != 0;
     }
     const RankerAnswer ranked = ranker->ranker.rank(ranker->candidates, within);
     if (!ranked.status) return refuse(ranked.status.error(), error);
@@ -162,13 +182,13 @@ crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank
     }
     crashrank_answer made{};
     made.ranking = ranker->told.data();
-    made.size = ranker->told.size();
+    made.count = ranker->told.size();
     made.in_race = ranked.in_race;
     made.hash = ranked.hash;
     made.elapsed_s = ranked.elapsed_s;
     made.complete = ranked.complete ? 1 : 0;
     made.proved = ranked.proved ? 1 : 0;
-    *answer = made;
+    c::write_sized(made, *answer);
     return CRASHRANK_OK;
   });
 }

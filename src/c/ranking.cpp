@@ -1,4 +1,6 @@
+#include "c/enums.hpp"
 #include "c/handles.hpp"
+#include "c/sized.hpp"
 
 #include "crashrank/report/ranking.hpp"
 
@@ -13,16 +15,41 @@ using c::guarded;
 using c::refuse;
 using c::refuse_null;
 
-Result<RankOptions> to_options(const crashrank_rank_options* options) {
+Result<RankOptions> to_options(const crashrank_rank_options& options) {
   RankOptions made;
-  if (options == nullptr) return made;
-  made.workers = options->workers;
-  if (options->measure != nullptr) {
-    const Result<Measure> measure = measure_from_name(options->measure);
+  made.workers = options.workers;
+  if (options.measure != 0) {
+    const Result<Measure> measure =
+        c::from_c<Measure>(options.measure, "crashrank_rank_options.measure");
     if (!measure) return measure.error();
     made.measure = *measure;
   }
   return made;
+}
+
+/// The candidate in that place, which has to exist.
+crashrank_choice to_choice(const crashrank_ranking& ranking, std::size_t place) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const CandidateResult& ranked = ranking.result.ranking[place];
+  crashrank_choice choice{};
+  choice.candidate = ranking.result.candidates[ranked.candidate].name.c_str();
+  choice.score = ranked.score.value_or(unknown);
+  choice.lowest_score = ranked.score_interval.lowest;
+  choice.highest_score = ranked.score_interval.highest;
+  choice.time_of_impact_s = choice.closing_speed_mps = choice.delta_v_mps = unknown;
+  choice.other_delta_v_mps = choice.pdof_deg = unknown;
+  choice.damaged_triangles = ranked.ego.triangles.size();
+  choice.contacts = ranked.contacts.size();
+  if (!ranked.contacts.empty()) {
+    const Contact& first = ranked.contacts.front();
+    choice.other = ranking.actors[first.actor].c_str();
+    choice.time_of_impact_s = first.time_of_impact_s;
+    choice.closing_speed_mps = first.closing_speed_mps;
+    choice.delta_v_mps = first.severity.ego.delta_v_mps;
+    choice.other_delta_v_mps = first.severity.other.delta_v_mps;
+    choice.pdof_deg = first.severity.ego.pdof_deg;
+  }
+  return choice;
 }
 
 }  // namespace
@@ -30,16 +57,25 @@ Result<RankOptions> to_options(const crashrank_rank_options* options) {
 crashrank_status crashrank_rank(const crashrank_scenario* scenario, const crashrank_models* models,
                                 const crashrank_rank_options* options, crashrank_ranking** ranking,
                                 crashrank_error* error) {
-  if (scenario == nullptr || models == nullptr || ranking == nullptr) return refuse_null(error);
+  if (const char* null =
+          c::first_null({{"scenario", scenario}, {"models", models}, {"ranking", ranking}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
-    const Result<RankOptions> how = to_options(options);
+    crashrank_rank_options given{};
+    if (options != nullptr) {
+      const Result<crashrank_rank_options> read = c::read_sized("crashrank_rank_options", *options);
+      if (!read) return refuse(read.error(), error);
+      given = *read;
+    }
+    const Result<RankOptions> how = to_options(given);
     if (!how) return refuse(how.error(), error);
     const Scenario told = c::with_stated_masses(*scenario, *models);
     Result<RankResult> result = rank(told, models->list, *how);
     if (!result) return refuse(result.error(), error);
     auto made = std::make_unique<crashrank_ranking>();
     for (const ScenarioActor& actor : told.actors) made->actors.push_back(actor.name);
-    if (options != nullptr && options->json != 0) {
+    if (given.json != 0) {
       made->json = ranking_json(told, models->list, *result);
     }
     made->result = std::move(*result);
@@ -56,32 +92,18 @@ size_t crashrank_ranking_size(const crashrank_ranking* ranking) {
 
 crashrank_status crashrank_ranking_get(const crashrank_ranking* ranking, size_t place,
                                        crashrank_choice* choice, crashrank_error* error) {
-  if (ranking == nullptr || choice == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"ranking", ranking}, {"choice", choice}})) {
+    return refuse_null(null, error);
+  }
   if (place >= crashrank_ranking_size(ranking)) {
     return refuse(CRASHRANK_USAGE, "the ranking has no such place", error);
   }
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const CandidateResult& ranked = ranking->result.ranking[place];
-  crashrank_choice told{};
-  told.candidate = ranking->result.candidates[ranked.candidate].name.c_str();
-  told.score = ranked.score.value_or(unknown);
-  told.lowest_score = ranked.score_interval.lowest;
-  told.highest_score = ranked.score_interval.highest;
-  told.time_of_impact_s = told.closing_speed_mps = told.delta_v_mps = unknown;
-  told.other_delta_v_mps = told.pdof_deg = unknown;
-  told.damaged_triangles = ranked.ego.triangles.size();
-  told.contacts = ranked.contacts.size();
-  if (!ranked.contacts.empty()) {
-    const Contact& first = ranked.contacts.front();
-    told.other = ranking->actors[first.actor].c_str();
-    told.time_of_impact_s = first.time_of_impact_s;
-    told.closing_speed_mps = first.closing_speed_mps;
-    told.delta_v_mps = first.severity.ego.delta_v_mps;
-    told.other_delta_v_mps = first.severity.other.delta_v_mps;
-    told.pdof_deg = first.severity.ego.pdof_deg;
-  }
-  *choice = told;
-  return CRASHRANK_OK;
+  return guarded(error, [&]() -> crashrank_status {
+    const Status sized = c::check_size("crashrank_choice", *choice);
+    if (!sized) return refuse(sized.error(), error);
+    c::write_sized(to_choice(*ranking, place), *choice);
+    return CRASHRANK_OK;
+  });
 }
 
 size_t crashrank_ranking_further_count(const crashrank_ranking* ranking, size_t index) {
@@ -92,28 +114,39 @@ size_t crashrank_ranking_further_count(const crashrank_ranking* ranking, size_t 
 crashrank_status crashrank_ranking_further(const crashrank_ranking* ranking, size_t index,
                                            size_t contact, crashrank_further_contact* further,
                                            crashrank_error* error) {
-  if (ranking == nullptr || further == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"ranking", ranking}, {"further", further}})) {
+    return refuse_null(null, error);
+  }
   if (index >= crashrank_ranking_size(ranking)) {
     return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
   }
   if (contact >= crashrank_ranking_further_count(ranking, index)) {
     return refuse(CRASHRANK_USAGE, "the candidate has no such contact between others", error);
   }
-  const FurtherContact& from = ranking->result.ranking[index].further[contact];
-  const bool has_harm = ranking->result.measure == Measure::harm;
-  *further = {ranking->actors[from.a].c_str(),
-              ranking->actors[from.b].c_str(),
-              from.time_s,
-              from.closing_speed_mps,
-              from.outcome_a.delta_v_mps,
-              from.outcome_b.delta_v_mps,
-              has_harm ? from.harm : std::numeric_limits<double>::quiet_NaN()};
-  return CRASHRANK_OK;
+  return guarded(error, [&]() -> crashrank_status {
+    const Status sized = c::check_size("crashrank_further_contact", *further);
+    if (!sized) return refuse(sized.error(), error);
+    const FurtherContact& from = ranking->result.ranking[index].further[contact];
+    const bool has_harm = ranking->result.measure == Measure::harm;
+    const crashrank_further_contact made{
+        sizeof made,
+        ranking->actors[from.a].c_str(),
+        ranking->actors[from.b].c_str(),
+        from.time_s,
+        from.closing_speed_mps,
+        from.outcome_a.delta_v_mps,
+        from.outcome_b.delta_v_mps,
+        has_harm ? from.harm : std::numeric_limits<double>::quiet_NaN()};
+    c::write_sized(made, *further);
+    return CRASHRANK_OK;
+  });
 }
 
 crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking, size_t index,
                                          size_t* place, size_t* sharing, crashrank_error* error) {
-  if (ranking == nullptr || place == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"ranking", ranking}, {"place", place}})) {
+    return refuse_null(null, error);
+  }
   if (index >= crashrank_ranking_size(ranking)) {
     return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
   }
@@ -125,7 +158,9 @@ crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking, size_
 
 crashrank_status crashrank_ranking_separable(const crashrank_ranking* ranking, size_t index,
                                              int32_t* separable, crashrank_error* error) {
-  if (ranking == nullptr || separable == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"ranking", ranking}, {"separable", separable}})) {
+    return refuse_null(null, error);
+  }
   const size_t count = crashrank_ranking_size(ranking);
   if (index >= count) return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
   const RankResult& result = ranking->result;

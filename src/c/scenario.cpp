@@ -1,4 +1,6 @@
+#include "c/enums.hpp"
 #include "c/handles.hpp"
+#include "c/sized.hpp"
 
 #include <cmath>
 #include <optional>
@@ -21,28 +23,21 @@ crashrank_status give(Result<Scenario> made, crashrank_scenario** scenario,
   return CRASHRANK_OK;
 }
 
-Result<BodyKind> kind_from_name(const std::string& name) {
-  for (int i = 0; i <= static_cast<int>(BodyKind::building); ++i) {
-    const auto kind = static_cast<BodyKind>(i);
-    if (name == body_kind_name(kind)) return kind;
-  }
-  return make_error(ErrorCode::usage, "'" + name + "' is no kind of body",
-                    "choose car, truck, bus, motorcycle, bicycle, pedestrian, barrier, pole or "
-                    "building");
-}
-
 /// Persons as the scenario has them: below 0 nothing is set.
 std::optional<double> to_occupants(double persons) {
   return persons < 0.0 ? std::nullopt : std::optional<double>(persons);
 }
 
-Result<std::vector<TimedPose>> to_poses(const crashrank_timed_pose* poses, std::size_t count) {
+/// Timed poses; `member` names them in errors.
+Result<std::vector<TimedPose>> to_poses(const crashrank_timed_pose* poses, std::size_t count,
+                                        const std::string& member) {
   std::vector<TimedPose> made;
   if (count > scenario_limits::poses) {
     return make_error(ErrorCode::limit_exceeded, "a motion has at most 10000 poses");
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const Result<Pose> pose = c::to_pose(poses[i].pose);
+    const Result<Pose> pose =
+        c::to_pose(poses[i].pose, member + "[" + std::to_string(i) + "].pose");
     if (!pose) return pose.error();
     made.push_back({poses[i].time_s, *pose});
   }
@@ -53,7 +48,9 @@ Result<std::vector<TimedPose>> to_poses(const crashrank_timed_pose* poses, std::
 
 crashrank_status crashrank_scenario_load(const char* file, crashrank_scenario** scenario,
                                          crashrank_error* error) {
-  if (file == nullptr || scenario == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"file", file}, {"scenario", scenario}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&] { return give(load_scenario_file(file), scenario, error); });
 }
 
@@ -61,7 +58,9 @@ crashrank_status crashrank_scenario_create_from_text(const char* text, size_t le
                                                      const char* name,
                                                      crashrank_scenario** scenario,
                                                      crashrank_error* error) {
-  if (text == nullptr || name == nullptr || scenario == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"text", text}, {"name", name}, {"scenario", scenario}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
     if (length > scenario_limits::file_bytes) {
       return refuse(CRASHRANK_LIMIT_EXCEEDED, "a scenario has at most 16 MiB of text", error);
@@ -72,7 +71,9 @@ crashrank_status crashrank_scenario_create_from_text(const char* text, size_t le
 
 crashrank_status crashrank_scenario_create(const char* name, crashrank_scenario** scenario,
                                            crashrank_error* error) {
-  if (name == nullptr || scenario == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"name", name}, {"scenario", scenario}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&] {
     Scenario made;
     made.name = name;
@@ -85,11 +86,13 @@ crashrank_status crashrank_scenario_create(const char* name, crashrank_scenario*
 void crashrank_scenario_free(crashrank_scenario* scenario) { delete scenario; }
 
 crashrank_status crashrank_scenario_add_model(crashrank_scenario* scenario, const char* name,
-                                              const char* kind, double mass_kg,
+                                              crashrank_body_kind kind, double mass_kg,
                                               crashrank_error* error) {
-  if (scenario == nullptr || name == nullptr || kind == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"scenario", scenario}, {"name", name}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
-    const Result<BodyKind> known = kind_from_name(kind);
+    const Result<BodyKind> known = c::from_c<BodyKind>(kind, "kind");
     if (!known) return refuse(known.error(), error);
     ScenarioModel model;
     model.name = name;
@@ -102,22 +105,26 @@ crashrank_status crashrank_scenario_add_model(crashrank_scenario* scenario, cons
 
 crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario, size_t model,
                                              const crashrank_body* body, crashrank_error* error) {
-  if (scenario == nullptr || body == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"scenario", scenario}, {"body", body}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
     if (model >= scenario->scenario.models.size()) {
       return refuse(CRASHRANK_USAGE, "the scenario has no such shape", error);
     }
+    const Result<crashrank_body> given = c::read_sized("crashrank_body", *body);
+    if (!given) return refuse(given.error(), error);
     ScenarioModel made = scenario->scenario.models[model];
     made.center_of_mass_m.reset();
     made.yaw_inertia_kgm2.reset();
     made.surface.reset();
-    if (const double* center = body->center_of_mass_m; center != nullptr) {
+    if (const double* center = given->center_of_mass_m; center != nullptr) {
       made.center_of_mass_m = Eigen::Vector3d(center[0], center[1], center[2]);
     }
-    if (body->yaw_inertia_kgm2 != 0.0) made.yaw_inertia_kgm2 = body->yaw_inertia_kgm2;
-    made.stiffness = body->stiffness != 0.0 ? body->stiffness : 1.0;
-    if (body->surface != nullptr) {
-      const Result<Surface> surface = surface_from_name(body->surface);
+    if (given->yaw_inertia_kgm2 != 0.0) made.yaw_inertia_kgm2 = given->yaw_inertia_kgm2;
+    made.stiffness = given->stiffness != 0.0 ? given->stiffness : 1.0;
+    if (given->surface != 0) {
+      const Result<Surface> surface = c::from_c<Surface>(given->surface, "crashrank_body.surface");
       if (!surface) return refuse(surface.error(), error);
       made.surface = *surface;
     }
@@ -128,14 +135,14 @@ crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario, size_
 
 crashrank_status crashrank_scenario_set_ego_occupants(crashrank_scenario* scenario, double persons,
                                                       crashrank_error* error) {
-  if (scenario == nullptr) return refuse_null(error);
+  if (scenario == nullptr) return refuse_null("scenario", error);
   scenario->scenario.ego.occupants = to_occupants(persons);
   return CRASHRANK_OK;
 }
 
 crashrank_status crashrank_scenario_set_actor_occupants(crashrank_scenario* scenario, size_t actor,
                                                         double persons, crashrank_error* error) {
-  if (scenario == nullptr) return refuse_null(error);
+  if (scenario == nullptr) return refuse_null("scenario", error);
   if (actor >= scenario->scenario.actors.size()) {
     return refuse(CRASHRANK_USAGE, "the scenario has no such actor", error);
   }
@@ -145,17 +152,21 @@ crashrank_status crashrank_scenario_set_actor_occupants(crashrank_scenario* scen
 
 crashrank_status crashrank_scenario_set_ego(crashrank_scenario* scenario, const crashrank_ego* ego,
                                             crashrank_error* error) {
-  if (scenario == nullptr || ego == nullptr) return refuse_null(error);
+  if (const char* null = c::first_null({{"scenario", scenario}, {"ego", ego}})) {
+    return refuse_null(null, error);
+  }
   return guarded(error, [&]() -> crashrank_status {
-    const Result<Pose> pose = c::to_pose(ego->pose);
+    const Result<crashrank_ego> given = c::read_sized("crashrank_ego", *ego);
+    if (!given) return refuse(given.error(), error);
+    const Result<Pose> pose = c::to_pose(given->pose, "crashrank_ego.pose");
     if (!pose) return refuse(pose.error(), error);
     ScenarioEgo made = scenario->scenario.ego;
-    made.model = ego->model;
+    made.model = given->model;
     made.pose = *pose;
-    made.speed_mps = ego->speed_mps;
-    made.yaw_rate_radps = ego->yaw_rate_radps;
+    made.speed_mps = given->speed_mps;
+    made.yaw_rate_radps = given->yaw_rate_radps;
     made.wheelbase_m.reset();
-    if (ego->wheelbase_m != 0.0) made.wheelbase_m = ego->wheelbase_m;
+    if (given->wheelbase_m != 0.0) made.wheelbase_m = given->wheelbase_m;
     scenario->scenario.ego = made;
     return CRASHRANK_OK;
   });
@@ -164,22 +175,28 @@ crashrank_status crashrank_scenario_set_ego(crashrank_scenario* scenario, const 
 crashrank_status crashrank_scenario_add_actor(crashrank_scenario* scenario,
                                               const crashrank_actor* actor,
                                               crashrank_error* error) {
-  if (scenario == nullptr || actor == nullptr || actor->name == nullptr ||
-      (actor->poses == nullptr && actor->pose_count > 0)) {
-    return refuse_null(error);
+  if (const char* null = c::first_null({{"scenario", scenario}, {"actor", actor}})) {
+    return refuse_null(null, error);
   }
   return guarded(error, [&]() -> crashrank_status {
-    const Result<Pose> pose = c::to_pose(actor->pose);
+    const Result<crashrank_actor> given = c::read_sized("crashrank_actor", *actor);
+    if (!given) return refuse(given.error(), error);
+    if (given->name == nullptr) return refuse_null("crashrank_actor.name", error);
+    if (given->poses == nullptr && given->pose_count > 0) {
+      return refuse_null("crashrank_actor.poses", error);
+    }
+    const Result<Pose> pose = c::to_pose(given->pose, "crashrank_actor.pose");
     if (!pose) return refuse(pose.error(), error);
-    Result<std::vector<TimedPose>> poses = to_poses(actor->poses, actor->pose_count);
+    Result<std::vector<TimedPose>> poses =
+        to_poses(given->poses, given->pose_count, "crashrank_actor.poses");
     if (!poses) return refuse(poses.error(), error);
     ScenarioActor made;
-    made.name = actor->name;
-    made.model = actor->model;
+    made.name = given->name;
+    made.model = given->model;
     made.pose = *pose;
-    made.speed_mps = actor->speed_mps;
-    made.acceleration_mps2 = actor->acceleration_mps2;
-    made.yaw_rate_radps = actor->yaw_rate_radps;
+    made.speed_mps = given->speed_mps;
+    made.acceleration_mps2 = given->acceleration_mps2;
+    made.yaw_rate_radps = given->yaw_rate_radps;
     made.poses = std::move(*poses);
     scenario->scenario.actors.push_back(std::move(made));
     return CRASHRANK_OK;
@@ -189,17 +206,23 @@ crashrank_status crashrank_scenario_add_actor(crashrank_scenario* scenario,
 crashrank_status crashrank_scenario_add_candidate(crashrank_scenario* scenario,
                                                   const crashrank_candidate* candidate,
                                                   crashrank_error* error) {
-  if (scenario == nullptr || candidate == nullptr || candidate->name == nullptr ||
-      (candidate->poses == nullptr && candidate->pose_count > 0)) {
-    return refuse_null(error);
+  if (const char* null = c::first_null({{"scenario", scenario}, {"candidate", candidate}})) {
+    return refuse_null(null, error);
   }
   return guarded(error, [&]() -> crashrank_status {
-    Result<std::vector<TimedPose>> poses = to_poses(candidate->poses, candidate->pose_count);
+    const Result<crashrank_candidate> given = c::read_sized("crashrank_candidate", *candidate);
+    if (!given) return refuse(given.error(), error);
+    if (given->name == nullptr) return refuse_null("crashrank_candidate.name", error);
+    if (given->poses == nullptr && given->pose_count > 0) {
+      return refuse_null("crashrank_candidate.poses", error);
+    }
+    Result<std::vector<TimedPose>> poses =
+        to_poses(given->poses, given->pose_count, "crashrank_candidate.poses");
     if (!poses) return refuse(poses.error(), error);
     ListedCandidate made;
-    made.name = candidate->name;
-    made.acceleration_mps2 = candidate->acceleration_mps2;
-    if (poses->empty()) made.steering_rad = candidate->steering_rad;
+    made.name = given->name;
+    made.acceleration_mps2 = given->acceleration_mps2;
+    if (poses->empty()) made.steering_rad = given->steering_rad;
     made.poses = std::move(*poses);
     scenario->scenario.listed.push_back(std::move(made));
     return CRASHRANK_OK;
@@ -208,7 +231,7 @@ crashrank_status crashrank_scenario_add_candidate(crashrank_scenario* scenario,
 
 crashrank_status crashrank_scenario_set_grid(crashrank_scenario* scenario, size_t accelerations,
                                              size_t steerings, crashrank_error* error) {
-  if (scenario == nullptr) return refuse_null(error);
+  if (scenario == nullptr) return refuse_null("scenario", error);
   Scenario& changed = scenario->scenario;
   if (accelerations == 0 && steerings == 0) {
     changed.grid.reset();
@@ -225,9 +248,15 @@ crashrank_status crashrank_scenario_set_grid(crashrank_scenario* scenario, size_
 }
 
 crashrank_status crashrank_scenario_set_horizon(crashrank_scenario* scenario, double horizon_s,
-                                                double grip, crashrank_error* error) {
-  if (scenario == nullptr) return refuse_null(error);
+                                                crashrank_error* error) {
+  if (scenario == nullptr) return refuse_null("scenario", error);
   scenario->scenario.horizon_s = horizon_s;
+  return CRASHRANK_OK;
+}
+
+crashrank_status crashrank_scenario_set_grip(crashrank_scenario* scenario, double grip,
+                                             crashrank_error* error) {
+  if (scenario == nullptr) return refuse_null("scenario", error);
   scenario->scenario.grip = grip;
   return CRASHRANK_OK;
 }

@@ -1,10 +1,14 @@
 #include "mesh/find_importer.hpp"
 
+#include <dlfcn.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <system_error>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -23,9 +27,25 @@ Result<std::string> insist(const std::string& path, const std::string& named_by)
                     "name the crashrank-import program");
 }
 
+/// The folder of the executable or shared library that contains this function; empty if unknown.
+std::filesystem::path folder_of_this_library() {
+  Dl_info where{};
+  if (::dladdr(reinterpret_cast<const void*>(&runnable), &where) == 0) return {};
+  const std::filesystem::path file = where.dli_fname == nullptr ? "" : where.dli_fname;
+  return file.is_absolute() ? file.parent_path() : std::filesystem::path();
+}
+
+/// INCLUDEDIR of a header INCLUDEDIR/crashrank/...; empty unless absolute: a relative path would
+/// let the working directory choose the program.
+std::filesystem::path include_folder_of(const std::string& header) {
+  const std::size_t end = header.rfind("/crashrank/");
+  if (end == std::string::npos || header.front() != '/') return {};
+  return header.substr(0, end);
+}
+
 }  // namespace
 
-Result<std::string> find_importer(const std::string& chosen, const std::string& of_package) {
+Result<std::string> find_importer(const std::string& chosen, const std::string& header) {
   if (!chosen.empty()) return insist(chosen, "the caller");
   // A program with raised privileges must not let its caller choose what it runs.
   const char* from_environment = ::secure_getenv("CRASHRANK_IMPORTER");
@@ -34,15 +54,20 @@ Result<std::string> find_importer(const std::string& chosen, const std::string& 
   }
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    for (const char* place : {".", CRASHRANK_IMPORTER_FROM_BINDIR}) {
-      const std::string path = (self.parent_path() / place / program).lexically_normal().string();
-      if (runnable(path)) return path;
-    }
+  // Each found by what moves together with the importer: programs, a shared library, and for
+  // programs elsewhere that link a static one, the headers.
+  const std::pair<std::filesystem::path, const char*> places[] = {
+      {self.parent_path(), "."},
+      {self.parent_path(), CRASHRANK_IMPORTER_FROM_BINDIR},
+      {folder_of_this_library(), CRASHRANK_IMPORTER_FROM_LIBDIR},
+      {include_folder_of(header), CRASHRANK_IMPORTER_FROM_INCLUDEDIR},
+      {CRASHRANK_IMPORTER_DIR, "."},
+  };
+  for (const auto& [folder, from_there] : places) {
+    if (folder.empty()) continue;
+    const std::string path = (folder / from_there / program).lexically_normal().string();
+    if (runnable(path)) return path;
   }
-  if (runnable(of_package)) return of_package;
-  std::string installed = std::string(CRASHRANK_IMPORTER_DIR) + "/" + program;
-  if (runnable(installed)) return installed;
   return make_error(ErrorCode::internal,
                     "the program crashrank-import is neither beside this program nor installed",
                     "install it, or name it in the environment variable CRASHRANK_IMPORTER");

@@ -7,8 +7,9 @@
 namespace crashrank::detail {
 
 /// Path of the crashrank-import program: `chosen` if not empty, else the environment's
-/// CRASHRANK_IMPORTER, else the one beside the running executable, else the one of the installation
-/// that the executable belongs to, else `of_package`, else the installed one. Errors: internal.
-Result<std::string> find_importer(const std::string& chosen, const std::string& of_package);
+/// CRASHRANK_IMPORTER, else the first that can be run of: beside the running executable, in the
+/// installation of that executable, of the file that contains this library, and of `header` (an
+/// absolute path below INCLUDEDIR/crashrank, else ignored), and as configured. Errors: internal.
+Result<std::string> find_importer(const std::string& chosen, const std::string& header);
 
 }  // namespace crashrank::detail

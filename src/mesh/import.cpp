@@ -174,7 +174,7 @@ Result<ImportedMesh> import_file(const std::string& path, const ImportOptions& o
   const Result<MeshFile> file = open_mesh(path, options.limits);
   if (!file) return file.error();
   const Result<std::string> importer =
-      detail::find_importer(options.importer, options.package_importer);
+      detail::find_importer(options.importer, options.header);
   if (!importer) return importer.error();
 
   const ImportLimits& limits = options.limits;

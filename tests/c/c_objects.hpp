@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 /// Objects of the C interface that free themselves, and what several of its tests put into them.
@@ -37,6 +38,30 @@ inline crashrank_status add(crashrank_models* models, const std::vector<crashran
                             crashrank_error* error = nullptr) {
   return crashrank_models_add(models, vertices.data(), vertices.size() / 3, triangles.data(),
                               triangles.size() / 3, parts.data(), parts.size(), error);
+}
+
+/// A struct of the C interface with its size set and all else 0.
+template <class Struct> Struct sized() {
+  Struct made{};
+  made.size = sizeof made;
+  return made;
+}
+
+/// A scenario file and the models of its shapes.
+struct Loaded {
+  Scenario scenario;
+  Models models;
+};
+
+inline Loaded load(const std::string& file) {
+  crashrank_error error{};
+  crashrank_scenario* made = nullptr;
+  EXPECT_EQ(crashrank_scenario_load(file.c_str(), &made, &error), CRASHRANK_OK) << error.message;
+  Loaded loaded{Scenario(made), make_models()};
+  EXPECT_EQ(crashrank_models_import_scenario(loaded.models.get(), loaded.scenario.get(), &error),
+            CRASHRANK_OK)
+      << error.message;
+  return loaded;
 }
 
 /// A box of 4 by 1.8 by 1.4 m on the ground: a body with an outline.

@@ -17,34 +17,29 @@ namespace {
 
 TEST(CApi, ARankerAnswersAsRankDoesAndWithinABudgetSoundly) {
   const std::string file = CRASHRANK_SCENARIOS "/crossing_traffic.json";
+  const auto [scenario, models] = load(file);
   crashrank_error error{};
-  crashrank_scenario* made = nullptr;
-  ASSERT_EQ(crashrank_scenario_load(file.c_str(), &made, &error), CRASHRANK_OK) << error.message;
-  const Scenario scenario(made);
-  const Models models = make_models();
-  ASSERT_EQ(crashrank_models_import_scenario(models.get(), scenario.get(), &error), CRASHRANK_OK)
-      << error.message;
-  crashrank_ranker_options options{};
-  options.measure = "closing-energy";
+  auto options = sized<crashrank_ranker_options>();
+  options.measure = CRASHRANK_MEASURE_CLOSING_ENERGY;
   crashrank_ranker* prepared = nullptr;
   ASSERT_EQ(crashrank_ranker_create(scenario.get(), models.get(), &options, &prepared, &error),
             CRASHRANK_OK)
       << error.message;
   const Ranker ranker(prepared);
-  crashrank_answer full{};
+  auto full = sized<crashrank_answer>();
   ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &full, &error), CRASHRANK_OK);
   EXPECT_EQ(full.complete, 1);
   EXPECT_EQ(full.proved, 1);
 
-  crashrank_rank_options same{};
-  same.measure = "closing-energy";
+  auto same = sized<crashrank_rank_options>();
+  same.measure = CRASHRANK_MEASURE_CLOSING_ENERGY;
   crashrank_ranking* answer = nullptr;
   ASSERT_EQ(crashrank_rank(scenario.get(), models.get(), &same, &answer, &error), CRASHRANK_OK);
   const Ranking ranking(answer);
-  ASSERT_EQ(full.size, crashrank_ranking_size(ranking.get()));
-  std::vector<double> scores(full.size);
-  for (size_t place = 0; place < full.size; ++place) {
-    crashrank_choice choice{};
+  ASSERT_EQ(full.count, crashrank_ranking_size(ranking.get()));
+  std::vector<double> scores(full.count);
+  for (size_t place = 0; place < full.count; ++place) {
+    auto choice = sized<crashrank_choice>();
     ASSERT_EQ(crashrank_ranking_get(ranking.get(), place, &choice, &error), CRASHRANK_OK);
     const crashrank_ranked& ranked = full.ranking[place];
     EXPECT_STREQ(crashrank_ranker_candidate_name(ranker.get(), ranked.candidate), choice.candidate);
@@ -53,30 +48,31 @@ TEST(CApi, ARankerAnswersAsRankDoesAndWithinABudgetSoundly) {
   }
 
   const uint64_t hash = full.hash;
-  crashrank_budget budget{};
+  auto budget = sized<crashrank_budget>();
   budget.work = 1;
-  crashrank_answer cut{};
+  auto cut = sized<crashrank_answer>();
   ASSERT_EQ(crashrank_ranker_rank(ranker.get(), &budget, &cut, &error), CRASHRANK_OK);
   EXPECT_EQ(cut.complete, 0);
-  ASSERT_EQ(cut.size, scores.size());
-  for (size_t place = 0; place < cut.size; ++place) {
+  ASSERT_EQ(cut.count, scores.size());
+  for (size_t place = 0; place < cut.count; ++place) {
     const crashrank_ranked& ranked = cut.ranking[place];
     EXPECT_LE(ranked.lowest_score, scores.at(ranked.candidate));
     EXPECT_GE(ranked.highest_score, scores.at(ranked.candidate));
   }
 
   // A deadline that is over leaves no time, not all of it.
-  crashrank_budget late{};
+  auto late = sized<crashrank_budget>();
   late.deadline_s = -1e-3;
-  crashrank_answer at_once{};
+  auto at_once = sized<crashrank_answer>();
   ASSERT_EQ(crashrank_ranker_rank(ranker.get(), &late, &at_once, &error), CRASHRANK_OK);
   EXPECT_EQ(at_once.complete, 0);
   late.deadline_s = NAN;
   EXPECT_EQ(crashrank_ranker_rank(ranker.get(), &late, &at_once, &error), CRASHRANK_USAGE);
 
   ASSERT_EQ(crashrank_ranker_update(ranker.get(), scenario.get(), &error), CRASHRANK_OK);
-  crashrank_answer again{};
-  ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &again, &error), CRASHRANK_OK);
+  auto again = sized<crashrank_answer>();
+  ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &again, &error), CRASHRANK_OK)
+      << error.message;
   EXPECT_EQ(again.hash, hash);
   EXPECT_EQ(crashrank_ranker_rank(nullptr, nullptr, &again, &error), CRASHRANK_USAGE);
   EXPECT_EQ(crashrank_ranker_candidate_name(ranker.get(), 1000), nullptr);
@@ -89,18 +85,18 @@ TEST(CApi, AnUpdateRefusesWhatCreateRefuses) {
   const auto situation = [&](double speed, double yaw_rate) {
     crashrank_scenario* made = nullptr;
     EXPECT_EQ(crashrank_scenario_create("limits", &made, &error), CRASHRANK_OK);
-    crashrank_scenario_add_model(made, "car", "car", 1500.0, &error);
-    crashrank_ego ego{};
+    crashrank_scenario_add_model(made, "car", CRASHRANK_KIND_CAR, 1500.0, &error);
+    auto ego = sized<crashrank_ego>();
     std::memcpy(ego.pose, identity, sizeof identity);
     ego.speed_mps = speed;
     crashrank_scenario_set_ego(made, &ego, &error);
-    crashrank_actor actor{};
+    auto actor = sized<crashrank_actor>();
     actor.name = "other";
     std::memcpy(actor.pose, identity, sizeof identity);
     actor.pose[3] = 30.0;
     actor.yaw_rate_radps = yaw_rate;
     crashrank_scenario_add_actor(made, &actor, &error);
-    crashrank_candidate straight{};
+    auto straight = sized<crashrank_candidate>();
     straight.name = "straight";
     crashrank_scenario_add_candidate(made, &straight, &error);
     return Scenario(made);
@@ -110,7 +106,7 @@ TEST(CApi, AnUpdateRefusesWhatCreateRefuses) {
   ASSERT_EQ(crashrank_ranker_create(good.get(), models.get(), nullptr, &made, &error), CRASHRANK_OK)
       << error.message;
   const Ranker ranker(made);
-  crashrank_answer answer{};
+  auto answer = sized<crashrank_answer>();
   ASSERT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &answer, &error), CRASHRANK_OK);
   const uint64_t hash = answer.hash;
   for (const auto& [speed, yaw_rate] :
@@ -135,34 +131,41 @@ TEST(CApi, AnUpdateChangesMotionsAndNotBodies) {
   struct Told {
     double horizon_s = 2.0;
     double mass_kg = 1500.0;
-    const char* kind = "car";
+    crashrank_body_kind kind = CRASHRANK_KIND_CAR;
     std::size_t actor_model = 0;
     std::size_t ego_model = 0;
     int actors = 1;
+    double grip = 0.8;
+    double pedestrian_weight = 1.0;
   };
   const auto situation = [&](const Told& told) {
     crashrank_scenario* made = nullptr;
     EXPECT_EQ(crashrank_scenario_create("bodies", &made, &error), CRASHRANK_OK);
-    crashrank_scenario_add_model(made, "first", "car", 1500.0, &error);
+    crashrank_scenario_add_model(made, "first", CRASHRANK_KIND_CAR, 1500.0, &error);
     crashrank_scenario_add_model(made, "second", told.kind, told.mass_kg, &error);
-    crashrank_ego ego{};
+    auto ego = sized<crashrank_ego>();
     ego.model = told.ego_model;
     std::memcpy(ego.pose, identity, sizeof identity);
     ego.speed_mps = 10.0;
     crashrank_scenario_set_ego(made, &ego, &error);
     for (int i = 0; i < told.actors; ++i) {
       const std::string name = "other " + std::to_string(i);
-      crashrank_actor actor{};
+      auto actor = sized<crashrank_actor>();
       actor.name = name.c_str();
       actor.model = told.actor_model;
       std::memcpy(actor.pose, identity, sizeof identity);
       actor.pose[3] = 30.0 + 20.0 * i;
       crashrank_scenario_add_actor(made, &actor, &error);
     }
-    crashrank_candidate straight{};
+    auto straight = sized<crashrank_candidate>();
     straight.name = "straight";
     crashrank_scenario_add_candidate(made, &straight, &error);
-    EXPECT_EQ(crashrank_scenario_set_horizon(made, told.horizon_s, 0.8, &error), CRASHRANK_OK);
+    EXPECT_EQ(crashrank_scenario_set_horizon(made, told.horizon_s, &error), CRASHRANK_OK);
+    EXPECT_EQ(crashrank_scenario_set_grip(made, told.grip, &error), CRASHRANK_OK);
+    auto harm = sized<crashrank_harm>();
+    EXPECT_EQ(crashrank_scenario_get_harm(made, &harm, &error), CRASHRANK_OK);
+    harm.weights_pedestrian = told.pedestrian_weight;
+    EXPECT_EQ(crashrank_scenario_set_harm(made, &harm, &error), CRASHRANK_OK);
     return Scenario(made);
   };
   const Scenario good = situation({});
@@ -174,10 +177,12 @@ TEST(CApi, AnUpdateChangesMotionsAndNotBodies) {
   const std::vector<std::pair<Told, const char*>> others{
       {{4.0}, "horizon_s"},
       {{2.0, 900.0}, "models"},
-      {{2.0, 1500.0, "pedestrian"}, "models"},
-      {{2.0, 1500.0, "car", 1}, "actors"},
-      {{2.0, 1500.0, "car", 0, 1}, "ego.model"},
-      {{2.0, 1500.0, "car", 0, 0, 2}, "actors"},
+      {{2.0, 1500.0, CRASHRANK_KIND_PEDESTRIAN}, "models"},
+      {{2.0, 1500.0, CRASHRANK_KIND_CAR, 1}, "actors"},
+      {{2.0, 1500.0, CRASHRANK_KIND_CAR, 0, 1}, "ego.model"},
+      {{2.0, 1500.0, CRASHRANK_KIND_CAR, 0, 0, 2}, "actors"},
+      {{2.0, 1500.0, CRASHRANK_KIND_CAR, 0, 0, 1, 0.4}, "grip"},
+      {{2.0, 1500.0, CRASHRANK_KIND_CAR, 0, 0, 1, 0.8, 2.0}, "harm"},
   };
   for (const auto& [told, place] : others) {
     const Scenario other = situation(told);

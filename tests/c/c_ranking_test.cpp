@@ -29,40 +29,41 @@ TEST(CApi, AScenarioThatDoesNotFitIsRefusedByRank) {
   crashrank_ranking* ranking = nullptr;
   EXPECT_EQ(crashrank_rank(scenario.get(), models.get(), nullptr, &ranking, &error),
             CRASHRANK_BAD_INPUT);
-  EXPECT_EQ(crashrank_scenario_add_model(scenario.get(), "car", "spaceship", 0, &error),
-            CRASHRANK_USAGE);
-  ASSERT_EQ(crashrank_scenario_add_model(scenario.get(), "car", "car", 0, &error), CRASHRANK_OK);
+  for (const crashrank_body_kind kind : {0, 10, -1, INT32_MIN, INT32_MAX}) {
+    EXPECT_EQ(crashrank_scenario_add_model(scenario.get(), "car", kind, 0, &error),
+              CRASHRANK_USAGE);
+    EXPECT_NE(std::strstr(error.message, "kind: is "), nullptr) << error.message;
+  }
+  ASSERT_EQ(crashrank_scenario_add_model(scenario.get(), "car", CRASHRANK_KIND_CAR, 0, &error),
+            CRASHRANK_OK);
   EXPECT_NE(crashrank_rank(scenario.get(), models.get(), nullptr, &ranking, &error), CRASHRANK_OK);
-  crashrank_body body{};
+  auto body = sized<crashrank_body>();
   EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 1, &body, &error), CRASHRANK_USAGE);
-  body.surface = "glass";
+  body.surface = 7;
   EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_USAGE);
   const double center_m[3] = {1.3, 0.0, 0.5};
-  body = crashrank_body{center_m, 2000.0, 0.0, "rubber"};
+  EXPECT_NE(std::strstr(error.message, "crashrank_body.surface"), nullptr) << error.message;
+  body = crashrank_body{sizeof body, center_m, 2000.0, 0.0, CRASHRANK_SURFACE_RUBBER};
   EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_OK);
   EXPECT_EQ(crashrank_scenario_set_ego_occupants(scenario.get(), 0.0, &error), CRASHRANK_OK);
   EXPECT_EQ(crashrank_scenario_set_actor_occupants(scenario.get(), 0, 2.0, &error),
             CRASHRANK_USAGE);
   EXPECT_EQ(crashrank_scenario_set_grid(scenario.get(), 102, 5, &error), CRASHRANK_USAGE);
-  crashrank_rank_options options{};
-  options.measure = "beauty";
+  auto options = sized<crashrank_rank_options>();
+  options.measure = 8;
   EXPECT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &ranking, &error),
             CRASHRANK_USAGE);
+  EXPECT_NE(std::strstr(error.message, "crashrank_rank_options.measure"), nullptr) << error.message;
   EXPECT_EQ(ranking, nullptr);
 }
 
 TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
   const std::string file = CRASHRANK_SCENARIOS "/crossing_traffic.json";
+  const auto [scenario, models] = load(file);
   crashrank_error error{};
-  crashrank_scenario* made = nullptr;
-  ASSERT_EQ(crashrank_scenario_load(file.c_str(), &made, &error), CRASHRANK_OK) << error.message;
-  const Scenario scenario(made);
-  const Models models = make_models();
-  ASSERT_EQ(crashrank_models_import_scenario(models.get(), scenario.get(), &error), CRASHRANK_OK)
-      << error.message;
   ASSERT_EQ(crashrank_models_size(models.get()), crashrank_scenario_model_count(scenario.get()));
-  crashrank_rank_options options{};
-  options.measure = "area";
+  auto options = sized<crashrank_rank_options>();
+  options.measure = CRASHRANK_MEASURE_AREA;
   options.json = 1;
   crashrank_ranking* answer = nullptr;
   ASSERT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &answer, &error), CRASHRANK_OK)
@@ -90,7 +91,7 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
   EXPECT_STREQ(crashrank_ranking_unit(ranking.get()), "m2");
   for (size_t place = 0; place < expected->ranking.size(); ++place) {
     const CandidateResult& wanted = expected->ranking[place];
-    crashrank_choice choice{};
+    auto choice = sized<crashrank_choice>();
     ASSERT_EQ(crashrank_ranking_get(ranking.get(), place, &choice, &error), CRASHRANK_OK);
     EXPECT_EQ(choice.candidate, expected->candidates[wanted.candidate].name);
     EXPECT_EQ(choice.score, *wanted.score);
@@ -113,7 +114,7 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
       EXPECT_EQ(choice.time_of_impact_s, wanted.contacts[0].time_of_impact_s);
     }
   }
-  crashrank_choice choice{};
+  auto choice = sized<crashrank_choice>();
   EXPECT_EQ(crashrank_ranking_get(ranking.get(), expected->ranking.size(), &choice, &error),
             CRASHRANK_USAGE);
   size_t shared = 0;
@@ -136,16 +137,12 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
 
 TEST(CApi, ContactsBetweenOthersAreTheLibrarys) {
   const std::string file = CRASHRANK_SCENARIOS "/pushed_onto_crossing.json";
+  const auto [scenario, models] = load(file);
   crashrank_error error{};
-  crashrank_scenario* made = nullptr;
-  ASSERT_EQ(crashrank_scenario_load(file.c_str(), &made, &error), CRASHRANK_OK) << error.message;
-  const Scenario scenario(made);
-  const Models models = make_models();
-  ASSERT_EQ(crashrank_models_import_scenario(models.get(), scenario.get(), &error), CRASHRANK_OK)
-      << error.message;
-  for (const char* measure : {"harm", "closing-energy"}) {
-    const bool by_harm = std::string(measure) == "harm";
-    crashrank_rank_options options{};
+  for (const crashrank_measure measure :
+       {CRASHRANK_MEASURE_HARM, CRASHRANK_MEASURE_CLOSING_ENERGY}) {
+    const bool by_harm = measure == CRASHRANK_MEASURE_HARM;
+    auto options = sized<crashrank_rank_options>();
     options.measure = measure;
     options.json = 1;
     crashrank_ranking* answer = nullptr;
@@ -158,7 +155,7 @@ TEST(CApi, ContactsBetweenOthersAreTheLibrarys) {
       size_t count = 0;
       for (const auto& wanted : json["ranking"][place]["contacts"]) {
         if (wanted.contains("other")) continue;  // the ego's
-        crashrank_further_contact contact{};
+        auto contact = sized<crashrank_further_contact>();
         ASSERT_EQ(crashrank_ranking_further(ranking.get(), place, count, &contact, &error),
                   CRASHRANK_OK);
         EXPECT_EQ(wanted["bodies"][0], contact.a);
@@ -175,7 +172,7 @@ TEST(CApi, ContactsBetweenOthersAreTheLibrarys) {
         ++count;
       }
       EXPECT_EQ(crashrank_ranking_further_count(ranking.get(), place), count);
-      crashrank_further_contact contact{};
+      auto contact = sized<crashrank_further_contact>();
       EXPECT_EQ(crashrank_ranking_further(ranking.get(), place, count, &contact, &error),
                 CRASHRANK_USAGE);
       all += count;
@@ -183,7 +180,7 @@ TEST(CApi, ContactsBetweenOthersAreTheLibrarys) {
     EXPECT_GT(all, 0U);
     const size_t size = crashrank_ranking_size(ranking.get());
     EXPECT_EQ(crashrank_ranking_further_count(ranking.get(), size), 0U);
-    crashrank_further_contact contact{};
+    auto contact = sized<crashrank_further_contact>();
     EXPECT_EQ(crashrank_ranking_further(ranking.get(), size, 0, &contact, nullptr),
               CRASHRANK_USAGE);
     EXPECT_EQ(crashrank_ranking_further(ranking.get(), 0, 0, nullptr, nullptr), CRASHRANK_USAGE);
@@ -217,25 +214,25 @@ double delta_v_of(double told_kg, double stored_kg, const crashrank::StatedMass&
   crashrank_scenario* made = nullptr;
   EXPECT_EQ(crashrank_scenario_create("mass", &made, &error), CRASHRANK_OK);
   const Scenario scenario(made);
-  crashrank_scenario_add_model(scenario.get(), "ego", "car", told_kg, &error);
-  crashrank_scenario_add_model(scenario.get(), "other", "car", 1500.0, &error);
+  crashrank_scenario_add_model(scenario.get(), "ego", CRASHRANK_KIND_CAR, told_kg, &error);
+  crashrank_scenario_add_model(scenario.get(), "other", CRASHRANK_KIND_CAR, 1500.0, &error);
   if (body != nullptr) {
     // Both shapes are of the one file.
     crashrank_scenario_set_body(scenario.get(), 0, body, &error);
     crashrank_scenario_set_body(scenario.get(), 1, body, &error);
   }
-  crashrank_ego ego{};
+  auto ego = sized<crashrank_ego>();
   std::memcpy(ego.pose, identity, sizeof identity);
   ego.speed_mps = 10.0;
   EXPECT_EQ(crashrank_scenario_set_ego(scenario.get(), &ego, &error), CRASHRANK_OK);
-  crashrank_actor actor{};
+  auto actor = sized<crashrank_actor>();
   actor.name = "stands";
   actor.model = 1;
   std::memcpy(actor.pose, identity, sizeof identity);
   actor.pose[3] = 8.0;
   actor.pose[7] = 0.8;
   EXPECT_EQ(crashrank_scenario_add_actor(scenario.get(), &actor, &error), CRASHRANK_OK);
-  crashrank_candidate straight{};
+  auto straight = sized<crashrank_candidate>();
   straight.name = "straight";
   EXPECT_EQ(crashrank_scenario_add_candidate(scenario.get(), &straight, &error), CRASHRANK_OK);
   EXPECT_EQ(crashrank_scenario_set_grid(scenario.get(), 0, 0, &error), CRASHRANK_OK);
@@ -244,24 +241,24 @@ double delta_v_of(double told_kg, double stored_kg, const crashrank::StatedMass&
   EXPECT_EQ(crashrank_models_load(models.get(), file.c_str(), &error), CRASHRANK_OK);
   EXPECT_EQ(crashrank_models_load(models.get(), file.c_str(), &error), CRASHRANK_OK);
   std::remove(file.c_str());
-  crashrank_rank_options options{};
-  options.measure = "delta-v";
+  auto options = sized<crashrank_rank_options>();
+  options.measure = CRASHRANK_MEASURE_DELTA_V;
   crashrank_ranking* answer = nullptr;
   EXPECT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &answer, &error), CRASHRANK_OK)
       << error.message;
   const Ranking ranking(answer);
-  crashrank_choice choice{};
+  auto choice = sized<crashrank_choice>();
   EXPECT_EQ(crashrank_ranking_get(ranking.get(), 0, &choice, &error), CRASHRANK_OK);
 
-  crashrank_ranker_options how{};
-  how.measure = "delta-v";
+  auto how = sized<crashrank_ranker_options>();
+  how.measure = CRASHRANK_MEASURE_DELTA_V;
   crashrank_ranker* prepared = nullptr;
   EXPECT_EQ(crashrank_ranker_create(scenario.get(), models.get(), &how, &prepared, &error),
             CRASHRANK_OK);
   const Ranker ranker(prepared);
-  crashrank_answer best{};
+  auto best = sized<crashrank_answer>();
   EXPECT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &best, &error), CRASHRANK_OK);
-  EXPECT_EQ(best.size, 1U);
+  EXPECT_EQ(best.count, 1U);
   EXPECT_EQ(best.ranking[0].lowest_score, choice.score);
   EXPECT_EQ(best.ranking[0].highest_score, choice.score);
   return choice.score;
@@ -277,7 +274,7 @@ TEST(CApi, TheMassThatAModelFileTellsCountsWhereTheScenarioGivesNone) {
 TEST(CApi, CentreAndInertiaOfAModelFileCountWhereTheScenarioGivesNone) {
   const crashrank::StatedMass of_file{std::nullopt, Eigen::Vector3d(0.5, 0.3, 0.6), 900.0};
   const double center_m[3] = {0.5, 0.3, 0.6};
-  const crashrank_body body{center_m, 900.0, 0.0, nullptr};
+  const crashrank_body body{sizeof body, center_m, 900.0, 0.0, 0};
   const double stated = delta_v_of(1500.0, 0.0, of_file);
   EXPECT_EQ(stated, delta_v_of(1500.0, 0.0, {}, &body));
   const crashrank::StatedMass other{std::nullopt, Eigen::Vector3d(-0.5, 0.0, 0.6), 2000.0};

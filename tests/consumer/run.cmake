@@ -1,6 +1,6 @@
 # Builds the project tests/consumer/${KIND} from nothing and runs its programs: all of them, built
-# with whatever flags, have to print the same answer. "installed" is built against PREFIX, where
-# BUILD is installed to first unless a prefix is given.
+# with whatever flags, have to print the same answer. "installed" is built against PREFIX; unless one
+# is given, BUILD is installed and the prefix then moved.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output
     ERROR_VARIABLE output)
@@ -12,8 +12,10 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 if(KIND STREQUAL "installed")
   if(NOT PREFIX)
-    set(PREFIX ${WORK}/prefix)
-    run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
+    run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed)
+    set(PREFIX ${WORK}/moved/prefix)
+    file(MAKE_DIRECTORY ${WORK}/moved)
+    file(RENAME ${WORK}/installed ${PREFIX})
   endif()
   file(GLOB_RECURSE pc_file ${PREFIX}/*/crashrank.pc)
   get_filename_component(pc_dir "${pc_file}" DIRECTORY)
@@ -51,24 +53,33 @@ if(first STREQUAL "")
   message(FATAL_ERROR "no program answered")
 endif()
 
-# Without CMake: what pkg-config says is enough to compile and link, wherever the prefix is.
+# Without CMake: what pkg-config says is enough to compile and link, wherever the prefix is, and
+# unquoted: a shell splits it at spaces alone, make hands it to a shell.
 if(KIND STREQUAL "installed")
-  separate_arguments(flags UNIX_COMMAND "${FLAGS}")
-  function(pkg_config out)
-    execute_process(COMMAND pkg-config ${ARGN} OUTPUT_VARIABLE said ERROR_VARIABLE trouble
-      RESULT_VARIABLE status)
-    if(NOT status EQUAL 0)
-      message(FATAL_ERROR "pkg-config ${ARGN}: ${trouble}")
-    endif()
-    separate_arguments(said UNIX_COMMAND "${said}")
-    set(${out} ${said} PARENT_SCOPE)
+  set(ranking ${SOURCE}/tests/consumer/installed/ranking.c)
+  set(example ${SOURCE}/apps/examples/first_choice)
+  set(bin ${WORK}/build/bin)
+  function(compile package compiler source program)
+    run(sh -c "${compiler} ${FLAGS} $(pkg-config --cflags ${package}) '${source}' \
+      $(pkg-config --libs ${package}) -o '${program}'")
   endfunction()
-  set(consumer ${SOURCE}/tests/consumer/installed)
-  pkg_config(library --cflags --libs crashrank)
-  run(cc -std=c11 ${flags} ${consumer}/ranking.c ${library} -o ${WORK}/build/bin/ranking_pkgconfig_c)
-  pkg_config(import --cflags --libs crashrank-import)
-  run(${COMPILER} -std=c++17 ${flags} ${SOURCE}/apps/examples/first_choice.cpp ${import}
-    -o ${WORK}/build/bin/example_first_choice_pkgconfig)
+  compile(crashrank "cc -std=c11" ${ranking} ${bin}/ranking_pkgconfig_c)
+  compile(crashrank-import "cc -std=c11" ${example}.c ${bin}/example_first_choice_pkgconfig_c)
+  compile(crashrank-import "${COMPILER} -std=c++17" ${example}.cpp
+    ${bin}/example_first_choice_pkgconfig)
+  file(WRITE ${WORK}/Makefile "\
+CFLAGS = -std=c11 ${FLAGS} $(shell pkg-config --cflags crashrank-import)
+CXXFLAGS = -std=c++17 ${FLAGS} $(shell pkg-config --cflags crashrank-import)
+LDLIBS = $(shell pkg-config --libs crashrank-import)
+all: ${bin}/ranking_make_c ${bin}/example_first_choice_make_c ${bin}/example_first_choice_make
+${bin}/ranking_make_c: ${ranking}
+\t$(CC) $(CFLAGS) $< $(LDLIBS) -o $@
+${bin}/example_first_choice_make_c: ${example}.c
+\t$(CC) $(CFLAGS) $< $(LDLIBS) -o $@
+${bin}/example_first_choice_make: ${example}.cpp
+\t$(CXX) $(CXXFLAGS) $< $(LDLIBS) -o $@
+")
+  run(make -f ${WORK}/Makefile CC=cc CXX=${COMPILER})
 endif()
 
 # The rankings' closed form stands in ranking.cpp.
@@ -99,13 +110,9 @@ if(KIND STREQUAL "installed")
   endif()
   string(JSON first_choice GET "${ranking}" ranking 0 candidate)
   file(GLOB programs ${WORK}/build/bin/example_first_choice*)
+  # Every program finds the importer of the moved prefix by itself.
+  unset(ENV{CRASHRANK_IMPORTER})
   foreach(program ${programs})
-    # The package tells C++ where the importer is; a C program of a moved package is told so.
-    set(ENV{CRASHRANK_IMPORTER} "")
-    if(program MATCHES "_c$")
-      file(GLOB_RECURSE importer ${PREFIX}/*/crashrank-import)
-      set(ENV{CRASHRANK_IMPORTER} ${importer})
-    endif()
     execute_process(COMMAND ${program} ${scenario}
       RESULT_VARIABLE status OUTPUT_VARIABLE choice ERROR_VARIABLE trouble)
     if(NOT status EQUAL 0)

@@ -12,11 +12,6 @@
 
 namespace crashrank {
 
-/// Where the package found by CMake keeps crashrank-import; find_package sets it.
-#ifndef CRASHRANK_PACKAGE_IMPORTER
-#define CRASHRANK_PACKAGE_IMPORTER ""
-#endif
-
 /// Bounds on what a stranger's file may cost.
 struct ImportLimits {
   std::size_t file_bytes = std::size_t{512} << 20;    ///< of the mesh, and of each file it names
@@ -33,8 +28,11 @@ struct ImportLimits {
 struct ImportOptions {
   ImportTransform transform;  ///< from file to body coordinates
   ImportLimits limits;        ///< what is refused
-  std::string importer;       ///< path of the crashrank-import program; empty: found as told below
-  std::string package_importer = CRASHRANK_PACKAGE_IMPORTER;  ///< one more place to look
+  std::string importer;  ///< path of the crashrank-import program; empty: searched as stated below
+  /// Path of a header of the installation that the caller was compiled against. A static library
+  /// has no place of its own from which it could find the importer, but its headers have: this
+  /// follows a moved prefix without a compile definition. Ignored unless absolute.
+  std::string header = __FILE__;
 };
 
 /// A mesh with what had to be said about its file.
@@ -61,9 +59,9 @@ struct ImportedMesh {
 ///
 /// The parser runs in a process of its own, with the limits above, and opens no file outside the
 /// mesh's folder; what comes back is checked before it is believed. That program, crashrank-import,
-/// is `options.importer`, else the environment's CRASHRANK_IMPORTER, else the one beside the
-/// running executable, else `options.package_importer`, else the one at the prefix that crashrank
-/// was configured for.
+/// is `options.importer`, else the environment's CRASHRANK_IMPORTER, else the first that exists of:
+/// beside the running executable, in the installation of that executable, of the shared library,
+/// of `options.header`, and at the prefix that crashrank was configured for.
 ///
 /// Blocks until that process has ended. Safe from any thread.
 /// Errors: usage (transform), not_found, bad_input, limit_exceeded, out_of_memory; internal when

@@ -45,19 +45,22 @@ int main(void) {
   memset(&ego, 0, sizeof ego);
   memset(&wall, 0, sizeof wall);
   memset(&options, 0, sizeof options);
+  ego.size = sizeof ego;
+  wall.size = sizeof wall;
+  options.size = sizeof options;
   ego.speed_mps = 10.0;
   stand_at(ego.pose, 0.0);
   wall.name = "wall";
   wall.model = 1;
   stand_at(wall.pose, 11.0);
-  options.measure = "closing-energy";
+  options.measure = CRASHRANK_MEASURE_CLOSING_ENERGY;
 
   if (crashrank_models_create(&models, &error) != CRASHRANK_OK ||
       add_box(models, -1.0F, 4.0F, 0.9F, 1.5F, &error) != CRASHRANK_OK ||
       add_box(models, 0.0F, 1.0F, 5.0F, 3.0F, &error) != CRASHRANK_OK ||
       crashrank_scenario_create("wall", &scenario, &error) != CRASHRANK_OK ||
-      crashrank_scenario_add_model(scenario, "car", "car", 1500.0, &error) != CRASHRANK_OK ||
-      crashrank_scenario_add_model(scenario, "wall", "building", 0.0, &error) != CRASHRANK_OK ||
+      crashrank_scenario_add_model(scenario, "car", CRASHRANK_KIND_CAR, 1500.0, &error) != CRASHRANK_OK ||
+      crashrank_scenario_add_model(scenario, "wall", CRASHRANK_KIND_BUILDING, 0.0, &error) != CRASHRANK_OK ||
       crashrank_scenario_set_ego(scenario, &ego, &error) != CRASHRANK_OK ||
       crashrank_scenario_add_actor(scenario, &wall, &error) != CRASHRANK_OK) {
     return failed(&error);
@@ -65,6 +68,7 @@ int main(void) {
   for (i = 0; i < 3; ++i) {
     crashrank_candidate candidate;
     memset(&candidate, 0, sizeof candidate);
+    candidate.size = sizeof candidate;
     candidate.name = names[i];
     candidate.acceleration_mps2 = -braking[i];
     if (crashrank_scenario_add_candidate(scenario, &candidate, &error) != CRASHRANK_OK) {
@@ -76,6 +80,7 @@ int main(void) {
   }
   for (i = 0; i < crashrank_ranking_size(ranking); ++i) {
     crashrank_choice choice;
+    choice.size = sizeof choice;
     if (crashrank_ranking_get(ranking, i, &choice, &error) != CRASHRANK_OK) return failed(&error);
     printf("%s: %.1f k%s\n", choice.candidate, choice.score / 1e3, crashrank_ranking_unit(ranking));
   }
