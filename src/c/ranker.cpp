@@ -57,13 +57,40 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
   if (scenario.ego.model != prepared.ego.model) return other("ego.model");
   if (scenario.ego.occupants != prepared.ego.occupants) return other("ego.occupants");
   const auto same_actor = [](const ScenarioActor& a, const ScenarioActor& b) {
-    return a.model == b.model && a.occupants == b.occupants;
+    return a.model == b.model && a.occupants == b.occupants &&
+           a.predictions.size() == b.predictions.size() &&
+           a.existence_probability == b.existence_probability;
   };
   if (!std::equal(scenario.actors.begin(), scenario.actors.end(), prepared.actors.begin(),
                   prepared.actors.end(), same_actor)) {
     return other("actors");
   }
+  const auto same_future = [](const JointFuture& a, const JointFuture& b) {
+    const auto same_motion = [](const FutureMotion& p, const FutureMotion& q) {
+      return p.actor == q.actor;
+    };
+    return a.probability == b.probability &&
+           std::equal(a.motions.begin(), a.motions.end(), b.motions.begin(), b.motions.end(),
+                      same_motion);
+  };
+  if (!std::equal(scenario.futures.begin(), scenario.futures.end(), prepared.futures.begin(),
+                  prepared.futures.end(), same_future)) {
+    return other("futures");
+  }
+  if (risk_name(scenario.risk) != risk_name(prepared.risk)) return other("risk");
   return Success{};
+}
+
+/// By plan: a scenario without joint futures.
+std::vector<double> plan_probabilities(const Scenario& scenario) {
+  std::vector<double> probabilities;
+  for (const ScenarioActor& actor : scenario.actors) {
+    if (actor.predictions.empty()) probabilities.push_back(1.0);
+    for (const Prediction& prediction : actor.predictions) {
+      probabilities.push_back(prediction.probability);
+    }
+  }
+  return probabilities;
 }
 
 /// The candidates and motions of a scenario. Errors: bad_input; usage for other bodies.
@@ -79,14 +106,15 @@ Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
                           " candidates, more than the ranker's most_candidates",
                       "raise it, or leave fewer");
   }
-  std::vector<Motion> motions;
-  for (const ScenarioActor& actor : scenario.actors) {
-    Result<Motion> motion = make_motion(actor);
-    if (!motion) return motion.error();
-    motions.push_back(std::move(*motion));
-  }
+  const Result<std::vector<Motion>> motions = plan_motions(scenario);
+  if (!motions) return motions.error();
   ranker.told.reserve(candidates->size());
-  if (Status moved = ranker.ranker.move_actors(scenario.ego.pose, motions); !moved) return moved;
+  if (Status moved = ranker.ranker.move_actors(scenario.ego.pose, *motions); !moved) return moved;
+  if (scenario.futures.empty()) {
+    if (Status weighed = ranker.ranker.weigh_plans(plan_probabilities(scenario)); !weighed) {
+      return weighed;
+    }
+  }
   ranker.candidates = std::move(*candidates);
   return Success{};
 }

@@ -294,6 +294,16 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
   });
 }
 
+Result<std::vector<Motion>> plan_motions(const Scenario& scenario) {
+  return detail::guarded([&]() -> Result<std::vector<Motion>> {
+    Result<detail::Futures> futures = detail::Futures::make(scenario, 1);
+    if (!futures) return futures.error();
+    std::vector<Motion> motions;
+    for (detail::Plan& plan : futures->plans) motions.push_back(std::move(plan.motion));
+    return motions;
+  });
+}
+
 std::vector<Ranker::Plan> Ranker::plans() const {
   std::vector<Plan> plans;
   for (const detail::Plan& plan : state_->scene.futures.plans) {

@@ -188,7 +188,7 @@ TEST(RankerProperty, IntervalsHoldWhereOneCrashLeadsToOthers) {
 TEST(RankerProperty, IntervalsHoldOverFuturesThatAreNotEvaluatedYet) {
   const std::uint64_t seed = first_seed(1700);
   const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 8);
-  const std::uint64_t scenes = scenes_to_try(6);
+  const std::uint64_t scenes = scenes_to_try(4);
   constexpr std::array<const char*, 4> risks{"expected", "cvar:0.8", "worst", "quantile:0.6"};
   Widths widths;
   std::size_t outcomes = 0;

@@ -87,6 +87,10 @@ struct RankerAnswer {
   std::uint64_t hash = 0;
 };
 
+/// The motions of a scenario's plans, in the order of `Ranker::plans`. Errors: bad_input for poses
+/// out of order or motions beyond `scenario_limits`.
+CRASHRANK_API Result<std::vector<Motion>> plan_motions(const Scenario& scenario);
+
 /// Ranks candidates against a deadline, in memory set aside beforehand.
 ///
 /// Every candidate carries an interval that holds its final score. Refined are first those that can
