@@ -173,8 +173,7 @@ Result<ImportedMesh> import_file(const std::string& path, const ImportOptions& o
   if (!extension) return extension.error();
   const Result<MeshFile> file = open_mesh(path, options.limits);
   if (!file) return file.error();
-  const Result<std::string> importer =
-      detail::find_importer(options.importer, options.header);
+  const Result<std::string> importer = detail::find_importer(options.importer, options.header);
   if (!importer) return importer.error();
 
   const ImportLimits& limits = options.limits;
