@@ -261,6 +261,44 @@ CRASHRANK_API crashrank_status crashrank_scenario_add_actor(crashrank_scenario* 
                                                             const crashrank_actor* actor,
                                                             crashrank_error* error);
 
+/// A motion that an actor may follow.
+typedef struct crashrank_motion {
+  size_t size;                        ///< sizeof(crashrank_motion)
+  double pose[16];                    ///< body to world
+  double speed_mps;                   ///< along its forward axis
+  double acceleration_mps2;           ///< against the speed it brakes, until standstill
+  double yaw_rate_radps;              ///< held while it moves
+  const crashrank_timed_pose* poses;  ///< where there are any, they determine the whole motion
+  size_t pose_count;                  ///< 0: they are not read
+} crashrank_motion;
+/// Adds one of the motions that the actor with that index follows with a probability above 0, in
+/// place of its own; those of an actor sum to 1, which crashrank_rank checks. Errors: usage;
+/// bad_input for a pose that is no rigid motion.
+CRASHRANK_API crashrank_status crashrank_scenario_add_prediction(crashrank_scenario* scenario,
+                                                                 size_t actor, double probability,
+                                                                 const crashrank_motion* motion,
+                                                                 crashrank_error* error);
+/// Sets the probability that the actor with that index is there at all, 0 to 1. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_set_existence(crashrank_scenario* scenario,
+                                                                size_t actor, double probability,
+                                                                crashrank_error* error);
+/// Adds a joint future of all actors, in place of predictions; its index is the number added
+/// before. Their probabilities sum to 1, which crashrank_rank checks. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_add_future(crashrank_scenario* scenario,
+                                                             double probability,
+                                                             crashrank_error* error);
+/// Sets the motion of an actor in the future with that index, at most once; without one it follows
+/// its own. Errors: usage; bad_input for a pose that is no rigid motion.
+CRASHRANK_API crashrank_status crashrank_scenario_add_future_motion(crashrank_scenario* scenario,
+                                                                    size_t future, size_t actor,
+                                                                    const crashrank_motion* motion,
+                                                                    crashrank_error* error);
+/// Sets how the scores of several futures become one: "expected" (the default), "worst", "cvar:X"
+/// or "quantile:X" with X above 0 and below 1. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_set_risk(crashrank_scenario* scenario,
+                                                           const char* risk,
+                                                           crashrank_error* error);
+
 /// Number of persons in the ego, 0 to 1000; below 0: the default. Errors: usage for NULL.
 CRASHRANK_API crashrank_status crashrank_scenario_set_ego_occupants(crashrank_scenario* scenario,
                                                                     double persons,
@@ -532,8 +570,9 @@ typedef struct crashrank_ranked {
   double highest_score;      ///< and its upper end
   double time_of_impact_s;   ///< from now
   double closing_speed_mps;  ///< of the points that meet; see CRASHRANK_FASTEST_CRASH_MPS
-  int32_t in_race;           ///< can still be first
-  int32_t collides;          ///< as far as it is known
+  double collision_probability;  ///< over all futures, as far as it is known
+  int32_t in_race;               ///< can still be first
+  int32_t collides;              ///< in the likeliest future, as far as it is known
 } crashrank_ranked;
 
 /// What was known in time. `ranking`, most promising first, is the ranker's until its next call.

@@ -204,6 +204,7 @@ crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank
       told.highest_score = one.interval.highest;
       told.time_of_impact_s = one.collides ? one.time_of_impact_s : unknown;
       told.closing_speed_mps = one.collides ? one.closing_speed_mps : unknown;
+      told.collision_probability = one.collision_probability;
       told.in_race = one.in_race ? 1 : 0;
       told.collides = one.collides ? 1 : 0;
       ranker->told.push_back(told);

@@ -1,5 +1,6 @@
 #include "c/enums.hpp"
 #include "c/handles.hpp"
+#include "c/motions.hpp"
 #include "c/sized.hpp"
 
 #include <cmath>
@@ -26,22 +27,6 @@ crashrank_status give(Result<Scenario> made, crashrank_scenario** scenario,
 /// Persons as the scenario has them: below 0 nothing is set.
 std::optional<double> to_occupants(double persons) {
   return persons < 0.0 ? std::nullopt : std::optional<double>(persons);
-}
-
-/// Timed poses; `member` names them in errors.
-Result<std::vector<TimedPose>> to_poses(const crashrank_timed_pose* poses, std::size_t count,
-                                        const std::string& member) {
-  std::vector<TimedPose> made;
-  if (count > scenario_limits::poses) {
-    return make_error(ErrorCode::limit_exceeded, "a motion has at most 10000 poses");
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const Result<Pose> pose =
-        c::to_pose(poses[i].pose, member + "[" + std::to_string(i) + "].pose");
-    if (!pose) return pose.error();
-    made.push_back({poses[i].time_s, *pose});
-  }
-  return made;
 }
 
 }  // namespace
@@ -182,22 +167,12 @@ crashrank_status crashrank_scenario_add_actor(crashrank_scenario* scenario,
     const Result<crashrank_actor> given = c::read_sized("crashrank_actor", *actor);
     if (!given) return refuse(given.error(), error);
     if (given->name == nullptr) return refuse_null("crashrank_actor.name", error);
-    if (given->poses == nullptr && given->pose_count > 0) {
-      return refuse_null("crashrank_actor.poses", error);
-    }
-    const Result<Pose> pose = c::to_pose(given->pose, "crashrank_actor.pose");
-    if (!pose) return refuse(pose.error(), error);
-    Result<std::vector<TimedPose>> poses =
-        to_poses(given->poses, given->pose_count, "crashrank_actor.poses");
-    if (!poses) return refuse(poses.error(), error);
+    Result<ActorMotion> motion = c::to_motion(*given, "crashrank_actor");
+    if (!motion) return refuse(motion.error(), error);
     ScenarioActor made;
+    static_cast<ActorMotion&>(made) = std::move(*motion);
     made.name = given->name;
     made.model = given->model;
-    made.pose = *pose;
-    made.speed_mps = given->speed_mps;
-    made.acceleration_mps2 = given->acceleration_mps2;
-    made.yaw_rate_radps = given->yaw_rate_radps;
-    made.poses = std::move(*poses);
     scenario->scenario.actors.push_back(std::move(made));
     return CRASHRANK_OK;
   });
@@ -217,7 +192,7 @@ crashrank_status crashrank_scenario_add_candidate(crashrank_scenario* scenario,
       return refuse_null("crashrank_candidate.poses", error);
     }
     Result<std::vector<TimedPose>> poses =
-        to_poses(given->poses, given->pose_count, "crashrank_candidate.poses");
+        c::to_poses(given->poses, given->pose_count, "crashrank_candidate.poses");
     if (!poses) return refuse(poses.error(), error);
     ListedCandidate made;
     made.name = given->name;

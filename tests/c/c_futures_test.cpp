@@ -1,0 +1,169 @@
+#include "c/c_objects.hpp"
+#include "crashrank/crashrank.hpp"
+#include "crashrank/scenario/scenario_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace c_objects;
+
+namespace {
+
+const std::string file = CRASHRANK_SCENARIOS "/pushed_onto_crossing.json";
+constexpr double walks_mps = 1.4;
+
+/// The pedestrian at his place at another speed.
+crashrank_motion walking(double speed_mps) {
+  auto motion = sized<crashrank_motion>();
+  const std::array<double, 16> pose{0, -1, 0, 20.4, 1, 0, 0, -1.5, 0, 0, 1, 0, 0, 0, 0, 1};
+  std::copy(pose.begin(), pose.end(), motion.pose);
+  motion.speed_mps = speed_mps;
+  return motion;
+}
+
+using Scores = std::map<std::string, double>;
+
+Scores scores_in_c(const Loaded& loaded) {
+  crashrank_error error{};
+  auto options = sized<crashrank_rank_options>();
+  crashrank_ranking* made = nullptr;
+  EXPECT_EQ(crashrank_rank(loaded.scenario.get(), loaded.models.get(), &options, &made, &error),
+            CRASHRANK_OK)
+      << error.message;
+  const Ranking ranking(made);
+  Scores scores;
+  for (size_t i = 0; i < crashrank_ranking_size(made); ++i) {
+    auto choice = sized<crashrank_choice>();
+    EXPECT_EQ(crashrank_ranking_get(made, i, &choice, &error), CRASHRANK_OK);
+    scores[choice.candidate] = choice.score;
+  }
+  return scores;
+}
+
+/// The same in C++, with the pedestrian's predictions.
+Scores scores_in_cpp(const std::vector<std::pair<double, double>>& predictions,
+                     const char* risk = "expected") {
+  auto scenario = *crashrank::load_scenario_file(file);
+  const auto models = *crashrank::load_scenario_models(scenario);
+  crashrank::ScenarioActor& actor = scenario.actors.front();
+  for (const auto& [probability, speed] : predictions) {
+    crashrank::Prediction prediction;
+    static_cast<crashrank::ActorMotion&>(prediction) = actor;
+    prediction.pose.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    prediction.speed_mps = speed;
+    prediction.probability = probability;
+    actor.predictions.push_back(prediction);
+  }
+  scenario.risk = *crashrank::risk_from_name(risk);
+  const auto ranked = *crashrank::rank(scenario, models);
+  Scores scores;
+  for (const auto& each : ranked.ranking) {
+    scores[ranked.candidates[each.candidate].name] = *each.score;
+  }
+  return scores;
+}
+
+crashrank_status predict(crashrank_scenario* scenario, double probability, double speed_mps) {
+  const crashrank_motion motion = walking(speed_mps);
+  return crashrank_scenario_add_prediction(scenario, 0, probability, &motion, nullptr);
+}
+
+TEST(CApi, PredictionsScoreAsInCpp) {
+  for (const char* risk : {"expected", "worst", "cvar:0.5"}) {
+    SCOPED_TRACE(risk);
+    const Loaded loaded = load(file);
+    ASSERT_EQ(predict(loaded.scenario.get(), 0.7, walks_mps), CRASHRANK_OK);
+    ASSERT_EQ(predict(loaded.scenario.get(), 0.3, 0.0), CRASHRANK_OK);
+    ASSERT_EQ(crashrank_scenario_set_risk(loaded.scenario.get(), risk, nullptr), CRASHRANK_OK);
+    EXPECT_EQ(scores_in_c(loaded), scores_in_cpp({{0.7, walks_mps}, {0.3, 0.0}}, risk));
+  }
+}
+
+TEST(CApi, FuturesAndAbsenceAreTheWeightedSums) {
+  const Scores walks = scores_in_c(load(file));
+  const Loaded absent = load(file);
+  ASSERT_EQ(crashrank_scenario_set_existence(absent.scenario.get(), 0, 0.0, nullptr), CRASHRANK_OK);
+  const Scores without = scores_in_c(absent);
+  const Loaded perhaps = load(file);
+  ASSERT_EQ(crashrank_scenario_set_existence(perhaps.scenario.get(), 0, 0.25, nullptr),
+            CRASHRANK_OK);
+  for (const auto& [name, score] : scores_in_c(perhaps)) {
+    EXPECT_NEAR(score, 0.25 * walks.at(name) + 0.75 * without.at(name), 1e-12) << name;
+  }
+  EXPECT_NE(walks, without);
+
+  const Loaded joint = load(file);
+  crashrank_scenario* const scenario = joint.scenario.get();
+  ASSERT_EQ(crashrank_scenario_add_future(scenario, 0.4, nullptr), CRASHRANK_OK);
+  ASSERT_EQ(crashrank_scenario_add_future(scenario, 0.6, nullptr), CRASHRANK_OK);
+  const crashrank_motion stands = walking(0.0);
+  ASSERT_EQ(crashrank_scenario_add_future_motion(scenario, 1, 0, &stands, nullptr), CRASHRANK_OK);
+  const Scores waits = scores_in_cpp({{1.0, 0.0}});
+  for (const auto& [name, score] : scores_in_c(joint)) {
+    EXPECT_NEAR(score, 0.4 * walks.at(name) + 0.6 * waits.at(name), 1e-12) << name;
+  }
+}
+
+TEST(CApi, ARankerWeighsPredictionsAnew) {
+  const Loaded loaded = load(file);
+  ASSERT_EQ(predict(loaded.scenario.get(), 0.7, walks_mps), CRASHRANK_OK);
+  ASSERT_EQ(predict(loaded.scenario.get(), 0.3, 0.0), CRASHRANK_OK);
+  crashrank_error error{};
+  crashrank_ranker* made = nullptr;
+  ASSERT_EQ(
+      crashrank_ranker_create(loaded.scenario.get(), loaded.models.get(), nullptr, &made, &error),
+      CRASHRANK_OK)
+      << error.message;
+  const Ranker ranker(made);
+  const Loaded later = load(file);
+  ASSERT_EQ(predict(later.scenario.get(), 0.2, walks_mps), CRASHRANK_OK);
+  ASSERT_EQ(predict(later.scenario.get(), 0.8, 0.5), CRASHRANK_OK);
+  ASSERT_EQ(crashrank_ranker_update(made, later.scenario.get(), &error), CRASHRANK_OK)
+      << error.message;
+  auto answer = sized<crashrank_answer>();
+  ASSERT_EQ(crashrank_ranker_rank(made, nullptr, &answer, &error), CRASHRANK_OK);
+  ASSERT_EQ(answer.complete, 1);
+  const Scores expected = scores_in_cpp({{0.2, walks_mps}, {0.8, 0.5}});
+  for (size_t i = 0; i < answer.count; ++i) {
+    const crashrank_ranked& ranked = answer.ranking[i];
+    EXPECT_EQ(ranked.score, expected.at(crashrank_ranker_candidate_name(made, ranked.candidate)));
+    EXPECT_GT(ranked.collision_probability, 0.0);
+  }
+  EXPECT_EQ(crashrank_ranker_update(made, load(file).scenario.get(), &error), CRASHRANK_USAGE);
+}
+
+TEST(CApi, WhatIsNoPredictionIsRefused) {
+  const Loaded loaded = load(file);
+  crashrank_scenario* const scenario = loaded.scenario.get();
+  crashrank_error error{};
+  const crashrank_motion motion = walking(1.0);
+  const auto says = [&error](const char* words) {
+    return std::strstr(error.message, words) != nullptr;
+  };
+  EXPECT_EQ(crashrank_scenario_add_prediction(scenario, 99, 1.0, &motion, &error), CRASHRANK_USAGE);
+  EXPECT_TRUE(says("no such actor")) << error.message;
+  EXPECT_EQ(crashrank_scenario_add_prediction(scenario, 0, 1.0, nullptr, &error), CRASHRANK_USAGE);
+  EXPECT_TRUE(says("motion: is NULL")) << error.message;
+  crashrank_motion unset = motion;
+  unset.size = 0;
+  EXPECT_EQ(crashrank_scenario_add_prediction(scenario, 0, 1.0, &unset, &error), CRASHRANK_USAGE);
+  EXPECT_TRUE(says("crashrank_motion.size")) << error.message;
+  EXPECT_EQ(crashrank_scenario_add_future_motion(scenario, 0, 0, &motion, &error), CRASHRANK_USAGE);
+  EXPECT_TRUE(says("no such future")) << error.message;
+  EXPECT_EQ(crashrank_scenario_set_risk(scenario, "median", &error), CRASHRANK_USAGE);
+  EXPECT_TRUE(says("'median' is not a risk measure")) << error.message;
+  ASSERT_EQ(predict(scenario, 0.5, 1.0), CRASHRANK_OK);
+  crashrank_ranking* ranking = nullptr;
+  EXPECT_EQ(crashrank_rank(scenario, loaded.models.get(), nullptr, &ranking, &error),
+            CRASHRANK_BAD_INPUT);
+  EXPECT_TRUE(says("actors[0].predictions: has probabilities that sum to 0.5")) << error.message;
+}
+
+}  // namespace
