@@ -50,6 +50,7 @@
 #include "crashrank/scenario/harm_options.hpp"
 #include "crashrank/scenario/measure.hpp"
 #include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/risk.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 #include "crashrank/tree/build.hpp"

@@ -79,9 +79,10 @@ private:
     if (!scenario_.description.empty()) {
       out_ += "<p>" + escape_xml(scenario_.description) + "</p>\n";
     }
-    const auto free = std::count_if(
-        result_.ranking.begin(), result_.ranking.end(),
-        [](const CandidateResult& r) { return r.score && !(r.collision_probability > 0.0); });
+    const auto free =
+        std::count_if(result_.ranking.begin(), result_.ranking.end(), [](const CandidateResult& r) {
+          return r.score && !r.collides && !(r.collision_probability > 0.0);
+        });
     out_ += fmt::format(
         "<p class='facts'>{} candidates, {} others on the road, {} {}touch nothing. Ranked by {} "
         "[{}], lower is better, in {:.1f} ms{}.</p></header>\n",

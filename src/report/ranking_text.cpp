@@ -122,7 +122,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   }
   const auto free = static_cast<std::size_t>(std::count_if(
       result.ranking.begin(), result.ranking.end(), [](const CandidateResult& ranked) {
-        return ranked.score && !(ranked.collision_probability > 0.0);
+        return ranked.score && !ranked.collides && !(ranked.collision_probability > 0.0);
       }));
   for (const std::string& words : detail::future_words(result)) {
     text += escape_terminal(words) + "\n";
