@@ -281,6 +281,9 @@ int run(const Options& options) {
   }
   if (is_interrupted()) {
     warnings.push_back(how_far(*ranked));
+    if (!options.report.empty() || !options.damage_folder.empty()) {
+      warnings.back() += "; files of --damage and --report are not written";
+    }
     print(text_of(*ranked, warnings));
     say("interrupted: " + warnings.back());
     return exit_budget;

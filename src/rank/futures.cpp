@@ -90,7 +90,9 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   } else {
     summary.combinations = 1.0;
     for (std::size_t i = 0; i < made.actors_; ++i) {
-      summary.combinations *= static_cast<double>(made.choices(i));
+      constexpr double countable = 1e300;
+      summary.combinations =
+          std::min(summary.combinations * static_cast<double>(made.choices(i)), countable);
     }
     if (summary.combinations <= static_cast<double>(most_combinations)) {
       summary.method = summary.combinations > 1.0 ? FutureMethod::all : FutureMethod::certain;

@@ -57,7 +57,9 @@ double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores) {
       for (const WeightedScore& s : scores) {
         excess += s.probability * std::max(s.score - quantile, 0.0);
       }
-      return quantile + excess / (1.0 - risk.level);
+      // Where the rounding of the quantile leaves out the worst, the excess is of less than
+      // nothing.
+      return std::min(quantile + excess / (1.0 - risk.level), worst_of(scores));
     }
   }
   return mean_of(scores);
@@ -67,6 +69,9 @@ std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<Weight
                                      std::size_t sampled) {
   if (risk.kind != RiskKind::expected && risk.kind != RiskKind::cvar) return std::nullopt;
   const bool tail = risk.kind == RiskKind::cvar;
+  constexpr double least_in_tail = 10.0;
+  const auto count = static_cast<double>(sampled);
+  if (tail && count * (1.0 - risk.level) < least_in_tail) return std::nullopt;
   const double from = tail ? quantile_of(risk.level, scores) : 0.0;
   const auto value = [&](const WeightedScore& s) {
     return tail ? std::max(s.score - from, 0.0) / (1.0 - risk.level) : s.score;
@@ -77,9 +82,9 @@ std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<Weight
   for (const WeightedScore& s : scores) {
     variance += s.probability * (value(s) - mean) * (value(s) - mean);
   }
-  const auto count = static_cast<double>(sampled);
-  // Of a single future nothing is known of the spread.
-  return count > 1.0 ? std::sqrt(variance / (count - 1.0)) : worst_of(scores);
+  // Scores that do not differ tell nothing of those that were not drawn.
+  if (!(count > 1.0) || !(variance > 0.0)) return std::nullopt;
+  return std::sqrt(variance / (count - 1.0));
 }
 
 }  // namespace crashrank::detail

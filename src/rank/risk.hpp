@@ -20,7 +20,8 @@ double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores);
 
 /// Standard error of `risk_of` where the scores are those of so many futures drawn alike. Of the
 /// mean: from the scores' variance; of cvar: from that of their excess over the quantile. Absent
-/// for worst and quantile.
+/// for worst and quantile, for cvar with fewer than 10 drawn futures in its tail, and where the
+/// scores do not differ: what was not drawn may.
 std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
                                      std::size_t sampled);
 

@@ -151,6 +151,22 @@ void doubt_actors(const Scenario& scenario, std::vector<std::string>& doubts) {
       ends.many("actor end", "actors end"), scenario.horizon_s, ends.examples()));
 }
 
+void doubt_fixed(const Scenario& scenario, const RankResult& result,
+                 std::vector<std::string>& doubts) {
+  Counted moving;
+  for (std::size_t i = 0; i < result.actors.size(); ++i) {
+    const ScenarioActor& actor = scenario.actors[i];
+    const bool moves = actor.speed_mps != 0.0 || actor.acceleration_mps2 != 0.0 ||
+                       actor.yaw_rate_radps != 0.0 || actor.poses.size() > 1;
+    if (std::isinf(result.actors[i].mass_kg) && moves) moving.add("'" + actor.name + "'");
+  }
+  if (moving.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} a motion, but nothing moves a body without mass: it moves until first contact and stands "
+      "in the crash ({}); give its model a mass, or no motion",
+      moving.many("actor has", "actors have"), moving.examples()));
+}
+
 void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
   if (scenario.keys_without_effect.empty()) return;
   std::string keys;
@@ -174,6 +190,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_actors(scenario, doubts);
+  doubt_fixed(scenario, result, doubts);
   detail::doubt_bodies(scenario, models, result, doubts);
   doubt_keys(scenario, doubts);
   return doubts;

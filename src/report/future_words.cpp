@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace crashrank::detail {
@@ -48,9 +49,16 @@ std::string error_words(const RankResult& result) {
   for (const CandidateResult& ranked : result.ranking) {
     if (ranked.sampling_error) most = std::max(most.value_or(0.0), *ranked.sampling_error);
   }
-  if (!most) return "What the choice of the sample leaves open of a score is not known.";
+  // With 95 % what is more probable is drawn at least once (1 - (1 - p)^N).
+  const double seldom =
+      1.0 -
+      std::pow(0.05, 1.0 / static_cast<double>(std::max<std::size_t>(1, result.futures.sampled)));
+  const std::string missing =
+      fmt::format(" What happens with less than {:.2g} % may not be drawn at all.", 100.0 * seldom);
+  if (!most) return "What the choice of the sample leaves open of a score is not known." + missing;
   return fmt::format("Another sample may change a score by a standard error of up to {:.2g} {}.",
-                     *most, measure_unit(result.measure));
+                     *most, measure_unit(result.measure)) +
+         missing;
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
     columns.push_back({"may rank", true});
   }
   if (result.futures.method != FutureMethod::certain) columns.push_back({"collides", true});
-  columns.push_back({"hits"});
+  columns.push_back({result.futures.method == FutureMethod::certain ? "hits" : "likeliest hits"});
   columns.push_back({"after s", true});
   columns.push_back({"closing m/s", true});
   columns.push_back({simulated ? "delta-v m/s" : "triangles", true});

@@ -168,7 +168,17 @@ std::string interval_text(const CandidateResult& ranked) {
   const double step = std::pow(10.0, place);
   // An end that is a multiple of the step but for rounding stays there.
   constexpr double slack = 1e-9;
-  return at_place(std::floor(ranked.score_interval.lowest / step + slack) * step, place) + " to " +
+  const double lowest = ranked.score_interval.lowest;
+  const auto low_end = [lowest](int at) {
+    const double unit = std::pow(10.0, at);
+    return std::floor(lowest / unit + slack) * unit;
+  };
+  // Harm that is certain does not print as 0.
+  int low_place = place;
+  if (lowest > 0.0 && !(low_end(place) > 0.0)) {
+    low_place = static_cast<int>(std::floor(std::log10(lowest)));
+  }
+  return at_place(low_end(low_place), low_place) + " to " +
          at_place(std::ceil(ranked.score_interval.highest / step - slack) * step, place);
 }
 

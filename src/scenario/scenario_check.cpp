@@ -274,8 +274,9 @@ Status check_probabilities(const Scenario& scenario) {
     check_sum(actor.predictions, path + ".predictions", check);
     const bool uncertain = !actor.predictions.empty() || actor.existence_probability != 1.0;
     if (uncertain && !scenario.futures.empty()) {
-      check.refuse(path, "has predictions or an existence probability beside futures",
-                   "let the futures say it all");
+      const bool predicted = !actor.predictions.empty();
+      check.refuse(path + (predicted ? ".predictions" : ".existence_probability"),
+                   "stands beside futures", "keep one of them");
     }
   }
   if (scenario.futures.size() > limits::futures) {

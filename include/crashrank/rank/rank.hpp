@@ -223,8 +223,10 @@ struct CandidateResult {
   /// Where the score is known: what the futures lead to, the likeliest first, then by probability.
   std::vector<FutureOutcome> futures;
   double collision_probability = 0.0;  ///< of a contact of the ego's
-  /// Standard error of the score that comes from drawing a sample of futures; an upper bound,
-  /// since strata are drawn evenly. Absent without a sample, and for worst and quantile.
+  /// Standard error of the score that comes from drawing a sample of futures, as if they were drawn
+  /// independently. Absent without a sample, for worst and quantile, for cvar with fewer than 10
+  /// drawn futures in its tail, and where the drawn scores do not differ: futures that were not
+  /// drawn may.
   std::optional<double> sampling_error;
   /// Place in the ranking, from 1. Candidates that are tied share it: 1, 2, 2, 4.
   std::size_t place = 1;
