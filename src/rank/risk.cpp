@@ -76,14 +76,18 @@ std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<Weight
   const auto value = [&](const WeightedScore& s) {
     return tail ? std::max(s.score - from, 0.0) / (1.0 - risk.level) : s.score;
   };
+  // Scores that do not differ tell nothing of those that were not drawn.
+  double least = worst_of(scores);
+  for (const WeightedScore& s : scores) {
+    if (s.probability > 0.0) least = std::min(least, s.score);
+  }
+  if (!(count > 1.0) || least == worst_of(scores)) return std::nullopt;
   double mean = 0.0;
   for (const WeightedScore& s : scores) mean += s.probability * value(s);
   double variance = 0.0;
   for (const WeightedScore& s : scores) {
     variance += s.probability * (value(s) - mean) * (value(s) - mean);
   }
-  // Scores that do not differ tell nothing of those that were not drawn.
-  if (!(count > 1.0) || !(variance > 0.0)) return std::nullopt;
   return std::sqrt(variance / (count - 1.0));
 }
 

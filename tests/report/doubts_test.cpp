@@ -197,8 +197,10 @@ TEST(Doubts, ActorsWhosePosesEndWhileTheyMoveAreTold) {
   Pose away;
   away.translation.x() = 4.0;
   told.scenario.actors[1].poses = {{0.0, {}}, {0.2, away}};
-  ASSERT_EQ(told.doubts().size(), 1U);
+  ASSERT_EQ(told.doubts().size(), 2U);
   EXPECT_NE(told.doubts()[0].find("'second', at 0.2 s and 20.0 m/s"), std::string::npos);
+  EXPECT_NE(told.doubts()[1].find("1 actor has a motion, but nothing moves a body without mass"),
+            std::string::npos);
 }
 
 TEST(Doubts, MeshesThatSeemTurnedAreToldWithTheAxesThatMendIt) {
