@@ -16,7 +16,7 @@ using namespace c_objects;
 
 namespace {
 
-const std::string file = CRASHRANK_SCENARIOS "/pushed_onto_crossing.json";
+const std::string crossing_file = CRASHRANK_SCENARIOS "/pushed_onto_crossing.json";
 constexpr double walks_mps = 1.4;
 
 /// The pedestrian at his place at another speed.
@@ -28,9 +28,9 @@ crashrank_motion walking(double speed_mps) {
   return motion;
 }
 
-using Scores = std::map<std::string, double>;
+using NamedScores = std::map<std::string, double>;
 
-Scores scores_in_c(const Loaded& loaded) {
+NamedScores named_scores_in_c(const Loaded& loaded) {
   crashrank_error error{};
   auto options = sized<crashrank_rank_options>();
   crashrank_ranking* made = nullptr;
@@ -38,7 +38,7 @@ Scores scores_in_c(const Loaded& loaded) {
             CRASHRANK_OK)
       << error.message;
   const Ranking ranking(made);
-  Scores scores;
+  NamedScores scores;
   for (size_t i = 0; i < crashrank_ranking_size(made); ++i) {
     auto choice = sized<crashrank_choice>();
     EXPECT_EQ(crashrank_ranking_get(made, i, &choice, &error), CRASHRANK_OK);
@@ -48,9 +48,9 @@ Scores scores_in_c(const Loaded& loaded) {
 }
 
 /// The same in C++, with the pedestrian's predictions.
-Scores scores_in_cpp(const std::vector<std::pair<double, double>>& predictions,
-                     const char* risk = "expected") {
-  auto scenario = *crashrank::load_scenario_file(file);
+NamedScores named_scores_in_cpp(const std::vector<std::pair<double, double>>& predictions,
+                                const char* risk = "expected") {
+  auto scenario = *crashrank::load_scenario_file(crossing_file);
   const auto models = *crashrank::load_scenario_models(scenario);
   crashrank::ScenarioActor& actor = scenario.actors.front();
   for (const auto& [probability, speed] : predictions) {
@@ -63,7 +63,7 @@ Scores scores_in_cpp(const std::vector<std::pair<double, double>>& predictions,
   }
   scenario.risk = *crashrank::risk_from_name(risk);
   const auto ranked = *crashrank::rank(scenario, models);
-  Scores scores;
+  NamedScores scores;
   for (const auto& each : ranked.ranking) {
     scores[ranked.candidates[each.candidate].name] = *each.score;
   }
@@ -78,41 +78,41 @@ crashrank_status predict(crashrank_scenario* scenario, double probability, doubl
 TEST(CApi, PredictionsScoreAsInCpp) {
   for (const char* risk : {"expected", "worst", "cvar:0.5"}) {
     SCOPED_TRACE(risk);
-    const Loaded loaded = load(file);
+    const Loaded loaded = load(crossing_file);
     ASSERT_EQ(predict(loaded.scenario.get(), 0.7, walks_mps), CRASHRANK_OK);
     ASSERT_EQ(predict(loaded.scenario.get(), 0.3, 0.0), CRASHRANK_OK);
     ASSERT_EQ(crashrank_scenario_set_risk(loaded.scenario.get(), risk, nullptr), CRASHRANK_OK);
-    EXPECT_EQ(scores_in_c(loaded), scores_in_cpp({{0.7, walks_mps}, {0.3, 0.0}}, risk));
+    EXPECT_EQ(named_scores_in_c(loaded), named_scores_in_cpp({{0.7, walks_mps}, {0.3, 0.0}}, risk));
   }
 }
 
 TEST(CApi, FuturesAndAbsenceAreTheWeightedSums) {
-  const Scores walks = scores_in_c(load(file));
-  const Loaded absent = load(file);
+  const NamedScores walks = named_scores_in_c(load(crossing_file));
+  const Loaded absent = load(crossing_file);
   ASSERT_EQ(crashrank_scenario_set_existence(absent.scenario.get(), 0, 0.0, nullptr), CRASHRANK_OK);
-  const Scores without = scores_in_c(absent);
-  const Loaded perhaps = load(file);
+  const NamedScores without = named_scores_in_c(absent);
+  const Loaded perhaps = load(crossing_file);
   ASSERT_EQ(crashrank_scenario_set_existence(perhaps.scenario.get(), 0, 0.25, nullptr),
             CRASHRANK_OK);
-  for (const auto& [name, score] : scores_in_c(perhaps)) {
+  for (const auto& [name, score] : named_scores_in_c(perhaps)) {
     EXPECT_NEAR(score, 0.25 * walks.at(name) + 0.75 * without.at(name), 1e-12) << name;
   }
   EXPECT_NE(walks, without);
 
-  const Loaded joint = load(file);
+  const Loaded joint = load(crossing_file);
   crashrank_scenario* const scenario = joint.scenario.get();
   ASSERT_EQ(crashrank_scenario_add_future(scenario, 0.4, nullptr), CRASHRANK_OK);
   ASSERT_EQ(crashrank_scenario_add_future(scenario, 0.6, nullptr), CRASHRANK_OK);
   const crashrank_motion stands = walking(0.0);
   ASSERT_EQ(crashrank_scenario_add_future_motion(scenario, 1, 0, &stands, nullptr), CRASHRANK_OK);
-  const Scores waits = scores_in_cpp({{1.0, 0.0}});
-  for (const auto& [name, score] : scores_in_c(joint)) {
+  const NamedScores waits = named_scores_in_cpp({{1.0, 0.0}});
+  for (const auto& [name, score] : named_scores_in_c(joint)) {
     EXPECT_NEAR(score, 0.4 * walks.at(name) + 0.6 * waits.at(name), 1e-12) << name;
   }
 }
 
 TEST(CApi, ARankerWeighsPredictionsAnew) {
-  const Loaded loaded = load(file);
+  const Loaded loaded = load(crossing_file);
   ASSERT_EQ(predict(loaded.scenario.get(), 0.7, walks_mps), CRASHRANK_OK);
   ASSERT_EQ(predict(loaded.scenario.get(), 0.3, 0.0), CRASHRANK_OK);
   crashrank_error error{};
@@ -122,7 +122,7 @@ TEST(CApi, ARankerWeighsPredictionsAnew) {
       CRASHRANK_OK)
       << error.message;
   const Ranker ranker(made);
-  const Loaded later = load(file);
+  const Loaded later = load(crossing_file);
   ASSERT_EQ(predict(later.scenario.get(), 0.2, walks_mps), CRASHRANK_OK);
   ASSERT_EQ(predict(later.scenario.get(), 0.8, 0.5), CRASHRANK_OK);
   ASSERT_EQ(crashrank_ranker_update(made, later.scenario.get(), &error), CRASHRANK_OK)
@@ -130,17 +130,18 @@ TEST(CApi, ARankerWeighsPredictionsAnew) {
   auto answer = sized<crashrank_answer>();
   ASSERT_EQ(crashrank_ranker_rank(made, nullptr, &answer, &error), CRASHRANK_OK);
   ASSERT_EQ(answer.complete, 1);
-  const Scores expected = scores_in_cpp({{0.2, walks_mps}, {0.8, 0.5}});
+  const NamedScores expected = named_scores_in_cpp({{0.2, walks_mps}, {0.8, 0.5}});
   for (size_t i = 0; i < answer.count; ++i) {
     const crashrank_ranked& ranked = answer.ranking[i];
     EXPECT_EQ(ranked.score, expected.at(crashrank_ranker_candidate_name(made, ranked.candidate)));
     EXPECT_GT(ranked.collision_probability, 0.0);
   }
-  EXPECT_EQ(crashrank_ranker_update(made, load(file).scenario.get(), &error), CRASHRANK_USAGE);
+  EXPECT_EQ(crashrank_ranker_update(made, load(crossing_file).scenario.get(), &error),
+            CRASHRANK_USAGE);
 }
 
 TEST(CApi, WhatIsNoPredictionIsRefused) {
-  const Loaded loaded = load(file);
+  const Loaded loaded = load(crossing_file);
   crashrank_scenario* const scenario = loaded.scenario.get();
   crashrank_error error{};
   const crashrank_motion motion = walking(1.0);
