@@ -28,7 +28,7 @@
 
 #include "crashrank/internal/base/export.hpp"
 
-// NOLINTBEGIN(modernize-*): this is C.
+// NOLINTBEGIN(modernize-*,readability-identifier-naming): this is C.
 #include <stddef.h>
 #include <stdint.h>
 
@@ -638,6 +638,6 @@ static inline crashrank_status crashrank_models_import_scenario(crashrank_models
 #ifdef __cplusplus
 }
 #endif
-// NOLINTEND(modernize-*)
+// NOLINTEND(modernize-*,readability-identifier-naming)
 
 #endif

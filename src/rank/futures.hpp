@@ -34,7 +34,6 @@ public:
   std::size_t size() const noexcept { return probability_.size(); }
   /// Probabilities sum to 1. That of the likeliest future is 0 where it is none of a sample.
   double probability(std::size_t future) const { return probability_[future]; }
-  View<const double> probabilities() const { return {probability_.data(), probability_.size()}; }
   /// Index of the plan that an actor follows, or `absent`.
   std::uint32_t plan(std::size_t future, std::size_t actor) const {
     return plan_of_[future * actors_ + actor];

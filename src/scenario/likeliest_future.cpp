@@ -21,10 +21,10 @@ Scenario likeliest_future(const Scenario& scenario) {
   for (ScenarioActor& actor : single.actors) {
     double most = 1.0;
     if (!actor.predictions.empty()) {
-      const Prediction likeliest =
+      const Prediction& likeliest =
           *std::max_element(actor.predictions.begin(), actor.predictions.end(), less_likely);
-      static_cast<ActorMotion&>(actor) = likeliest;
       most = likeliest.probability;
+      static_cast<ActorMotion&>(actor) = static_cast<const ActorMotion&>(likeliest);
       actor.predictions.clear();
     }
     const double exists = actor.existence_probability;
