@@ -155,11 +155,21 @@ inline Scene congestion(std::uint64_t seed) {
 }
 
 /// Gives up to `uncertain` actors that move two or three predictions, and some a chance not to
-/// exist.
+/// exist. What nothing moves is always there where something like it stands beside it: a wall that
+/// may not exist adjoins no other, as it does in a scenario of its own.
 inline void add_predictions(oracle::Random& random, Scene& scene, int uncertain) {
+  constexpr double reach_m = 13.0;  // of two walls
+  const auto stands_alone = [&scene](const ScenarioActor& fixed) {
+    for (const ScenarioActor& other : scene.scenario.actors) {
+      const double distance_m = (other.pose.translation - fixed.pose.translation).norm();
+      if (&other != &fixed && other.model >= pole_model && distance_m < reach_m) return false;
+    }
+    return true;
+  };
   for (ScenarioActor& actor : scene.scenario.actors) {
     if (actor.model >= pole_model) {
-      if (random.chance(0.2) && uncertain-- > 0) actor.existence_probability = random.real(0.1, 1);
+      const bool chosen = random.chance(0.2) && stands_alone(actor);
+      if (chosen && uncertain-- > 0) actor.existence_probability = random.real(0.1, 1);
       continue;
     }
     if (uncertain <= 0 || !random.chance(0.6)) continue;
