@@ -31,20 +31,8 @@ crashrank_motion walking(double speed_mps) {
 using NamedScores = std::map<std::string, double>;
 
 NamedScores named_scores_in_c(const Loaded& loaded) {
-  crashrank_error error{};
-  auto options = sized<crashrank_rank_options>();
-  crashrank_ranking* made = nullptr;
-  EXPECT_EQ(crashrank_rank(loaded.scenario.get(), loaded.models.get(), &options, &made, &error),
-            CRASHRANK_OK)
-      << error.message;
-  const Ranking ranking(made);
-  NamedScores scores;
-  for (size_t i = 0; i < crashrank_ranking_size(made); ++i) {
-    auto choice = sized<crashrank_choice>();
-    EXPECT_EQ(crashrank_ranking_get(made, i, &choice, &error), CRASHRANK_OK);
-    scores[choice.candidate] = choice.score;
-  }
-  return scores;
+  const Scores scores = scores_in_c(loaded);
+  return {scores.begin(), scores.end()};
 }
 
 /// The same in C++, with the pedestrian's predictions.

@@ -30,27 +30,6 @@ crashrank_harm harm_of(const crashrank_scenario* scenario) {
   return harm;
 }
 
-/// Scores by candidate, in the order of the ranking.
-using Scores = std::vector<std::pair<std::string, double>>;
-
-Scores scores_in_c(const Loaded& loaded) {
-  crashrank_error error{};
-  auto options = sized<crashrank_rank_options>();
-  options.measure = CRASHRANK_MEASURE_HARM;
-  crashrank_ranking* made = nullptr;
-  EXPECT_EQ(crashrank_rank(loaded.scenario.get(), loaded.models.get(), &options, &made, &error),
-            CRASHRANK_OK)
-      << error.message;
-  const Ranking ranking(made);
-  Scores scores;
-  for (size_t i = 0; i < crashrank_ranking_size(made); ++i) {
-    auto choice = sized<crashrank_choice>();
-    EXPECT_EQ(crashrank_ranking_get(made, i, &choice, &error), CRASHRANK_OK);
-    scores.emplace_back(choice.candidate, choice.score);
-  }
-  return scores;
-}
-
 Scores scores_in_cpp(const crashrank::Scenario& scenario,
                      const std::vector<crashrank::Model>& models) {
   crashrank::RankOptions options;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// Objects of the C interface that free themselves, and what several of its tests put into them.
@@ -62,6 +63,27 @@ inline Loaded load(const std::string& file) {
             CRASHRANK_OK)
       << error.message;
   return loaded;
+}
+
+/// Scores by candidate, in the order of the ranking.
+using Scores = std::vector<std::pair<std::string, double>>;
+
+inline Scores scores_in_c(const Loaded& loaded) {
+  crashrank_error error{};
+  auto options = sized<crashrank_rank_options>();
+  options.measure = CRASHRANK_MEASURE_HARM;
+  crashrank_ranking* made = nullptr;
+  EXPECT_EQ(crashrank_rank(loaded.scenario.get(), loaded.models.get(), &options, &made, &error),
+            CRASHRANK_OK)
+      << error.message;
+  const Ranking ranking(made);
+  Scores scores;
+  for (size_t i = 0; i < crashrank_ranking_size(made); ++i) {
+    auto choice = sized<crashrank_choice>();
+    EXPECT_EQ(crashrank_ranking_get(made, i, &choice, &error), CRASHRANK_OK);
+    scores.emplace_back(choice.candidate, choice.score);
+  }
+  return scores;
 }
 
 /// A box of 4 by 1.8 by 1.4 m on the ground: a body with an outline.
