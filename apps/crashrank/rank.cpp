@@ -44,6 +44,7 @@ struct Options {
   std::string measure;
   std::string risk_model;
   std::string risk;
+  std::string infeasible = "demote";
   std::size_t futures = RankOptions{}.sampled_futures;
   std::string profile;
   std::string damage_folder;
@@ -231,6 +232,9 @@ int run(const Options& options) {
     how.risk = *risk;
   }
   how.sampled_futures = options.futures;
+  const Result<Infeasible> infeasible = infeasible_from_name(options.infeasible);
+  if (!infeasible) return fail(infeasible.error());
+  how.infeasible = *infeasible;
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return fail(build.error());
   }
@@ -346,6 +350,11 @@ void add_rank(CLI::App& app, Action& action) {
   add_count(*command, "--futures", options->futures,
             "Futures that are drawn where combinations of predictions are more than 1024", 1,
             max_sampled_futures);
+  add_choice(
+      *command, "--infeasible", options->infeasible,
+      "What becomes of manoeuvres beyond grip, engine, brakes or steering: behind all others, "
+      "left out, or ranked like all others",
+      {"demote", "drop", "keep"});
   add_file(*command, "--profile", options->profile,
            "Whose harm counts for how much, and ranges of what is not known: a file after "
            "data/profile.schema.json, over what the scenario says");

@@ -4,6 +4,7 @@
 /// by crashrank::import, whose headers are crashrank/mesh/import.hpp and
 /// crashrank/scenario/scenario_models.hpp.
 
+#include "crashrank/base/area.hpp"
 #include "crashrank/base/box.hpp"
 #include "crashrank/base/column.hpp"
 #include "crashrank/base/library_version.hpp"
@@ -47,10 +48,12 @@
 #include "crashrank/report/picture.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/candidate.hpp"
+#include "crashrank/scenario/demand.hpp"
 #include "crashrank/scenario/harm_options.hpp"
 #include "crashrank/scenario/measure.hpp"
 #include "crashrank/scenario/profile.hpp"
 #include "crashrank/scenario/risk.hpp"
+#include "crashrank/scenario/road.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 #include "crashrank/tree/build.hpp"

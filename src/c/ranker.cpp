@@ -109,7 +109,11 @@ Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
   const Result<std::vector<Motion>> motions = plan_motions(scenario);
   if (!motions) return motions.error();
   ranker.told.reserve(candidates->size());
-  if (Status moved = ranker.ranker.move_actors(scenario.ego.pose, *motions); !moved) return moved;
+  if (Status moved =
+          ranker.ranker.move_actors(scenario.ego.pose, *motions,
+                                    EgoMotion{scenario.ego.speed_mps, scenario.ego.yaw_rate_radps});
+      !moved)
+    return moved;
   if (scenario.futures.empty()) {
     if (Status weighed = ranker.ranker.weigh_plans(plan_probabilities(scenario)); !weighed) {
       return weighed;

@@ -268,6 +268,16 @@ void SceneRun::settle() {
   live_.clear();
 }
 
+double SceneRun::grip_of(std::size_t i) const {
+  double grip = options_.grip;
+  if (!options_.drivable.empty() && options_.off_road_grip != options_.grip) {
+    const PlanarBody& b = body(i);
+    const Eigen::Vector2d at = origin_m_.head<2>() + Eigen::Vector2d(b.x, b.y);
+    if (!holds(options_.drivable, at)) grip = options_.off_road_grip;
+  }
+  return bodies_[i].footing->wheels ? grip : std::min(grip, options_.sliding_grip);
+}
+
 /// Forces of the road. During an impact they are left out, as impact mechanics does: the contact
 /// law is validated without them.
 void SceneRun::drive_on_road(std::size_t i, double step_s) {
@@ -276,8 +286,7 @@ void SceneRun::drive_on_road(std::size_t i, double step_s) {
   constexpr double pushing = 2.0;
   constexpr double impact_s = 0.05;
   const SceneBody& body = bodies_[i];
-  const double grip =
-      body.footing->wheels ? options_.grip : std::min(options_.grip, options_.sliding_grip);
+  const double grip = grip_of(i);
   const double pushed_mps = pushing * grip * gravity_mps2 * step_s;
   Member& m = members_[i];
   const auto each_run = [&](auto&& each) {

@@ -3,6 +3,7 @@
 #include "crash/contact_run.hpp"
 #include "crash/tyres.hpp"
 
+#include "crashrank/base/area.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/motion/motion.hpp"
 
@@ -31,6 +32,8 @@ struct SceneOptions {
   ContactOptions contact;
   AfterContact after = AfterContact::brakes;  ///< what the wheels of all that were hit do
   double grip = 0.7;                          ///< of tyres on the road
+  View<const Area> drivable;                  ///< empty: the road has no end
+  double off_road_grip = 0.7;                 ///< of tyres where the centre of mass is beside it
   double sliding_grip = 0.5;                  ///< of what has no wheels that turn
   double rolling_step_s = 0.02;               ///< longest step without contact
   double after_last_contact_s = 3.0;          ///< the scene ends so long after the last force
@@ -177,6 +180,7 @@ private:
   void tell_pressed(const ContactRun& run, SceneContact& told) const;
   void lock_damaged_wheels(std::size_t i, const Box& damaged);
   void press();
+  double grip_of(std::size_t i) const;
   void drive_on_road(std::size_t i, double step_s);
   void settle();
   void step();

@@ -35,6 +35,8 @@ SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
   options.rolling_step_s *= sample.step;
   options.after = scene.harm.after_contact;
   options.grip = scene.grip;
+  options.drivable = scene.road.drivable;
+  options.off_road_grip = scene.road.off_road_grip.value_or(scene.grip);
   // A candidate that touches nobody is looked at until the horizon, and so is what follows here.
   options.until_s = scene.slice_s.back();
   options.fastest_plan_mps = scene.fastest_plan_mps;

@@ -3,7 +3,9 @@
 #include "rank/anytime/bounds.hpp"
 #include "rank/combine_futures.hpp"
 #include "rank/hits.hpp"
+#include "rank/manoeuvre.hpp"
 #include "rank/measure_table.hpp"
+#include "rank/road_leaving.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -143,18 +145,18 @@ double tally_up(const Scene& scene, const Approach& from, Tally& tally, Candidat
   return tally.score(scene);
 }
 
-/// What the candidate scores in every sample.
+/// What the candidate scores in every sample, leaving the road included.
 void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
-                 Tally& tally, CandidateResult& result) {
+                 double leaving, Tally& tally, CandidateResult& result) {
   const std::vector<std::size_t> place = effect_of_sample(scene);
   for (std::size_t i = 0; i < scene.samples.size(); ++i) {
-    double score = 0.0;
+    double score = leaving;
     if (!effects.empty()) {
       tally.begin();
       for (const ContactEffect& effect : effects[place[i]]) {
         tally.add(scene, effect, scene.samples[i]);
       }
-      score = tally.score(scene);
+      score += tally.score(scene);
     }
     result.sample_scores.push_back(score);
   }
@@ -199,9 +201,43 @@ bool approach_future(const Scene& scene, const Candidate& candidate, std::size_t
   return true;
 }
 
+double first_contact_s(const FutureOutcome& outcome) {
+  return outcome.collides ? outcome.time_of_impact_s : std::numeric_limits<double>::infinity();
+}
+
+/// How far the plan is followed; nowhere where no future is known.
+Followed followed_in(const Scene& scene, const std::vector<FutureOutcome>& futures) {
+  Followed followed;
+  for (const FutureOutcome& outcome : futures) {
+    const double first = first_contact_s(outcome);
+    followed.longest_s = std::max(followed.longest_s, std::min(first, scene.slice_s.back()));
+    followed.touches = followed.touches || outcome.collides;
+    if (outcome.is_likeliest) followed.first_s = first;
+  }
+  return followed;
+}
+
+/// What is to be said besides the crash, of a candidate whose futures are known.
+void add_manoeuvre(const Scene& scene, const Candidate& candidate,
+                   const std::optional<RoadLeaving>& leaving, Scratch& scratch,
+                   CandidateResult& result) {
+  const auto told = [](double number) {
+    return std::isfinite(number) ? std::optional<double>(number) : std::nullopt;
+  };
+  const Followed followed = followed_in(scene, result.futures);
+  ManoeuvreFacts facts = describe_manoeuvre(scene, candidate, followed, leaving, scratch);
+  result.demand = facts.demand;
+  result.feasible = facts.feasible;
+  result.leaves_road = facts.leaves_road;
+  result.least_distance_m = told(facts.clearance.distance_m);
+  result.least_time_gap_s = told(facts.clearance.time_gap_s);
+  if (!result.collides) result.at_horizon = facts.at_horizon;
+}
+
 /// Reads the damage of one outcome and scores it.
 CandidateResult finish_outcome(const Scene& scene, Approach& approach, FoundDamage& found,
-                               Scratch& scratch, RankWork& work) {
+                               const std::optional<RoadLeaving>& leaving, Scratch& scratch,
+                               RankWork& work) {
   CandidateResult result = std::move(approach.result);
   for (std::size_t i = 0; i < approach.plans.size(); ++i) {
     const std::size_t k = i - std::min(i, result.contacts.size());
@@ -215,9 +251,10 @@ CandidateResult finish_outcome(const Scene& scene, Approach& approach, FoundDama
   if (result.collides) result.ego = damage.at(ego_body);
   const double simulated =
       approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
+  const double left = leaving_score(scene, leaving, first_contact_s(approach.outcome));
   result.score = scored_by_damage(scene.measure) ? damage_score(damage, measure_row(scene.measure))
-                                                 : simulated;
-  add_samples(scene, approach.effects, scratch.tally, result);
+                                                 : left + simulated;
+  add_samples(scene, approach.effects, left, scratch.tally, result);
   return result;
 }
 
@@ -275,12 +312,17 @@ Approaches approach(const Scene& scene, const Candidate& candidate, Scratch& scr
 
 CandidateResult finish(const Scene& scene, const Candidate& candidate, Approaches&& approaches,
                        FoundDamage found, Scratch& scratch, RankWork& work) {
+  const std::optional<RoadLeaving> leaving =
+      find_leaving(scene.road, scene.ego, candidate.motion, scene.slice_s.back());
   std::vector<CandidateResult> results;
   for (Approach& each : approaches.outcomes) {
-    results.push_back(finish_outcome(scene, each, found, scratch, work));
+    results.push_back(finish_outcome(scene, each, found, leaving, scratch, work));
   }
   if (approaches.decided) {
-    return combine_futures(scene, std::move(results), approaches.outcomes, scratch);
+    CandidateResult result =
+        combine_futures(scene, std::move(results), approaches.outcomes, scratch);
+    add_manoeuvre(scene, candidate, leaving, scratch, result);
+    return result;
   }
   CandidateResult result;
   if (!results.empty()) result = std::move(results.front());
@@ -288,8 +330,12 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approache
   result.sample_scores.clear();
   ScoreBounds bounds;
   bounds.prepare(scene);
-  result.score_interval = {0.0, bounds.most(scene, candidate.motion)};
+  result.score_interval = {
+      0.0, bounds.most(scene, candidate.motion) + leaving_score(scene, leaving, 0.0)};
   result.numerical_interval = result.score_interval;
+  // What it asks for at its begin is all that is known of it.
+  result.demand = demand_until(scene, candidate, 0.0, leaving);
+  result.feasible = is_feasible(candidate, result.demand);
   return result;
 }
 

@@ -37,6 +37,7 @@ struct Scratch {
   std::vector<WeightedScore> weighted;  ///< while futures are combined
   ImpactWorkspace impact;
   CrashChain chain;
+  std::vector<PlanarPose> way;  ///< of the candidate
   std::vector<ContactEffect> effects;
   std::vector<std::size_t> order;
   Tally tally;
@@ -82,17 +83,5 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approache
 /// Both at once, on the calling thread.
 CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
                          RankWork& work);
-
-/// The total order of a ranking: whether `a` stands before `b`.
-bool ranks_before(const CandidateResult& a, const CandidateResult& b);
-
-/// Orders the ranking and says how sure its first place is.
-void put_in_order(RankResult& result);
-
-/// Fills `place` and `sharing` of a ranking that is in order.
-void assign_places(std::vector<CandidateResult>& ranking);
-
-/// Fills the places of a ranking that is in order, and says how stable they are over the samples.
-void tell_stability(RankResult& result);
 
 }  // namespace crashrank::detail

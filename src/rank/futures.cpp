@@ -105,7 +105,18 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
     }
   }
   summary.futures = made.size();
+  made.note_followed();
   return made;
+}
+
+void Futures::note_followed() {
+  followed_.assign(plans.size(), 0);
+  for (std::size_t f = 0; f < size(); ++f) {
+    if (!(probability_[f] > 0.0)) continue;
+    for (std::size_t i = 0; i < actors_; ++i) {
+      if (const std::uint32_t p = plan(f, i); p != absent) followed_[p] = 1;
+    }
+  }
 }
 
 std::size_t Futures::choices(std::size_t actor) const {
@@ -236,6 +247,7 @@ void Futures::weigh(View<const double> probabilities) {
   } else if (summary.method != FutureMethod::joint) {
     add_combinations();
   }
+  note_followed();
 }
 
 }  // namespace crashrank::detail

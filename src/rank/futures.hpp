@@ -41,6 +41,8 @@ public:
   bool has(std::size_t future, std::size_t plan) const {
     return this->plan(future, plans[plan].actor) == plan;
   }
+  /// Whether the plan's actor follows it in a future whose probability is above 0.
+  bool is_followed(std::size_t plan) const { return followed_[plan] != 0; }
   /// Each actor follows its likeliest plan; of joint futures the likeliest, of equal ones the
   /// first.
   std::size_t likeliest() const noexcept { return likeliest_; }
@@ -61,6 +63,7 @@ public:
 
 private:
   void add_joint(const Scenario& scenario);
+  void note_followed();
   void add_combinations();
   void add_sample();
   void draw(std::size_t actor);
@@ -76,6 +79,7 @@ private:
   std::vector<std::uint64_t> seed_;        ///< by actor, from its name
   std::vector<double> probability_;        ///< by future
   std::vector<std::uint32_t> plan_of_;     ///< by future and actor
+  std::vector<char> followed_;             ///< by plan
   std::vector<std::uint32_t> strata_;      ///< while a sample is drawn
   std::size_t likeliest_ = 0;
 };

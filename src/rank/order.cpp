@@ -1,4 +1,4 @@
-#include "rank/evaluate.hpp"
+#include "rank/order.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,30 +6,24 @@
 namespace crashrank {
 namespace {
 
-/// -1: `a` stands before `b`; 1: behind it; 0: only the order of the candidates decides.
-int compare(const CandidateResult& a, const CandidateResult& b) {
-  // A score where it is known, the worst that may come where it is not.
-  const double worth_a = a.score.value_or(a.score_interval.highest);
-  const double worth_b = b.score.value_or(b.score_interval.highest);
-  const auto before = [](bool first) { return first ? -1 : 1; };
-  if (worth_a != worth_b) return before(worth_a < worth_b);
-  if (a.score.has_value() != b.score.has_value()) return before(a.score.has_value());
-  if (a.collision_probability != b.collision_probability) {
-    return before(a.collision_probability < b.collision_probability);
+detail::OrderKey key_of(const CandidateResult& c, Infeasible infeasible) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  detail::OrderKey key;
+  key.demoted = !c.feasible && infeasible != Infeasible::keep;
+  key.worth = c.score.value_or(c.score_interval.highest);
+  key.known = c.score.has_value();
+  key.collision_probability = c.collision_probability;
+  key.collides = c.collides;
+  key.grazes = !c.grazes.empty();
+  key.leaves_road = c.leaves_road.has_value();
+  key.distance_m = c.least_distance_m.value_or(infinity);
+  key.time_gap_s = c.least_time_gap_s.value_or(infinity);
+  if (!c.contacts.empty()) {
+    key.first_s = c.contacts.front().time_of_impact_s;
+    key.closing_mps = c.contacts.front().closing_speed_mps;
   }
-  if (a.collides != b.collides) return before(!a.collides);
-  if (a.grazes.empty() != b.grazes.empty()) return before(a.grazes.empty());
-  if (a.collides && !a.contacts.empty() && !b.contacts.empty()) {
-    const Contact& p = a.contacts.front();
-    const Contact& q = b.contacts.front();
-    if (p.time_of_impact_s != q.time_of_impact_s) {
-      return before(p.time_of_impact_s > q.time_of_impact_s);
-    }
-    if (p.closing_speed_mps != q.closing_speed_mps) {
-      return before(p.closing_speed_mps < q.closing_speed_mps);
-    }
-  }
-  return 0;
+  if (c.at_horizon) key.end_speed_mps = c.at_horizon->speed_mps;
+  return key;
 }
 
 }  // namespace
@@ -50,19 +44,64 @@ std::vector<std::size_t> tied_with(const RankResult& result, std::size_t index) 
   return tied;
 }
 
-namespace detail {
-
-bool ranks_before(const CandidateResult& a, const CandidateResult& b) {
-  const int compared = compare(a, b);
-  return compared != 0 ? compared < 0 : a.candidate < b.candidate;
+const char* infeasible_name(Infeasible infeasible) noexcept {
+  switch (infeasible) {
+    case Infeasible::demote:
+      return "demote";
+    case Infeasible::drop:
+      return "drop";
+    case Infeasible::keep:
+      return "keep";
+  }
+  return "demote";
 }
 
-void assign_places(std::vector<CandidateResult>& ranking) {
+Result<Infeasible> infeasible_from_name(const std::string& name) {
+  for (const Infeasible each : {Infeasible::demote, Infeasible::drop, Infeasible::keep}) {
+    if (name == infeasible_name(each)) return each;
+  }
+  return make_error(ErrorCode::usage, "'" + name + "' says nothing about infeasible manoeuvres",
+                    "choose demote, drop or keep");
+}
+
+namespace detail {
+
+bool OrderKey::is_best_of_its_score() const noexcept {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return !(collision_probability > 0.0) && !collides && !grazes && !leaves_road &&
+         distance_m == infinity && time_gap_s == infinity && end_speed_mps == 0.0;
+}
+
+int compare(const OrderKey& a, const OrderKey& b) noexcept {
+  const auto before = [](bool first) { return first ? -1 : 1; };
+  if (a.demoted != b.demoted) return before(b.demoted);
+  if (a.worth != b.worth) return before(a.worth < b.worth);
+  if (a.known != b.known) return before(a.known);
+  if (a.collision_probability != b.collision_probability) {
+    return before(a.collision_probability < b.collision_probability);
+  }
+  if (a.collides != b.collides) return before(!a.collides);
+  if (a.grazes != b.grazes) return before(!a.grazes);
+  if (a.leaves_road != b.leaves_road) return before(!a.leaves_road);
+  if (a.distance_m != b.distance_m) return before(a.distance_m > b.distance_m);
+  if (a.time_gap_s != b.time_gap_s) return before(a.time_gap_s > b.time_gap_s);
+  if (!a.collides) {
+    if (a.end_speed_mps == b.end_speed_mps) return 0;
+    return before(a.end_speed_mps < b.end_speed_mps);
+  }
+  if (a.first_s != b.first_s) return before(a.first_s > b.first_s);
+  if (a.closing_mps != b.closing_mps) return before(a.closing_mps < b.closing_mps);
+  return 0;
+}
+
+void assign_places(RankResult& result) {
+  std::vector<CandidateResult>& ranking = result.ranking;
   for (std::size_t first = 0, end = 0; first < ranking.size(); first = end) {
     end = first + 1;
+    const OrderKey key = key_of(ranking[first], result.infeasible);
     // What is not known of a score may still decide: only known scores tie.
     while (end < ranking.size() && ranking[first].score && ranking[end].score &&
-           compare(ranking[first], ranking[end]) == 0) {
+           compare(key, key_of(ranking[end], result.infeasible)) == 0) {
       ++end;
     }
     for (std::size_t i = first; i < end; ++i) {
@@ -72,19 +111,39 @@ void assign_places(std::vector<CandidateResult>& ranking) {
   }
 }
 
+void drop_infeasible(RankResult& result) {
+  if (result.infeasible != Infeasible::drop) return;
+  const auto first = std::find_if(result.ranking.begin(), result.ranking.end(),
+                                  [](const CandidateResult& c) { return !c.feasible; });
+  if (first == result.ranking.begin()) return;
+  for (auto c = first; c != result.ranking.end(); ++c) result.dropped.push_back(c->candidate);
+  std::sort(result.dropped.begin(), result.dropped.end());
+  result.ranking.erase(first, result.ranking.end());
+}
+
 void put_in_order(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
-  std::sort(ranking.begin(), ranking.end(), ranks_before);
+  std::sort(ranking.begin(), ranking.end(), [&](const auto& a, const auto& b) {
+    const int compared = compare(key_of(a, result.infeasible), key_of(b, result.infeasible));
+    return compared != 0 ? compared < 0 : a.candidate < b.candidate;
+  });
+  drop_infeasible(result);
   result.complete = std::all_of(ranking.begin(), ranking.end(),
                                 [](const CandidateResult& c) { return c.score.has_value(); });
   // Known scores have one winner, the first of them in the order. It and those not yet known stay
   // in the race unless somebody's highest score is below their lowest.
   double lowest_high = std::numeric_limits<double>::infinity();
+  const auto demoted = [&](const CandidateResult& c) {
+    return !c.feasible && result.infeasible != Infeasible::keep;
+  };
+  const bool all_demoted = std::all_of(ranking.begin(), ranking.end(), demoted);
   for (const CandidateResult& c : ranking) {
+    if (demoted(c) && !all_demoted) continue;
     lowest_high = std::min(lowest_high, c.score.value_or(c.score_interval.highest));
   }
   bool winner_seen = false;
   for (const CandidateResult& c : ranking) {
+    if (demoted(c) && !all_demoted) continue;
     const bool beaten = c.score.has_value() && winner_seen;
     winner_seen = winner_seen || c.score.has_value();
     if (!beaten && c.score_interval.lowest <= lowest_high) result.in_race.push_back(c.candidate);

@@ -3,6 +3,7 @@
 #include "crashrank/internal/base/guarded.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/evaluate_on_workers.hpp"
+#include "rank/order.hpp"
 #include "rank/progress.hpp"
 #include "rank/scene.hpp"
 #include "scenario/scenario_check.hpp"
@@ -29,6 +30,7 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   result.measure = scene->measure;
   result.harm = scene->harm;
   result.samples = scene->samples;
+  result.infeasible = scene->infeasible;
   const double ego_length_m = models[result.ego.model].mesh.bounds().extent().x();
   Result<std::vector<Candidate>> candidates = make_candidates(scenario, ego_length_m);
   if (!candidates) return candidates.error();

@@ -164,17 +164,25 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   scene.ego = make_body(models[ego->model], ego->mass_kg);
   // By model: its outline takes milliseconds to cut, and many actors share one.
   std::vector<std::optional<Vehicle>> described(models.size());
-  const auto describe = [&](std::size_t model, Vehicle& vehicle) -> Status {
+  std::vector<std::shared_ptr<const Outline>> outlines(models.size());
+  const auto describe = [&](std::size_t model, Body& body) -> Status {
     if (!described[model]) {
       Result<Vehicle> made = vehicle_of(scenario.models[model], models[model]);
       if (!made) return made.error();
       described[model] = std::move(*made);
+      outlines[model] = std::make_shared<const Outline>(*described[model]->profile);
     }
-    vehicle = *described[model];
+    body.vehicle = *described[model];
+    body.outline = outlines[model];
     return Success{};
   };
-  if (Status own = describe(ego->model, scene.ego.vehicle); !own) return own.error();
+  if (Status own = describe(ego->model, scene.ego); !own) return own.error();
   scene.ego.footing = footing_of(scene.ego.vehicle);
+  scene.limits =
+      ego_limits(scenario, static_cast<double>(models[ego->model].mesh.bounds().extent().x()),
+                 scene.ego.vehicle.center_m);
+  scene.infeasible = options.infeasible;
+  scene.road = scenario.road;
   scene.grip = scenario.grip;
   scene.ego.occupants = scenario.ego.occupants;
 
@@ -184,7 +192,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     result.actors.push_back(*body);
     scene.actors.push_back(make_body(models[body->model], body->mass_kg));
     Body& added = scene.actors.back();
-    if (Status own = describe(body->model, added.vehicle); !own) return own.error();
+    if (Status own = describe(body->model, added); !own) return own.error();
     if (added.vehicle.movable()) added.footing = footing_of(added.vehicle);
     added.occupants = actor.occupants;
   }
@@ -230,6 +238,7 @@ void place_actors(Scene& scene, ImpactWorkspace& workspace) {
     }
     scene.slices[s].build(scene.boxes);
   }
+  place_ways(scene, scene.ways);
   std::fill(scene.apart_at_start.begin(), scene.apart_at_start.end(), char{1});
   const Motion standing = Motion::at_rest(scene.ego_start);
   const Box ego = swept_box(scene.ego, standing, 0.0, 0.0, scene.impact.tolerance_m);

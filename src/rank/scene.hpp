@@ -10,11 +10,15 @@
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/tree/model.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
+#include "rank/clearance.hpp"
 #include "rank/futures.hpp"
+#include "rank/outline_distance.hpp"
+#include "scenario/demand.hpp"
 
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,10 +31,11 @@ struct Body {
   Pose standing;                                          ///< of what nothing moves
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
-  double radius_m = 0.0;            ///< no point of the body is further from its origin
-  Vehicle vehicle;                  ///< what it is in a crash
-  Footing footing;                  ///< of what moves
-  std::optional<double> occupants;  ///< persons; absent: the kind's
+  double radius_m = 0.0;                   ///< no point of the body is further from its origin
+  Vehicle vehicle;                         ///< what it is in a crash
+  Footing footing;                         ///< of what moves
+  std::shared_ptr<const Outline> outline;  ///< for distances, never null
+  std::optional<double> occupants;         ///< persons; absent: the kind's
 };
 
 /// A box in world coordinates that holds every point of the body at every time of [from, until],
@@ -64,7 +69,11 @@ struct Scene {
   HarmOptions harm;
   HarmSample plain;                 ///< in which nothing varies
   std::vector<HarmSample> samples;  ///< in which the score is evaluated, too; may be empty
-  double grip = 0.8;                ///< of tyres on the road
+  EgoLimits limits;
+  Infeasible infeasible = Infeasible::demote;
+  Road road;
+  double grip = 0.8;  ///< of tyres on the road
+  PlanWays ways;
   ImpactOptions impact;
   RankWork work;  ///< spent on preparing
 };

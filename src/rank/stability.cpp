@@ -1,4 +1,4 @@
-#include "rank/evaluate.hpp"
+#include "rank/order.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -45,7 +45,7 @@ bool scores_differ(const CandidateResult& a, const CandidateResult& b) {
 
 void tell_stability(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
-  assign_places(ranking);
+  assign_places(result);
   for (CandidateResult& c : ranking) {
     c.best_place = c.place - 1;
     c.worst_place = c.place - 1;

@@ -2,6 +2,7 @@
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/candidate.hpp"
 #include "report/body_doubts.hpp"
+#include "report/manoeuvre_words.hpp"
 #include "report/ranking_words.hpp"
 
 #include <fmt/format.h>
@@ -93,7 +94,6 @@ void doubt_starts(const Scenario& scenario, const RankResult& result,
 
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
                       std::vector<std::string>& doubts) {
-  constexpr double whole_grip = 1.001;  // the grid takes all of it, up to rounding
   const double speed = std::abs(scenario.ego.speed_mps);
   Counted slips;
   Counted ends;
@@ -103,10 +103,7 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     const Candidate& candidate = result.candidates[ranked.candidate];
     const double until_s = followed_s(scenario, ranked);
     const std::string who = fmt::format("'{}', in place {}, ", candidate.name, ranked.place);
-    const std::optional<double> demand = grip_demand(candidate, scenario, until_s);
-    if (demand && *demand > whole_grip) {
-      slips.add(who + fmt::format("takes {:.2f} times what there is", *demand));
-    }
+    if (!ranked.feasible) slips.add(who + detail::demand_words(ranked.demand));
     if (!candidate.motion.holds_poses()) continue;
     const double cut = cut_speed_mps(candidate.motion, until_s);
     if (cut > moves_mps) {
@@ -118,10 +115,17 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     }
   }
   if (slips.count > 0) {
-    doubts.push_back(
-        fmt::format("{} beyond the tyres' grip ({:g}), so that the car cannot follow: {}",
-                    slips.many("listed manoeuvre lies", "listed manoeuvres lie"), scenario.grip,
-                    slips.examples()));
+    const char* const then = result.infeasible == Infeasible::keep
+                                 ? "is ranked like all others"
+                                 : "stands behind what it can follow";
+    doubts.push_back(fmt::format("{} than the vehicle can do and {}: {}",
+                                 slips.many("manoeuvre asks for more", "manoeuvres ask for more"),
+                                 then, slips.examples()));
+  }
+  if (!result.dropped.empty()) {
+    doubts.push_back(fmt::format(
+        "{} manoeuvre{} left out: the vehicle cannot follow {}", result.dropped.size(),
+        result.dropped.size() == 1 ? " is" : "s are", result.dropped.size() == 1 ? "it" : "them"));
   }
   if (ends.count > 0) {
     doubts.push_back(fmt::format(

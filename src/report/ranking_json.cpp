@@ -236,14 +236,37 @@ Json futures_json(const Scenario& scenario, const CandidateResult& ranked) {
   return futures;
 }
 
+Json demand_json(const ManoeuvreDemand& demand) {
+  return {{"grip", demand.grip},
+          {"engine", demand.engine},
+          {"brakes", demand.brakes},
+          {"steering", demand.steering},
+          {"steering_rate", demand.steering_rate}};
+}
+
+Json plane_vector(const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); }
+
+Json leaving_json(const CandidateResult& ranked) {
+  if (!ranked.leaves_road) return nullptr;
+  const RoadLeaving& leaving = *ranked.leaves_road;
+  return {{"time_s", leaving.time_s},
+          {"speed_mps", leaving.speed_mps},
+          {"point_m", plane_vector(leaving.point_m)}};
+}
+
+Json horizon_json(const CandidateResult& ranked) {
+  if (!ranked.at_horizon) return nullptr;
+  constexpr double deg_per_rad = 57.29577951308232;
+  const HorizonState& state = *ranked.at_horizon;
+  return {{"speed_mps", state.speed_mps},
+          {"heading_deg", deg_per_rad * state.heading_rad},
+          {"position_m", plane_vector(state.position_m)}};
+}
+
 Json candidate_json(const Scenario& scenario, View<const Model> models, const RankResult& result,
                     std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
   const Candidate& candidate = result.candidates[ranked.candidate];
-  const double until_s = !ranked.contacts.empty() ? ranked.contacts.front().time_of_impact_s
-                         : ranked.score           ? scenario.horizon_s
-                                                  : 0.0;
-  const std::optional<double> demand = grip_demand(candidate, scenario, until_s);
   const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
   Json contacts = Json::array();
   for (const detail::AnyContact& contact : detail::contacts_in_order(ranked)) {
@@ -259,7 +282,13 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"rank", ranked.place},
       {"candidate", candidate.name},
       {"tied_with", tied_json(result, place)},
-      {"grip_demand", demand ? Json(*demand) : Json(nullptr)},
+      {"feasible", ranked.feasible},
+      {"grip_demand", ranked.demand.grip},
+      {"demand", demand_json(ranked.demand)},
+      {"leaves_road", leaving_json(ranked)},
+      {"least_distance_m", optional_json(ranked.least_distance_m)},
+      {"least_time_gap_s", optional_json(ranked.least_time_gap_s)},
+      {"at_horizon", horizon_json(ranked)},
       {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
       {"score_interval",
        Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},
@@ -335,6 +364,10 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
   for (std::string& doubt : ranking_doubts(scenario, models, result)) {
     all_warnings.push_back(std::move(doubt));
   }
+  Json dropped = Json::array();
+  for (const std::size_t candidate : result.dropped) {
+    dropped.push_back(result.candidates[candidate].name);
+  }
   Json in_race = Json::array();
   for (const std::size_t candidate : result.in_race) {
     in_race.push_back(result.candidates[candidate].name);
@@ -373,6 +406,8 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
                   {"sampled", result.futures.sampled},
                   {"combinations", result.futures.combinations},
                   {"risk", risk_name(result.futures.risk)}}},
+                {"infeasible", infeasible_name(result.infeasible)},
+                {"dropped", std::move(dropped)},
                 {"complete", result.complete},
                 {"proved", result.proved},
                 {"in_race", std::move(in_race)},

@@ -3,6 +3,7 @@
 #include "crashrank/report/ranking.hpp"
 #include "report/damage_summary.hpp"
 #include "report/future_words.hpp"
+#include "report/manoeuvre_words.hpp"
 #include "report/ranking_words.hpp"
 #include "report/score_text.hpp"
 
@@ -31,8 +32,10 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
                                const RankResult& result, const std::string& score,
                                std::size_t place) {
   const CandidateResult& ranked = result.ranking[place];
-  std::vector<std::string> row{detail::place_text(ranked), result.candidates[ranked.candidate].name,
-                               score};
+  std::string name = result.candidates[ranked.candidate].name;
+  const std::string mark = detail::manoeuvre_mark(ranked);
+  if (!mark.empty()) name += " [" + mark + "]";
+  std::vector<std::string> row{detail::place_text(ranked), std::move(name), score};
   const bool simulated = needs_crash(result.measure);
   if (simulated) {
     row.push_back(detail::interval_text(ranked));
@@ -46,7 +49,7 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
     if (!ranked.score) {
       row.emplace_back("not known yet");
     } else {
-      row.emplace_back(ranked.grazes.empty() ? "nothing" : "nothing (grazes)");
+      row.push_back(detail::passing_words(ranked));
     }
     return row;
   }

@@ -2,6 +2,7 @@
 
 #include "crashrank/scenario/candidate.hpp"
 #include "report/damage_summary.hpp"
+#include "report/manoeuvre_words.hpp"
 #include "report/score_text.hpp"
 
 #include <fmt/format.h>
@@ -62,25 +63,6 @@ bool is_pushed(const Scenario& scenario, const CandidateResult& ranked, std::siz
   if (!planned) return false;
   const double of_other = -planned->velocity_at(time_s).linear_mps.dot(closing);
   return of_other < 0.5 * closing.squaredNorm();
-}
-
-/// Which tie-break decides between equal scores; the two are not tied.
-std::string tie_words(const CandidateResult& first, const CandidateResult& second) {
-  if (first.futures.size() + second.futures.size() > 2 &&
-      first.collision_probability != second.collision_probability) {
-    return fmt::format("a collision is less probable, {:.3g} % against {:.3g} %",
-                       100.0 * first.collision_probability, 100.0 * second.collision_probability);
-  }
-  if (first.collides != second.collides) return "it touches nothing";
-  if (!first.collides) return "it passes everything with more than a hair's breadth";
-  const Contact& p = first.contacts.front();
-  const Contact& q = second.contacts.front();
-  if (p.time_of_impact_s != q.time_of_impact_s) {
-    return fmt::format("its first contact is later, {:.3f} s against {:.3f} s", p.time_of_impact_s,
-                       q.time_of_impact_s);
-  }
-  return fmt::format("its closing speed is lower, {:.2f} m/s against {:.2f} m/s",
-                     p.closing_speed_mps, q.closing_speed_mps);
 }
 
 }  // namespace
@@ -178,8 +160,10 @@ namespace {
 std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult& ranked) {
   if (ranked.contacts.empty() && !ranked.score) return "has not been looked at to the end";
   if (ranked.contacts.empty()) {
-    return fmt::format("touches nothing within {:.1f} s{}", scenario.horizon_s,
-                       ranked.grazes.empty() ? "" : ", but grazes");
+    std::string text = fmt::format("touches nothing within {:.1f} s{}", scenario.horizon_s,
+                                   ranked.grazes.empty() ? "" : ", but grazes");
+    if (ranked.leaves_road) text += ", but " + leaving_words(ranked);
+    return text;
   }
   const Contact& first = ranked.contacts.front();
   std::string text =
@@ -189,6 +173,7 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
     text = fmt::format("overlaps {} at the start, closing at {:.1f} m/s",
                        scenario.actors[first.actor].name, first.closing_speed_mps);
   }
+  if (ranked.leaves_road) text = leaving_words(ranked) + " and " + text;
   const std::vector<std::size_t> actors = hit_actors(ranked);
   for (std::size_t i = 1; i < actors.size(); ++i) {
     text += (i + 1 == actors.size() ? " and " : ", ") + scenario.actors[actors[i]].name;
@@ -230,6 +215,10 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
                       "Both score {} and agree in every tie-break: they are tied in place "
                       "{}.",
                       first_score, first.place);
+  }
+  if (first.feasible != second.feasible && result.infeasible != Infeasible::keep) {
+    return text +
+           fmt::format("The vehicle cannot follow the second: it {}.", demand_words(second.demand));
   }
   if (*first.score == *second.score) {
     return text + fmt::format("Both score {}; the first is placed before because {}.", first_score,

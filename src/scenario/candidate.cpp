@@ -1,6 +1,7 @@
 #include "crashrank/scenario/candidate.hpp"
 
 #include "crashrank/internal/base/guarded.hpp"
+#include "scenario/demand.hpp"
 #include "scenario/motion_check.hpp"
 #include "scenario/scenario_check.hpp"
 
@@ -15,22 +16,19 @@
 namespace crashrank {
 namespace {
 
-// An absent wheelbase is this share of the vehicle's length; passenger cars lie between 0.56 and
-// 0.64.
-constexpr double wheelbase_per_length = 0.6;
-
 double full_grip_mps2(const Scenario& scenario) { return scenario.grip * standard_gravity_mps2; }
+
+/// What grip and brakes give together.
+double full_braking_mps2(const Scenario& scenario) {
+  const double grip = full_grip_mps2(scenario);
+  return std::min(grip, scenario.ego.max_deceleration_mps2.value_or(grip));
+}
 
 // Of an ego this slow the measured yaw rate says nothing of the path: a thousandth of a metre a
 // second and a tenth of a degree would make a circle smaller than the car.
 constexpr double least_curving_mps = 0.5;
 
 double direction_of(double speed_mps) { return speed_mps < 0.0 ? -1.0 : 1.0; }
-
-double wheelbase_m(const Scenario& scenario, double ego_length_m) {
-  const double length = std::max(ego_length_m, scenario_limits::min_wheelbase_m);
-  return scenario.ego.wheelbase_m.value_or(wheelbase_per_length * length);
-}
 
 Result<Motion> timed_motion(const std::vector<TimedPose>& poses, const std::string& path) {
   Result<Motion> motion = Motion::timed(poses);
@@ -76,10 +74,10 @@ Result<Candidate> listed_candidate(const Scenario& scenario, std::size_t index, 
                        curvature);
 }
 
-// Straight ahead, with at least half of the deceleration that the grip gives.
+// Straight ahead, with at least half of the deceleration that can be had.
 bool brakes_straight(const Candidate& candidate, const Scenario& scenario) {
   const double deceleration = -candidate.acceleration_mps2 * direction_of(scenario.ego.speed_mps);
-  return candidate.curvature_per_m == 0.0 && deceleration >= 0.5 * full_grip_mps2(scenario);
+  return candidate.curvature_per_m == 0.0 && deceleration >= 0.5 * full_braking_mps2(scenario);
 }
 
 double level(std::size_t index, std::size_t count) {
@@ -100,7 +98,8 @@ struct GridPoint {
 GridPoint grid_point(const Scenario& scenario, double u, double w, double max_curvature) {
   const ScenarioEgo& ego = scenario.ego;
   const double grip = full_grip_mps2(scenario);
-  const double longitudinal = u < 0.0 ? grip : std::min(grip, ego.max_acceleration_mps2);
+  const double longitudinal =
+      u < 0.0 ? full_braking_mps2(scenario) : std::min(grip, ego.max_acceleration_mps2);
   double along_way = u * longitudinal * std::sqrt(1.0 - 0.5 * w * w);
   // A vehicle that stands has nothing to brake.
   if (ego.speed_mps == 0.0) along_way = std::max(along_way, 0.0);
@@ -177,7 +176,7 @@ std::string free_name(std::set<std::string>& taken, const std::string& wish) {
 
 Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_length_m) {
   if (Status sound = detail::check_scenario(scenario); !sound) return sound.error();
-  const double wheelbase = wheelbase_m(scenario, ego_length_m);
+  const double wheelbase = detail::ego_limits(scenario, ego_length_m, {}).wheelbase_m;
   std::vector<Candidate> candidates;
   std::set<std::string> names;
   for (std::size_t i = 0; i < scenario.listed.size(); ++i) {
@@ -195,7 +194,7 @@ Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_len
   if (scenario.add_straight_braking &&
       std::none_of(candidates.begin(), candidates.end(), braking) &&
       std::none_of(grid.begin(), grid.end(), braking)) {
-    const double deceleration = scenario.ego.speed_mps == 0.0 ? 0.0 : full_grip_mps2(scenario);
+    const double deceleration = scenario.ego.speed_mps == 0.0 ? 0.0 : full_braking_mps2(scenario);
     candidates.push_back(arc_candidate(scenario.ego, free_name(names, "brake straight ahead"),
                                        CandidateOrigin::added_braking,
                                        -deceleration * direction_of(scenario.ego.speed_mps), 0.0));
@@ -212,18 +211,6 @@ Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_len
 }
 
 }  // namespace
-
-std::optional<double> grip_demand(const Candidate& candidate, const Scenario& scenario,
-                                  double until_s) noexcept {
-  if (candidate.motion.holds_poses()) return std::nullopt;
-  // Speed rises or falls all the way: it is highest at one of the ends.
-  double across = 0.0;
-  for (const double time_s : {0.0, until_s}) {
-    const Velocity v = candidate.motion.velocity_at(time_s);
-    across = std::max(across, std::abs(v.angular_radps.z()) * v.linear_mps.norm());
-  }
-  return std::hypot(candidate.acceleration_mps2, across) / full_grip_mps2(scenario);
-}
 
 Result<std::vector<Candidate>> make_candidates(const Scenario& scenario, double ego_length_m) {
   return detail::guarded([&] { return make_all(scenario, ego_length_m); });

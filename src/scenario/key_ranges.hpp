@@ -20,6 +20,8 @@ inline constexpr NumberRange yaw_rate{-scenario_limits::yaw_rate_dps,
                                       scenario_limits::yaw_rate_dps};
 inline constexpr NumberRange steering{-scenario_limits::steering_deg,
                                       scenario_limits::steering_deg};
+inline constexpr NumberRange steering_rate{scenario_limits::min_steering_rate_dps,
+                                           scenario_limits::max_steering_rate_dps};
 inline constexpr NumberRange occupants{0.0, harm_limits::people};
 /// Of a prediction or a future.
 inline constexpr NumberRange probability{0.0, 1.0, true};

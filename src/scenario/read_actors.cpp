@@ -23,16 +23,6 @@ Pose read_pose_members(const JsonObject& object) {
                           rad_per_deg * object.number("roll_deg", angle, 0.0));
 }
 
-/// Keys of the second version of the format.
-void require_version_2(const JsonObject& root, const JsonObject& object,
-                       std::initializer_list<const char*> keys) {
-  if (root.has("scenario_version") && root.at("scenario_version") == 2) return;
-  for (const char* const key : keys) {
-    if (!object.has(key)) continue;
-    object.refuse(key, "belongs to version 2 of the format", "set scenario_version to 2");
-  }
-}
-
 ActorMotion read_motion(const JsonObject& object) {
   ActorMotion motion;
   motion.pose = read_pose(object);
@@ -154,6 +144,15 @@ std::size_t read_model_name(const JsonObject& object, const std::vector<Scenario
   }
   object.refuse("model", "'" + name + "' is not among the models", "the models are " + known);
   return 0;
+}
+
+void require_version_2(const JsonObject& root, const JsonObject& object,
+                       std::initializer_list<const char*> keys) {
+  if (root.has("scenario_version") && root.at("scenario_version") == 2) return;
+  for (const char* const key : keys) {
+    if (!object.has(key)) continue;
+    object.refuse(key, "belongs to version 2 of the format", "set scenario_version to 2");
+  }
 }
 
 void read_actors(const JsonObject& root, Scenario& scenario) {

@@ -5,6 +5,7 @@
 #include "scenario/json_object.hpp"
 
 #include <cstddef>
+#include <initializer_list>
 #include <vector>
 
 namespace crashrank::detail {
@@ -15,6 +16,10 @@ Pose read_pose(const JsonObject& parent);
 std::vector<TimedPose> read_poses(const JsonObject& parent);
 /// Reads the required key "model"; the index of the model of that name.
 std::size_t read_model_name(const JsonObject& object, const std::vector<ScenarioModel>& models);
+
+/// Refuses the keys of version 2 of the format in version 1, as `root` states it.
+void require_version_2(const JsonObject& root, const JsonObject& object,
+                       std::initializer_list<const char*> keys);
 
 /// Reads "actors" of a scenario whose models are read.
 void read_actors(const JsonObject& root, Scenario& scenario);

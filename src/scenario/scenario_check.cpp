@@ -116,6 +116,12 @@ void check_ego(const Scenario& scenario, Check& check) {
                      limits::acceleration_mps2);
   check.not_negative("ego.max_steering_deg", ego.max_steering_rad, limits::steering_deg,
                      rad_per_deg);
+  check.within("ego.max_steering_rate_dps", ego.max_steering_rate_radps, ranges::steering_rate,
+               rad_per_deg);
+  if (ego.max_deceleration_mps2) {
+    check.within("ego.max_deceleration_mps2", *ego.max_deceleration_mps2,
+                 {limits::min_deceleration_mps2, limits::acceleration_mps2});
+  }
   if (ego.wheelbase_m) {
     check.within("ego.wheelbase_m", *ego.wheelbase_m,
                  {limits::min_wheelbase_m, limits::max_wheelbase_m});
@@ -242,7 +248,32 @@ void check_harm(const HarmOptions& harm, const std::string& path, Check& check) 
   check.not_negative(path + ".least_struck_share", harm.least_struck_share, 1.0);
 }
 
+void check_road(const Road& road, Check& check) {
+  std::size_t corners = 0;
+  for (const Area& area : road.drivable) {
+    corners += area.outer.size();
+    for (const auto& hole : area.holes) corners += hole.size();
+  }
+  if (corners > road_limits::corners || road.drivable.size() > road_limits::areas) {
+    check.refuse("road.drivable", "has more than 10,000 corners or 1,000 areas", "simplify it");
+  }
+  for (std::size_t i = 0; i < road.drivable.size() && check.status.ok(); ++i) {
+    check.status = check_area(road.drivable[i], "road." + ranges::indexed("drivable", i));
+  }
+  check.not_negative("road.off_road.harm_per_leaving", road.harm_per_leaving,
+                     road_limits::harm_per_leaving);
+  if (road.off_road_grip) {
+    check.within("road.off_road.grip", *road.off_road_grip, {limits::min_grip, limits::max_grip});
+  }
+}
+
 }  // namespace
+
+Status check_road(const Road& road) {
+  Check check;
+  check_road(road, check);
+  return check.status;
+}
 
 Status check_harm(const HarmOptions& harm, const std::string& path) {
   Check check;
@@ -308,6 +339,7 @@ Status check_scenario(const Scenario& scenario) {
   check_actors(scenario, check);
   check_futures(scenario, check);
   check_risk(scenario.risk, check);
+  check_road(scenario.road, check);
   check.within("horizon_s", scenario.horizon_s, {0.0, limits::horizon_s, true});
   check_harm(scenario.harm, "harm", check);
   check.within("grip", scenario.grip, {limits::min_grip, limits::max_grip});

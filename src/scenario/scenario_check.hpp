@@ -19,6 +19,9 @@ Status check_names(const Scenario& scenario);
 /// stand in place of predictions. A part of `check_scenario`.
 Status check_probabilities(const Scenario& scenario);
 
+/// Whether the road's areas are sound and its numbers in range. A part of `check_scenario`.
+Status check_road(const Road& road);
+
 /// Whether so many threads may share the work; 0 counts as 1. Errors: usage.
 Status check_workers(unsigned workers);
 

@@ -5,6 +5,7 @@
 #include "scenario/key_ranges.hpp"
 #include "scenario/read_actors.hpp"
 #include "scenario/read_harm.hpp"
+#include "scenario/read_road.hpp"
 #include "scenario/scenario_check.hpp"
 
 #include <algorithm>
@@ -105,10 +106,12 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
   return model;
 }
 
-ScenarioEgo read_ego(const json& value, const std::vector<ScenarioModel>& models, Status& status) {
-  const JsonObject object(value, "ego", status,
-                          {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m",
-                           "max_acceleration_mps2", "max_steering_deg", "occupants"});
+ScenarioEgo read_ego(const JsonObject& root, const std::vector<ScenarioModel>& models) {
+  const JsonObject object(
+      root.at("ego"), "ego", root.status(),
+      {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m", "max_acceleration_mps2",
+       "max_deceleration_mps2", "max_steering_deg", "max_steering_rate_dps", "occupants"});
+  detail::require_version_2(root, object, {"max_deceleration_mps2", "max_steering_rate_dps"});
   ScenarioEgo ego;
   ego.model = detail::read_model_name(object, models);
   ego.pose = detail::read_pose(object);
@@ -119,6 +122,11 @@ ScenarioEgo read_ego(const json& value, const std::vector<ScenarioModel>& models
       object.optional_number("wheelbase_m", {limits::min_wheelbase_m, limits::max_wheelbase_m});
   ego.max_acceleration_mps2 = object.number(
       "max_acceleration_mps2", {0.0, limits::acceleration_mps2}, ego.max_acceleration_mps2);
+  ego.max_deceleration_mps2 = object.optional_number(
+      "max_deceleration_mps2", {limits::min_deceleration_mps2, limits::acceleration_mps2});
+  ego.max_steering_rate_radps =
+      rad_per_deg * object.number("max_steering_rate_dps", steering_rate,
+                                  ego.max_steering_rate_radps / rad_per_deg);
   ego.max_steering_rad =
       rad_per_deg * object.number("max_steering_deg", {0.0, limits::steering_deg}, 35.0);
   ego.occupants = object.optional_number("occupants", occupants);
@@ -208,7 +216,7 @@ Scenario read_scenario(const json& document, Status& status) {
   const JsonObject root(
       document, {}, status,
       {"$schema", "scenario_version", "name", "description", "models", "ego", "candidates",
-       "actors", "horizon_s", "crush", "measure", "harm", "grip", "futures", "risk"});
+       "actors", "horizon_s", "crush", "measure", "harm", "grip", "futures", "risk", "road"});
   root.require("scenario_version");
   root.text("$schema", limits::path_characters);
   if (root.has("scenario_version") && root.at("scenario_version") != 1 &&
@@ -221,10 +229,12 @@ Scenario read_scenario(const json& document, Status& status) {
   read_models(root, scenario);
   root.require("ego");
   if (!status.ok()) return scenario;
-  scenario.ego = read_ego(root.at("ego"), scenario.models, status);
+  scenario.ego = read_ego(root, scenario.models);
   read_candidates(root, scenario);
   detail::read_actors(root, scenario);
   detail::read_futures(root, scenario);
+  detail::require_version_2(root, root, {"road"});
+  scenario.road = detail::read_road(root);
   scenario.horizon_s = root.number("horizon_s", {0.0, limits::horizon_s, true}, 4.0);
   if (root.has("measure")) {
     const Result<Measure> measure =
@@ -257,6 +267,7 @@ Result<Scenario> parse(const std::string& text, const std::string& file) {
   Scenario scenario = read_scenario(*document, status);
   if (status.ok()) status = detail::check_names(scenario);
   if (status.ok()) status = detail::check_probabilities(scenario);
+  if (status.ok()) status = detail::check_road(scenario.road);
   if (!status.ok()) return detail::told_of(file, status.error());
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
   return scenario;

@@ -158,16 +158,19 @@ TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
     told.result.ranking.push_back(miss);
     told.result.ranking.back().candidate = told.result.candidates.size() - 1;
     told.result.ranking.back().place = i + 1;
+    if (i == 1) continue;
+    told.result.ranking.back().feasible = false;
+    told.result.ranking.back().demand.grip = 1.25 * (1.0 + 0.2 * static_cast<double>(i));
   }
   const std::string grip =
-      " beyond the tyres' grip (0.8), so that the car cannot follow: 'turn 0', in place 1, takes "
-      "1.25 times what there is; 'turn 2', in place 3, takes 1.75 times what there is; 'turn 3', "
-      "in place 4, takes 2.00 times what there is";
+      " than the vehicle can do and stands behind what it can follow: 'turn 0', in place 1, takes "
+      "1.25 times the grip; 'turn 2', in place 3, takes 1.75 times the grip; 'turn 3', "
+      "in place 4, takes 2.00 times the grip";
   ASSERT_EQ(told.doubts().size(), 1U);
-  EXPECT_EQ(told.doubts()[0], "4 listed manoeuvres lie" + grip + "; and 1 more");
+  EXPECT_EQ(told.doubts()[0], "4 manoeuvres ask for more" + grip + "; and 1 more");
   told.result.ranking.pop_back();
   ASSERT_EQ(told.doubts().size(), 1U);
-  EXPECT_EQ(told.doubts()[0], "3 listed manoeuvres lie" + grip);
+  EXPECT_EQ(told.doubts()[0], "3 manoeuvres ask for more" + grip);
 }
 
 TEST(Doubts, PlansThatEndWhileMovingOrBeginAtAnotherSpeedAreTold) {

@@ -269,47 +269,6 @@ TEST(ListedCandidate, TimedPosesAreFollowedAndChecked) {
   EXPECT_EQ(bad.error().place.rfind("candidates.listed[0].poses", 0), 0U) << bad.error().place;
 }
 
-TEST(GripDemand, IsTheHardestAccelerationOfTheMotion) {
-  double hardest_of_grids = 0.0;
-  for (std::uint64_t seed = 100; seed < 140; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    oracle::Random random(seed);
-    Scenario scenario = scenario_at(random.real(1.0, 40.0) * (random.integer(0, 3) == 0 ? -1 : 1));
-    scenario.grip = random.real(0.1, 1.2);
-    scenario.horizon_s = random.real(0.5, 5.0);
-    scenario.grid = CandidateGrid{3, 3};
-    scenario.listed = {listed("steers", random.real(-12.0, 12.0)),
-                       listed("turns", random.real(-12.0, 12.0))};
-    scenario.listed[0].steering_rad = random.real(-0.5, 0.5);
-    scenario.listed[1].yaw_rate_radps = random.real(-1.0, 1.0);
-    const double whole = scenario.grip * standard_gravity_mps2;
-    const double until = scenario.horizon_s * random.real(0.1, 1.0);
-    for (const Candidate& candidate : candidates_of(scenario)) {
-      double hardest = 0.0;
-      for (int k = 0; k <= 4000; ++k) {
-        const double t = 1e-4 + (until - 2e-4) * k / 4000.0;
-        if (std::abs(t - candidate.motion.rest_time()) < 1e-3) continue;
-        hardest = std::max(hardest, measured_acceleration(candidate.motion, t) / whole);
-      }
-      const std::optional<double> told = grip_demand(candidate, scenario, until);
-      ASSERT_TRUE(told.has_value());
-      EXPECT_NEAR(*told, hardest, 2e-3 * (1.0 + hardest)) << candidate.name;
-      if (candidate.origin != CandidateOrigin::grid) continue;
-      hardest_of_grids =
-          std::max(hardest_of_grids, *grip_demand(candidate, scenario, scenario.horizon_s));
-    }
-  }
-  EXPECT_NEAR(hardest_of_grids, 1.0, 1e-9);
-}
-
-TEST(GripDemand, TimedPosesTellNone) {
-  Scenario scenario = scenario_at(10.0);
-  ListedCandidate planned = listed("planned", 0.0);
-  planned.poses = {{0.0, {}}, {2.0, {}}};
-  scenario.listed = {planned};
-  EXPECT_FALSE(grip_demand(candidates_of(scenario)[0], scenario, 1.0).has_value());
-}
-
 TEST(ActorMotion, FollowsSpeedYawRateAndBraking) {
   ScenarioActor actor;
   actor.speed_mps = 6.0;

@@ -11,6 +11,7 @@
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/rank/harm.hpp"
 #include "crashrank/scenario/candidate.hpp"
+#include "crashrank/scenario/demand.hpp"
 #include "crashrank/scenario/measure.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
@@ -29,6 +30,18 @@ namespace crashrank {
 /// Most futures that are drawn.
 inline constexpr std::size_t max_sampled_futures = 10'000;
 
+/// What becomes of candidates that the vehicle cannot follow.
+enum class Infeasible {
+  demote,  ///< they stand behind all feasible ones
+  drop,    ///< they are left out of the ranking, unless there is no feasible one
+  keep,    ///< they are ranked like all others
+};
+
+/// The name on the command line: "demote", "drop", "keep".
+CRASHRANK_API const char* infeasible_name(Infeasible infeasible) noexcept;
+/// Reads a name; the error (usage) lists those there are.
+CRASHRANK_API Result<Infeasible> infeasible_from_name(const std::string& name);
+
 /// How candidates are ranked.
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
@@ -43,7 +56,8 @@ struct RankOptions {
   /// Futures that are drawn where combinations of predictions are too many, 1 to
   /// `max_sampled_futures`.
   std::size_t sampled_futures = 64;
-  ImpactOptions impact;  ///< `start_is_apart` is decided inside
+  Infeasible infeasible = Infeasible::demote;  ///< what becomes of what the ego cannot follow
+  ImpactOptions impact;                        ///< `start_is_apart` is decided inside
   /// Called before each simulation and after each candidate with the number of candidates evaluated
   /// and of all, by all workers, also concurrently; must return within microseconds and not throw.
   /// Returning false cancels the ranking: candidates not evaluated yet get bounds on their scores.
@@ -197,6 +211,23 @@ struct FutureOutcome {
   std::size_t contacts = 0;        ///< with a force, those between others included
 };
 
+/// A plan that takes a wheel off the road.
+struct RoadLeaving {
+  double time_s = 0.0;                                ///< from the decision
+  double speed_mps = 0.0;                             ///< of the ego then
+  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();  ///< where the wheel is, world, m
+};
+
+/// Where the ego is at the horizon, if nothing was hit.
+struct HorizonState {
+  double speed_mps = 0.0;                                ///< >= 0
+  double heading_rad = 0.0;                              ///< world, left positive, from x
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< of the body's origin, world, m
+};
+
+/// Nobody further away is looked for, m.
+inline constexpr double farthest_clearance_m = 50.0;
+
 /// What choosing a candidate leads to. Contacts, damage and grazes are those of the likeliest
 /// future; scores, samples and places are of all futures.
 struct CandidateResult {
@@ -223,6 +254,20 @@ struct CandidateResult {
   /// Where the score is known: what the futures lead to, the likeliest first, then by probability.
   std::vector<FutureOutcome> futures;
   double collision_probability = 0.0;  ///< of a contact of the ego's
+  ManoeuvreDemand demand;              ///< as far as it is followed in any future
+  bool feasible = true;                ///< the vehicle can follow it so far
+  /// Before its first contact in the likeliest future, a wheel leaves the road.
+  std::optional<RoadLeaving> leaves_road;
+  /// Between the ego's outline and any other's, seen from above and height by height, along the
+  /// plans of all futures until the horizon, m; 0 where it touches somebody in one of them, absent
+  /// where nobody comes nearer than `farthest_clearance_m` and where the score is not known.
+  std::optional<double> least_distance_m;
+  /// Post-encroachment time: the least time between the ego and another that moves at one place,
+  /// by the rectangles around their outlines, along the plans of all futures until the horizon, s;
+  /// 0 where it touches somebody in one of them, absent where no two ways cross.
+  std::optional<double> least_time_gap_s;
+  std::optional<HorizonState>
+      at_horizon;  ///< where it collides with nobody in the likeliest future
   /// Standard error of the score that comes from drawing a sample of futures, as if they were drawn
   /// independently. Absent without a sample, for worst and quantile, for cvar with fewer than 10
   /// drawn futures in its tail, and where the drawn scores do not differ: futures that were not
@@ -307,10 +352,12 @@ struct RankResult {
   /// In which harm, delta-v and energy were evaluated, the first where nothing varies; empty for
   /// other measures and without HarmOptions::intervals. Numerical ones come last.
   std::vector<HarmSample> samples;
-  std::vector<Candidate> candidates;     ///< in the order of `make_candidates`
-  std::vector<CandidateResult> ranking;  ///< every candidate once, best first
-  bool complete = true;                  ///< every score is known
-  bool proved = true;                    ///< no other candidate can still take the first place
+  std::vector<Candidate> candidates;           ///< in the order of `make_candidates`
+  std::vector<CandidateResult> ranking;        ///< every candidate but the dropped once, best first
+  Infeasible infeasible = Infeasible::demote;  ///< what became of what the ego cannot follow
+  std::vector<std::size_t> dropped;  ///< indices into `candidates`, rising; Infeasible::drop only
+  bool complete = true;              ///< every score is known
+  bool proved = true;                ///< no other candidate can still take the first place
   /// Candidates that can be first, best guess first. Of known scores the first in the ranking
   /// stands for those that are tied with it.
   std::vector<std::size_t> in_race;
@@ -356,8 +403,10 @@ struct RankResult {
 /// bodies that came near it, so that sharing changes no bit. A body that nothing moves follows one
 /// plan, and one that may not exist adjoins no other.
 ///
-/// Order: lower score; then the lower probability of a collision; then, in the likeliest future, a
-/// clean miss before a graze, the later first contact, and the lower closing speed. Candidates that
+/// Order: what the ego can follow before what it cannot (RankOptions::infeasible); lower score;
+/// lower probability of a collision; in the likeliest future a clean miss before a graze, and
+/// staying on the road; the larger least distance and least time gap; in the likeliest future the
+/// later first contact, the lower closing speed, or the lower speed at the horizon. Candidates that
 /// agree in all of these are tied: they share a place and are listed in the order of the
 /// candidates.
 ///

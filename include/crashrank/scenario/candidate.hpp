@@ -45,13 +45,6 @@ struct Candidate {
 CRASHRANK_API Result<std::vector<Candidate>> make_candidates(const Scenario& scenario,
                                                              double ego_length_m);
 
-/// Share of the tyres' grip that a manoeuvre takes, at most, until a time: its acceleration and
-/// what keeps it on its curve, together, over `Scenario::grip` times standard gravity. Above 1 the
-/// vehicle cannot follow it; nothing is refused for that, since what a planner asks for is its own.
-/// Absent for timed poses, which tell no accelerations.
-CRASHRANK_API std::optional<double> grip_demand(const Candidate& candidate,
-                                                const Scenario& scenario, double until_s) noexcept;
-
 /// An actor's own motion. Errors: bad_input for poses that are out of order or not rigid.
 CRASHRANK_API Result<Motion> make_motion(const ScenarioActor& actor);
 /// A motion as a scenario writes it; `place` names it in errors.

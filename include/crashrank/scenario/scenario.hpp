@@ -9,6 +9,7 @@
 #include "crashrank/scenario/harm_options.hpp"
 #include "crashrank/scenario/measure.hpp"
 #include "crashrank/scenario/risk.hpp"
+#include "crashrank/scenario/road.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
 #include "crashrank/vehicle/surface.hpp"
 
@@ -56,7 +57,12 @@ struct ScenarioEgo {
   double yaw_rate_radps = 0.0;         ///< left positive
   std::optional<double> wheelbase_m;   ///< absent: 0.6 of the mesh's length
   double max_acceleration_mps2 = 3.0;  ///< of the engine, m/s²
+  /// Of the brakes, m/s²; absent: they hold as much as the tyres.
+  std::optional<double> max_deceleration_mps2;
   double max_steering_rad = 0.6108652381980153;  ///< 35 degrees
+  /// Of the front wheels, rad/s. The default is that of the passenger cars of the CommonRoad
+  /// vehicle models (Althoff, Koschi and Manzinger, IEEE Intelligent Vehicles 2017).
+  double max_steering_rate_radps = 0.4;
   /// Persons in it, 0 allowed; absent: HarmWeights::people_in_ego.
   std::optional<double> occupants;
 };
@@ -117,7 +123,7 @@ struct CandidateGrid {
 };
 
 /// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json;
-/// predictions, existence, futures and risk belong to its version 2.
+/// predictions, existence, futures, risk, road, braking and steering rate belong to its version 2.
 struct Scenario {
   std::string name;                                     ///< unique
   std::string description;                              ///< for people
@@ -134,6 +140,7 @@ struct Scenario {
   /// Joint futures, in place of predictions of single actors.
   std::vector<JointFuture> futures;
   RiskMeasure risk;  ///< how the scores of several futures become one
+  Road road;         ///< where the ego may drive
   /// Key paths of the text that are accepted but change nothing, as "crush"; `parse_scenario` fills
   /// it, in the order of the schema.
   std::vector<std::string> keys_without_effect;
@@ -169,18 +176,21 @@ inline constexpr double fastest_mps = 300.0;       ///< most, of any motion with
 inline constexpr double acceleration_mps2 = 50.0;  ///< most, each way, m/s²
 inline constexpr double yaw_rate_dps = 720.0;      ///< most, each way
 inline constexpr double steering_deg = 80.0;       ///< most, each way
-inline constexpr double min_wheelbase_m = 0.1;     ///< m
-inline constexpr double max_wheelbase_m = 30.0;    ///< m
-inline constexpr double min_mass_kg = 0.1;         ///< kg
-inline constexpr double max_mass_kg = 1e6;         ///< kg
-inline constexpr double yaw_inertia_kgm2 = 1e9;    ///< most, kg·m²; above 0
-inline constexpr double min_stiffness = 0.01;      ///< least factor
-inline constexpr double max_stiffness = 100.0;     ///< most
-inline constexpr double min_scale = 1e-6;          ///< metres per file unit
-inline constexpr double max_scale = 1e6;           ///< metres per file unit
-inline constexpr double min_grip = 0.01;           ///< least friction
-inline constexpr double max_grip = 3.0;            ///< most friction
-inline constexpr double probability_sum = 1e-6;    ///< probabilities sum to 1 within this
+inline constexpr double min_steering_rate_dps = 0.1;    ///< least limit
+inline constexpr double max_steering_rate_dps = 720.0;  ///< most
+inline constexpr double min_deceleration_mps2 = 0.1;    ///< least limit of the brakes, m/s²
+inline constexpr double min_wheelbase_m = 0.1;          ///< m
+inline constexpr double max_wheelbase_m = 30.0;         ///< m
+inline constexpr double min_mass_kg = 0.1;              ///< kg
+inline constexpr double max_mass_kg = 1e6;              ///< kg
+inline constexpr double yaw_inertia_kgm2 = 1e9;         ///< most, kg·m²; above 0
+inline constexpr double min_stiffness = 0.01;           ///< least factor
+inline constexpr double max_stiffness = 100.0;          ///< most
+inline constexpr double min_scale = 1e-6;               ///< metres per file unit
+inline constexpr double max_scale = 1e6;                ///< metres per file unit
+inline constexpr double min_grip = 0.01;                ///< least friction
+inline constexpr double max_grip = 3.0;                 ///< most friction
+inline constexpr double probability_sum = 1e-6;         ///< probabilities sum to 1 within this
 }  // namespace scenario_limits
 
 /// Reads a scenario from its text; `file` only names it in errors and lends it its name when the

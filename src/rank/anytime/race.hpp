@@ -2,6 +2,7 @@
 
 #include "rank/anytime/refine.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -11,16 +12,17 @@ namespace crashrank::detail {
 
 /// Who can still be first, and whose turn it is to be looked at more closely. Candidates wait in a
 /// heap, the most promising on top: those of the lowest possible score, of these that of the lowest
-/// certain one, then in their own order.
+/// certain one, then in their own order; last those that are demoted as not feasible.
 class Race {
 public:
   void prepare(std::size_t most) {
     waiting_.reserve(most);
     beaten_.reserve(most);
+    tiers_.reserve(most);
   }
 
   /// All begin.
-  void begin(const std::vector<Refined>& states, std::size_t count);
+  void begin(std::size_t count);
 
   /// Takes up to `most` from the waiting into `chosen`; 0 when nobody that waits has a part in what
   /// is to be decided.
@@ -35,21 +37,39 @@ public:
 
   bool decided() const noexcept { return resumed_; }
   /// The best candidate's score is at most this.
-  double limit() const noexcept { return limit_; }
+  double limit() const noexcept { return limit_of(tier_of_first()); }
 
   /// Says of everybody whether he is in the race.
   void mark(std::vector<Refined>& states);
 
 private:
+  /// Whether the vehicle can follow it: the first place goes to the first tier that has anybody.
+  enum Tier : std::uint8_t { feasible, undecided, demoted };
+
+  static Tier tier(const Refined& state) noexcept {
+    if (!state.told.feasible) return demoted;
+    return state.demand_known || state.told.known ? feasible : undecided;
+  }
+  Tier tier_of_first() const noexcept {
+    if (counts_[feasible] > 0) return feasible;
+    return counts_[undecided] > 0 ? undecided : demoted;
+  }
+  /// Of those yet undecided nobody knows whether their scores count.
+  double limit_of(Tier tier) const noexcept {
+    if (tier == undecided) return std::numeric_limits<double>::infinity();
+    return limits_[tier];
+  }
   bool sooner(const std::vector<Refined>& states, std::uint32_t a, std::uint32_t b) const;
-  bool can_win(const RankedCandidate& candidate, const std::vector<Refined>& states) const;
+  bool can_win(const Refined& state, const std::vector<Refined>& states) const;
   void push(const std::vector<Refined>& states, std::uint32_t candidate);
 
   std::vector<std::uint32_t> waiting_;  ///< a heap
   std::vector<std::uint32_t> beaten_;
   std::size_t count_ = 0;
   bool resumed_ = false;
-  double limit_ = std::numeric_limits<double>::infinity();
+  std::vector<Tier> tiers_;              ///< by candidate
+  std::array<std::size_t, 3> counts_{};  ///< of candidates, by tier
+  std::array<double, 3> limits_{};       ///< the least of their highest scores
   static constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t best_known_ = nobody;
 };

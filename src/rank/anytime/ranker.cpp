@@ -6,7 +6,7 @@
 #include "rank/anytime/race.hpp"
 #include "rank/anytime/refine.hpp"
 #include "rank/anytime/step_rounds.hpp"
-#include "rank/near.hpp"
+#include "rank/order.hpp"
 #include "rank/scene.hpp"
 #include "scenario/motion_check.hpp"
 #include "scenario/scenario_check.hpp"
@@ -16,6 +16,7 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -97,15 +98,6 @@ struct CRASHRANK_HIDDEN Ranker::State {
     const auto all = static_cast<std::uint32_t>(rounds.candidates().size());
     bool going = budget.work > 0;
     std::uint32_t begin = 0;
-    if (going && all > 1) {
-      if (detail::all_are_clear(scene, rounds.candidates(), rounds.watch(), effort.work)) {
-        for (; begin < all; ++begin) {
-          detail::settle_as_clear(states[begin]);
-          race.put_back(begin, states);
-        }
-      }
-      going = effort.work < budget.work && !rounds.expired();
-    }
     while (begin < all && going) {
       const std::size_t steps = std::min<std::size_t>(StepRounds::most_steps, all - begin);
       for (std::size_t i = 0; i < steps; ++i) {
@@ -136,7 +128,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
     for (std::size_t i = 0; i < asked.size(); ++i) {
       detail::begin_refining(scene, bounds, asked[i], i, states[i]);
     }
-    race.begin(states, asked.size());
+    race.begin(asked.size());
   }
 
   /// Of the first `all` states. Touches nothing that workers do.
@@ -266,7 +258,8 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
   });
 }
 
-Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noexcept {
+Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
+                           std::optional<EgoMotion> ego) noexcept {
   state_->rounds.await();
   return detail::guarded([&]() -> Status {
     detail::Scene& scene = state_->scene;
@@ -279,6 +272,10 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
     if (const char* const fault = detail::pose_fault(ego_start)) {
       return detail::refused_motion("ego", "its pose", fault);
     }
+    if (ego && !(std::abs(ego->speed_mps) <= scenario_limits::fastest_mps &&
+                 std::isfinite(ego->yaw_rate_radps))) {
+      return detail::refused_motion("ego", "its motion", "is not finite or faster than 300 m/s");
+    }
     for (std::size_t i = 0; i < actors.size(); ++i) {
       if (const char* const fault = detail::motion_fault(actors[i], scene.slice_s.back())) {
         return refused("actors", i, fault);
@@ -288,6 +285,8 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors) noe
     // From here on nothing can fail.
     for (std::size_t i = 0; i < actors.size(); ++i) std::swap(plans[i].motion, coming[i]);
     scene.ego_start = ego_start;
+    scene.limits.speed_mps = ego ? ego->speed_mps : std::numeric_limits<double>::quiet_NaN();
+    scene.limits.yaw_rate_radps = ego ? ego->yaw_rate_radps : 0.0;
     detail::place_actors(scene, state_->rounds.own().impact);
     state_->bounds.update(scene);
     return Success{};
@@ -406,6 +405,8 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     result.proved = answer.proved;
     result.elapsed_s = answer.elapsed_s;
     result.effort = answer.effort;
+    result.infeasible = s.scene.infeasible;
+    detail::drop_infeasible(result);
     detail::tell_stability(result);
     return result;
   });

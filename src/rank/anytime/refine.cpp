@@ -2,8 +2,10 @@
 
 #include "rank/combine_futures.hpp"
 #include "rank/hits.hpp"
+#include "rank/manoeuvre.hpp"
 #include "rank/measure_table.hpp"
 #include "rank/near.hpp"
+#include "rank/road_leaving.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -30,10 +32,39 @@ std::uint64_t tests_of(const RankWork& work) {
          work.damage.bv_tests + work.damage.primitive_tests + work.paths + work.crash_pieces;
 }
 
+constexpr double never_s = std::numeric_limits<double>::infinity();
+
+/// Tells what is to be said besides the crash.
+void describe(const RefineQuery& q, const Followed& followed, Refined& state, Scratch& scratch) {
+  const ManoeuvreFacts facts =
+      describe_manoeuvre(q.scene, q.candidate, followed, state.leaving, scratch);
+  RankedCandidate& told = state.told;
+  told.feasible = facts.feasible || q.scene.infeasible == Infeasible::keep;
+  told.leaves_road = facts.leaves_road.has_value();
+  told.least_distance_m = facts.clearance.distance_m;
+  told.least_time_gap_s = facts.clearance.time_gap_s;
+  told.end_speed_mps = told.collides ? 0.0 : facts.at_horizon.speed_mps;
+  state.demand_known = true;
+}
+
 void look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
-  find_near(q.scene, q.candidate.motion, 0.0, q.scene.slice_s.back(), scratch, work);
+  const double horizon_s = q.scene.slice_s.back();
+  state.leaving = find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s);
+  if (state.leaving) {
+    state.most += leaving_score(q.scene, state.leaving, never_s);
+    state.told.interval.highest = state.most;
+  }
+  find_near(q.scene, q.candidate.motion, 0.0, horizon_s, scratch, work);
   state.told.stage = RankStage::near;
-  if (scratch.near.empty()) settle(state, 0.0);
+  if (scratch.near.empty()) {
+    describe(q, {horizon_s, never_s, false}, state, scratch);
+    settle(state, leaving_score(q.scene, state.leaving, never_s));
+    return;
+  }
+  // What can be followed to the horizon can be followed to any contact.
+  state.demand_known =
+      q.scene.infeasible == Infeasible::keep ||
+      is_feasible(q.candidate, demand_until(q.scene, q.candidate, horizon_s, state.leaving));
 }
 
 constexpr double unknown = -1.0;
@@ -95,8 +126,7 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
   const Scratch::Hit* const first = first_hit(q.scene, scratch, futures.likeliest());
   told.collides = first != nullptr;
   told.collision_probability = collision_probability(q.scene, scratch);
-  const double until_s =
-      first != nullptr ? first->impact.time_s : std::numeric_limits<double>::infinity();
+  const double until_s = first != nullptr ? first->impact.time_s : never_s;
   told.grazes = grazes_before(q.scene, scratch, futures.likeliest(), until_s);
   if (first != nullptr) {
     state.first = first_contact_of(q, *first);
@@ -106,9 +136,16 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
   }
   state.stuck = !decided;
   if (!decided) return true;
+  Followed followed;
   for (std::size_t f = 0; f < futures.size(); ++f) {
-    if (first_hit(q.scene, scratch, f) == nullptr) state.scores[f] = 0.0;
+    const Scratch::Hit* const hit = first_hit(q.scene, scratch, f);
+    followed.touches = followed.touches || hit != nullptr;
+    followed.longest_s =
+        std::max(followed.longest_s, hit != nullptr ? hit->impact.time_s : q.scene.slice_s.back());
+    if (hit == nullptr) state.scores[f] = leaving_score(q.scene, state.leaving, never_s);
   }
+  followed.first_s = until_s;
+  describe(q, followed, state, scratch);
   choose_future(q.scene, state);
   combine(q, 0.0, state, scratch);
   return true;
@@ -163,6 +200,7 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   scratch.tally.begin();
   bool going = true;
   bool in_time = true;
+  const double left = leaving_score(q.scene, state.leaving, state.first.time_of_impact_s);
   while (going) {
     going = chain.advance(steps_at_a_time);
     if (!going) break;
@@ -170,7 +208,7 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
     for (; over < chain.contacts().size(); ++over) {
       scratch.tally.add(q.scene, chain.effect(over), plain);
     }
-    if (more_is_over) combine(q, scratch.tally.least_score(q.scene), state, scratch);
+    if (more_is_over) combine(q, left + scratch.tally.least_score(q.scene), state, scratch);
     in_time = !q.watch.expired();
     if (!in_time || state.told.interval.lowest > q.give_up_above) break;
     if (in_turns && chain.run().work() > turn) break;
@@ -182,7 +220,7 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   chain.effects(scratch.effects, scratch.order);
   scratch.tally.begin();
   for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, plain);
-  spread(q, scratch.tally.score(q.scene), state, scratch);
+  spread(q, left + scratch.tally.score(q.scene), state, scratch);
   combine(q, 0.0, state, scratch);
   return true;
 }
@@ -198,11 +236,6 @@ void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candida
   state.told.candidate = index;
   state.most = bounds.most(scene, candidate.motion);
   state.told.interval = {0.0, state.most};
-}
-
-void settle_as_clear(Refined& state) {
-  state.told.stage = RankStage::near;
-  settle(state, 0.0);
 }
 
 StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
@@ -242,24 +275,26 @@ StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
   return end;
 }
 
-bool promises_more(const RankedCandidate& a, const RankedCandidate& b) {
-  // A score where it is known, the worst that may come where it is not.
-  const double worth_a = a.known ? a.score : a.interval.highest;
-  const double worth_b = b.known ? b.score : b.interval.highest;
-  if (worth_a != worth_b) return worth_a < worth_b;
-  if (a.known != b.known) return a.known;
-  if (a.collision_probability != b.collision_probability) {
-    return a.collision_probability < b.collision_probability;
-  }
-  if (a.collides != b.collides) return !a.collides;
-  if (a.grazes != b.grazes) return !a.grazes;
-  if (a.collides) {
-    if (a.time_of_impact_s != b.time_of_impact_s) return a.time_of_impact_s > b.time_of_impact_s;
-    if (a.closing_speed_mps != b.closing_speed_mps) {
-      return a.closing_speed_mps < b.closing_speed_mps;
-    }
-  }
-  return a.candidate < b.candidate;
+OrderKey key_of(const RankedCandidate& c) noexcept {
+  OrderKey key;
+  key.demoted = !c.feasible;
+  key.worth = c.known ? c.score : c.interval.highest;
+  key.known = c.known;
+  key.collision_probability = c.collision_probability;
+  key.collides = c.collides;
+  key.grazes = c.grazes;
+  key.leaves_road = c.leaves_road;
+  key.distance_m = c.least_distance_m;
+  key.time_gap_s = c.least_time_gap_s;
+  key.first_s = c.time_of_impact_s;
+  key.closing_mps = c.closing_speed_mps;
+  key.end_speed_mps = c.end_speed_mps;
+  return key;
+}
+
+bool promises_more(const RankedCandidate& a, const RankedCandidate& b) noexcept {
+  const int compared = compare(key_of(a), key_of(b));
+  return compared != 0 ? compared < 0 : a.candidate < b.candidate;
 }
 
 }  // namespace crashrank::detail

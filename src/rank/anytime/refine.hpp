@@ -4,10 +4,12 @@
 #include "rank/anytime/bounds.hpp"
 #include "rank/anytime/watch.hpp"
 #include "rank/evaluate.hpp"
+#include "rank/order.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace crashrank::detail {
@@ -20,8 +22,10 @@ struct Refined {
   std::size_t future = 0;  ///< whose crash is simulated next
   /// Pieces of outline that the simulation of that crash has moved so far.
   std::uint64_t simulated = 0;
-  double most = 0.0;           ///< no future's score is above
-  std::vector<double> scores;  ///< by future; below 0: not known
+  double most = 0.0;                   ///< no future's score is above
+  bool demand_known = false;           ///< `told.feasible` is final
+  std::optional<RoadLeaving> leaving;  ///< of its plan; from the stage `near` on
+  std::vector<double> scores;          ///< by future; below 0: not known
 
   bool open() const noexcept { return !told.known && !stuck; }
 };
@@ -47,14 +51,13 @@ struct StepEnd {
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Refined& state);
 
-/// The candidate is known to come near nobody.
-void settle_as_clear(Refined& state);
-
 /// Takes an open candidate one stage further. Depends on the query and the candidate's own state
 /// alone. The interval only ever narrows.
 StepEnd refine(const RefineQuery& query, Refined& state, Scratch& scratch);
 
-/// The order of `ranks_before`, for what is known of candidates so far.
-bool promises_more(const RankedCandidate& a, const RankedCandidate& b);
+/// What decides the place, for what is known of a candidate so far.
+OrderKey key_of(const RankedCandidate& candidate) noexcept;
+/// Whether `a` stands before `b`, for what is known of both.
+bool promises_more(const RankedCandidate& a, const RankedCandidate& b) noexcept;
 
 }  // namespace crashrank::detail

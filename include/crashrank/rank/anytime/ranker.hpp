@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace crashrank {
@@ -65,7 +66,16 @@ struct RankedCandidate {
   double collision_probability = 0.0;
   /// From the stage `searched` on: its first contact in the likeliest future.
   bool collides = false;
-  bool grazes = false;            ///< passes something within the tolerance before that
+  bool grazes = false;  ///< passes something within the tolerance before that
+  /// The vehicle can follow it as far as it is followed, or that does not count (Infeasible::keep).
+  /// This and the next four are final where the score is known, the first from the stage `searched`
+  /// on; true as long as nothing else is known.
+  bool feasible = true;
+  bool leaves_road = false;  ///< before the first contact in the likeliest future
+  /// As in CandidateResult, infinity in place of what is absent there, 0 as long as it is open.
+  double least_distance_m = 0.0;
+  double least_time_gap_s = 0.0;  ///< the same, s
+  double end_speed_mps = 0.0;     ///< at the horizon; 0 for candidates that collide
   std::size_t actor = 0;          ///< index into Scenario::actors
   double time_of_impact_s = 0.0;  ///< from the decision
   /// Of the points that meet. Measures that simulate the crash do not hold above
@@ -85,6 +95,12 @@ struct RankerAnswer {
   /// Of the ranking: order, stages and the bits of scores and intervals. The same on every machine
   /// whenever the answer is.
   std::uint64_t hash = 0;
+};
+
+/// How the ego moves at time 0.
+struct EgoMotion {
+  double speed_mps = 0.0;       ///< along its forward axis; negative when reversing
+  double yaw_rate_radps = 0.0;  ///< left positive
 };
 
 /// The motions of a scenario's plans, in the order of `Ranker::plans`. Errors: bad_input for poses
@@ -140,8 +156,10 @@ public:
   /// by waiting for workers that an answer at its deadline left behind, then costs some µs an actor
   /// and allocates nothing but for timed motions. Errors, and nothing changes: usage where their
   /// number is another; bad_input for a pose or motion that is not finite or beyond
-  /// `scenario_limits` within the horizon; out_of_memory.
-  Status move_actors(const Pose& ego_start, View<const Motion> actors) noexcept;
+  /// `scenario_limits` within the horizon; out_of_memory. `ego` tells how the ego moves now:
+  /// without it the demand of timed poses is told of their later part alone.
+  Status move_actors(const Pose& ego_start, View<const Motion> actors,
+                     std::optional<EgoMotion> ego = std::nullopt) noexcept;
 
   /// The plans have other probabilities from now on: above 0, summing to 1 for each actor. Draws
   /// samples anew from the same strata, so that they change as little as the probabilities do.

@@ -1,0 +1,238 @@
+#include "rank/clearance.hpp"
+
+#include "crashrank/rank/rank.hpp"
+#include "rank/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace crashrank::detail {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// At 30 m/s a car moves a third of its length in a step.
+constexpr double longest_step_s = 0.05;
+constexpr double most_steps = 400.0;
+
+/// A body and its way.
+struct Moving {
+  const Outline& outline;
+  const Motion& motion;
+  View<const PlanarPose> way;
+  double fastest_mps = 0.0;
+
+  PlanarPose at(double time_s) const { return planar_pose(motion.pose_at(time_s)); }
+};
+
+double fastest_point_mps(const Motion& motion, const Outline& outline, double until_s) {
+  const MotionBound bound = motion.bound(0.0, until_s);
+  return bound.speed_mps + bound.angular_radps * outline.radius_m();
+}
+
+/// Whether bodies stand so far above each other that they pass over and under.
+bool passes_over(const Body& a, const Motion& of_a, const Body& b, const Motion& of_b) {
+  const auto reach = [](const Body& body, const Motion& motion) {
+    const Pose pose = motion.pose_at(0.0);
+    const double middle = (pose.rotation * body.center_m + pose.translation).z();
+    const double half = (pose.rotation * body.half_axes_m).row(2).cwiseAbs().sum();
+    return std::pair(middle - half, middle + half);
+  };
+  const auto [low_a, high_a] = reach(a, of_a);
+  const auto [low_b, high_b] = reach(b, of_b);
+  return low_a > high_b || low_b > high_a;
+}
+
+/// Least outline distance of two bodies on their ways.
+class LeastDistance {
+public:
+  LeastDistance(const Moving& a, const Moving& b, double step_s)
+      : a_(a), b_(b), step_s_(step_s), travel_m_((a.fastest_mps + b.fastest_mps) * step_s) {
+    for (std::size_t i = 0; i < a.way.size(); ++i) {
+      const double apart = rectangle_distance_m(a.outline, a.way[i], b.outline, b.way[i]);
+      if (apart < coarse_m_) {
+        coarse_m_ = apart;
+        nearest_ = i;
+      }
+    }
+  }
+
+  /// No distance is less. Between two times a distance falls by half of the travel at most.
+  double bound_m() const noexcept { return coarse_m_ - 0.5 * travel_m_; }
+
+  /// Looks closely only at the times at which the rectangles come near enough.
+  double find() const {
+    double best = at(nearest_, infinity);
+    double before = infinity;
+    double here = near(0, best);
+    for (std::size_t i = 0; i < a_.way.size(); ++i) {
+      const double behind = i + 1 < a_.way.size() ? near(i + 1, best) : infinity;
+      best = std::min(best, here);
+      if (here < infinity && here <= before && here <= behind && here - travel_m_ < best) {
+        best = std::min(best, refine(i, here));
+      }
+      before = here;
+      here = behind;
+    }
+    return best;
+  }
+
+private:
+  double at(std::size_t i, double cutoff_m) const {
+    return outline_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i], cutoff_m);
+  }
+  /// Infinity where nothing below `best` is near.
+  double near(std::size_t i, double best) const {
+    const double reach = best + travel_m_;
+    if (rectangle_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i]) >= reach) {
+      return infinity;
+    }
+    const double apart = at(i, reach);
+    return apart < reach ? apart : infinity;
+  }
+  double at_time(double time_s, double cutoff_m) const {
+    return outline_distance_m(a_.outline, a_.at(time_s), b_.outline, b_.at(time_s), cutoff_m);
+  }
+  /// Golden section between the neighbours of a time.
+  double refine(std::size_t i, double here) const {
+    constexpr double golden = 0.6180339887498949;
+    constexpr int rounds = 10;  // 0.1 s · 0.618^10 is less than a millisecond
+    const double end_s = step_s_ * static_cast<double>(a_.way.size() - 1);
+    const auto middle = step_s_ * static_cast<double>(i);
+    double low = std::max(middle - step_s_, 0.0);
+    double high = std::min(middle + step_s_, end_s);
+    const double cutoff = here + travel_m_;
+    double p = high - golden * (high - low);
+    double q = low + golden * (high - low);
+    double of_p = at_time(p, cutoff);
+    double of_q = at_time(q, cutoff);
+    double best = std::min({here, of_p, of_q});
+    for (int round = 0; round < rounds; ++round) {
+      if (of_p <= of_q) {
+        high = std::exchange(q, p);
+        of_q = of_p;
+        p = high - golden * (high - low);
+        of_p = at_time(p, cutoff);
+      } else {
+        low = std::exchange(p, q);
+        of_p = of_q;
+        q = low + golden * (high - low);
+        of_q = at_time(q, cutoff);
+      }
+      best = std::min({best, of_p, of_q});
+    }
+    return best;
+  }
+
+  const Moving& a_;
+  const Moving& b_;
+  double step_s_;
+  double travel_m_;
+  double coarse_m_ = infinity;
+  std::size_t nearest_ = 0;
+};
+
+bool overlap(const Moving& a, const PlanarPose& pose_a, const Moving& b, const PlanarPose& pose_b) {
+  const double reach = a.outline.radius_m() + b.outline.radius_m();
+  const double dx = pose_b.x - pose_a.x;
+  const double dy = pose_b.y - pose_a.y;
+  return dx * dx + dy * dy <= reach * reach &&
+         !(rectangle_distance_m(a.outline, pose_a, b.outline, pose_b) > 0.0);
+}
+
+/// Whether b is, `lag_s` later than a, where a was around step i.
+bool overlaps_near(const Moving& a, const Moving& b, double step_s, std::size_t i, double lag_s) {
+  constexpr int parts = 8;
+  const double end_s = step_s * static_cast<double>(a.way.size() - 1);
+  const double middle = step_s * static_cast<double>(i);
+  for (int part = -parts; part <= parts; ++part) {
+    const double time_s = middle + step_s * part / parts;
+    const double other_s = time_s + lag_s;
+    if (time_s < 0.0 || time_s > end_s || other_s < 0.0 || other_s > end_s) continue;
+    if (overlap(a, a.at(time_s), b, b.at(other_s))) return true;
+  }
+  return false;
+}
+
+/// Least time between a and b at one place, where it is not above `most_s`.
+double least_time_gap_s(const Moving& a, const Moving& b, double step_s, double most_s) {
+  constexpr std::size_t parts = 16;
+  const std::size_t count = a.way.size();
+  const auto lag_s = [step_s](std::size_t part) {
+    return step_s / static_cast<double>(parts) * static_cast<double>(part);
+  };
+  for (std::size_t lag = 0; lag < count; ++lag) {
+    // What is found at one lag of whole steps may begin up to two steps before it.
+    if (lag > 2 && lag_s((lag - 2) * parts) > most_s) break;
+    std::size_t least = lag * parts;
+    bool met = false;
+    for (std::size_t i = 0; i + lag < count; ++i) {
+      for (const bool b_later : {true, false}) {
+        const std::size_t in_a = b_later ? i : i + lag;
+        const std::size_t in_b = b_later ? i + lag : i;
+        if (!overlap(a, a.way[in_a], b, b.way[in_b])) continue;
+        met = true;
+        while (least > 0 &&
+               overlaps_near(a, b, step_s, in_a, b_later ? lag_s(least - 1) : -lag_s(least - 1))) {
+          --least;
+        }
+      }
+    }
+    if (met) return lag_s(least);
+  }
+  return infinity;
+}
+
+}  // namespace
+
+void place_ways(const Scene& scene, PlanWays& ways) {
+  const double horizon_s = scene.slice_s.back();
+  ways.steps =
+      static_cast<std::size_t>(std::clamp(std::ceil(horizon_s / longest_step_s), 1.0, most_steps));
+  ways.step_s = horizon_s / static_cast<double>(ways.steps);
+  const std::vector<Plan>& plans = scene.futures.plans;
+  ways.poses.resize(plans.size() * (ways.steps + 1));
+  ways.fastest_mps.resize(plans.size());
+  for (std::size_t p = 0; p < plans.size(); ++p) {
+    const Outline& outline = *scene.actors[plans[p].actor].outline;
+    ways.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
+    for (std::size_t i = 0; i <= ways.steps; ++i) {
+      ways.poses[p * (ways.steps + 1) + i] =
+          planar_pose(plans[p].motion.pose_at(ways.step_s * static_cast<double>(i)));
+    }
+  }
+}
+
+Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& way) {
+  const PlanWays& ways = scene.ways;
+  way.resize(ways.steps + 1);
+  for (std::size_t i = 0; i <= ways.steps; ++i) {
+    way[i] = planar_pose(ego.pose_at(ways.step_s * static_cast<double>(i)));
+  }
+  const Moving own{*scene.ego.outline,
+                   ego,
+                   {way.data(), way.size()},
+                   fastest_point_mps(ego, *scene.ego.outline, scene.slice_s.back())};
+  Clearance least;
+  // A pair is left out where it is known to be further apart than another: by no bit does that
+  // decide the least.
+  double nearest = farthest_clearance_m;
+  const std::vector<Plan>& plans = scene.futures.plans;
+  for (std::size_t p = 0; p < plans.size(); ++p) {
+    if (!scene.futures.is_followed(p)) continue;
+    const Body& actor = scene.actors[plans[p].actor];
+    if (passes_over(scene.ego, ego, actor, plans[p].motion)) continue;
+    const Moving other{*actor.outline, plans[p].motion, ways.of(p), ways.fastest_mps[p]};
+    const LeastDistance distance(own, other, ways.step_s);
+    if (distance.bound_m() < nearest) nearest = std::min(nearest, distance.find());
+    if (other.fastest_mps > 0.0) {
+      least.time_gap_s =
+          std::min(least.time_gap_s, least_time_gap_s(own, other, ways.step_s, least.time_gap_s));
+    }
+  }
+  if (nearest < farthest_clearance_m) least.distance_m = nearest;
+  return least;
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,42 @@
+#include "rank/manoeuvre.hpp"
+
+#include "rank/measure_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace crashrank::detail {
+
+ManoeuvreDemand demand_until(const Scene& scene, const Candidate& candidate, double until_s,
+                             const std::optional<RoadLeaving>& leaving) noexcept {
+  FollowedWay way;
+  way.until_s = std::min(until_s, scene.slice_s.back());
+  if (leaving) way.off_road_from_s = leaving->time_s;
+  return demand_of(candidate, scene.limits, way);
+}
+
+double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving,
+                     double first_s) noexcept {
+  const bool counts = leaving && measure_row(scene.measure).counts_people;
+  return counts && leaving->time_s <= first_s ? scene.road.harm_per_leaving : 0.0;
+}
+
+ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate,
+                                  const Followed& followed,
+                                  const std::optional<RoadLeaving>& leaving, Scratch& scratch) {
+  ManoeuvreFacts facts;
+  facts.demand = demand_until(scene, candidate, followed.longest_s, leaving);
+  facts.feasible = is_feasible(candidate, facts.demand);
+  if (leaving && leaving->time_s <= followed.first_s) facts.leaves_road = leaving;
+  facts.clearance =
+      followed.touches ? Clearance{0.0, 0.0} : clearance_of(scene, candidate.motion, scratch.way);
+  Pose pose;
+  Velocity velocity;
+  candidate.motion.state_at(scene.slice_s.back(), pose, velocity);
+  facts.at_horizon.speed_mps = velocity.linear_mps.norm();
+  facts.at_horizon.heading_rad = std::atan2(pose.rotation(1, 0), pose.rotation(0, 0));
+  facts.at_horizon.position_m = pose.translation.head<2>();
+  return facts;
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,189 @@
+#include "rank/outline_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crashrank::detail {
+namespace {
+
+/// Pieces of a chain: about 0.8 m of outline.
+constexpr std::uint32_t chain_pieces = 8;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Of a point to a piece from its begin, all relative to that begin.
+double distance2(double x, double y, double along_x, double along_y) {
+  const double length2 = along_x * along_x + along_y * along_y;
+  const double share = std::clamp((x * along_x + y * along_y) / length2, 0.0, 1.0);
+  const double dx = x - share * along_x;
+  const double dy = y - share * along_y;
+  return dx * dx + dy * dy;
+}
+
+/// Corners of a rectangle, relative to the middle of another and in its axes; the least distance of
+/// any of them to that other.
+double corners_distance2(double x, double y, double cosine, double sine, double half_x,
+                         double half_y, double other_half_x, double other_half_y) {
+  double least = infinity;
+  for (const double side_x : {-1.0, 1.0}) {
+    for (const double side_y : {-1.0, 1.0}) {
+      const double corner_x = x + side_x * half_x * cosine - side_y * half_y * sine;
+      const double corner_y = y + side_x * half_x * sine + side_y * half_y * cosine;
+      const double dx = std::max(std::abs(corner_x) - other_half_x, 0.0);
+      const double dy = std::max(std::abs(corner_y) - other_half_y, 0.0);
+      least = std::min(least, dx * dx + dy * dy);
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+PlanarPose planar_pose(const Pose& pose) noexcept {
+  PlanarPose planar;
+  planar.x = pose.translation.x();
+  planar.y = pose.translation.y();
+  const double length = std::hypot(pose.rotation(0, 0), pose.rotation(1, 0));
+  if (length > 0.0) {
+    planar.cosine = pose.rotation(0, 0) / length;
+    planar.sine = pose.rotation(1, 0) / length;
+  }
+  return planar;
+}
+
+Outline::Outline(const Profile& profile) {
+  double low_x = infinity;
+  double low_y = infinity;
+  double high_x = -infinity;
+  double high_y = -infinity;
+  const auto hold = [&](double x, double y) {
+    low_x = std::min(low_x, x);
+    low_y = std::min(low_y, y);
+    high_x = std::max(high_x, x);
+    high_y = std::max(high_y, y);
+    radius_m_ = std::max(radius_m_, std::hypot(x, y));
+  };
+  pieces_.reserve(profile.pieces.size());
+  for (const OutlinePiece& piece : profile.pieces) {
+    const auto length = static_cast<double>(piece.length_m);
+    Piece made;
+    made.along_x = -length * static_cast<double>(piece.normal_y);
+    made.along_y = length * static_cast<double>(piece.normal_x);
+    made.x = static_cast<double>(piece.x) - 0.5 * made.along_x;
+    made.y = static_cast<double>(piece.y) - 0.5 * made.along_y;
+    hold(made.x, made.y);
+    hold(made.x + made.along_x, made.y + made.along_y);
+    pieces_.push_back(made);
+  }
+  middle_x_ = 0.5 * (low_x + high_x);
+  middle_y_ = 0.5 * (low_y + high_y);
+  half_x_ = 0.5 * (high_x - low_x);
+  half_y_ = 0.5 * (high_y - low_y);
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    first_chain_[band] = static_cast<std::uint32_t>(chains_.size());
+    for (std::uint32_t first = profile.first[band]; first < profile.first[band + 1];
+         first += chain_pieces) {
+      Chain chain;
+      chain.first = first;
+      chain.end = std::min(first + chain_pieces, profile.first[band + 1]);
+      const Piece& begin = pieces_[first];
+      const Piece& last = pieces_[chain.end - 1];
+      chain.x = 0.5 * (begin.x + last.x + last.along_x);
+      chain.y = 0.5 * (begin.y + last.y + last.along_y);
+      for (std::uint32_t i = first; i < chain.end; ++i) {
+        const Piece& p = pieces_[i];
+        chain.radius = std::max({chain.radius, std::hypot(p.x - chain.x, p.y - chain.y),
+                                 std::hypot(p.x + p.along_x - chain.x, p.y + p.along_y - chain.y)});
+      }
+      chains_.push_back(chain);
+    }
+  }
+  first_chain_[profile_bands] = static_cast<std::uint32_t>(chains_.size());
+}
+
+double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+                          const PlanarPose& pose_b, double cutoff_m) {
+  // b in a's frame.
+  const double cosine = pose_a.cosine * pose_b.cosine + pose_a.sine * pose_b.sine;
+  const double sine = pose_a.cosine * pose_b.sine - pose_a.sine * pose_b.cosine;
+  const double dx = pose_b.x - pose_a.x;
+  const double dy = pose_b.y - pose_a.y;
+  const double x = pose_a.cosine * dx + pose_a.sine * dy;
+  const double y = pose_a.cosine * dy - pose_a.sine * dx;
+  double least = cutoff_m;
+  const auto near_pieces = [&](const Outline::Chain& p, const Outline::Chain& q) {
+    double least2 = least * least;
+    for (std::uint32_t k = q.first; k < q.end; ++k) {
+      const Outline::Piece& of_b = b.pieces_[k];
+      const double bx = x + cosine * of_b.x - sine * of_b.y;
+      const double by = y + sine * of_b.x + cosine * of_b.y;
+      const double along_x = cosine * of_b.along_x - sine * of_b.along_y;
+      const double along_y = sine * of_b.along_x + cosine * of_b.along_y;
+      for (std::uint32_t i = p.first; i < p.end; ++i) {
+        const Outline::Piece& of_a = a.pieces_[i];
+        // Ends of pieces are begins of others, or of others near to them.
+        const double apart_x = bx - of_a.x;
+        const double apart_y = by - of_a.y;
+        least2 =
+            std::min({least2, distance2(apart_x, apart_y, of_a.along_x, of_a.along_y),
+                      distance2(-apart_x, -apart_y, along_x, along_y),
+                      distance2(apart_x + along_x, apart_y + along_y, of_a.along_x, of_a.along_y),
+                      distance2(of_a.along_x - apart_x, of_a.along_y - apart_y, along_x, along_y)});
+      }
+    }
+    least = std::sqrt(least2);
+  };
+  bool common = false;
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    const std::uint32_t end_a = a.first_chain_[band + 1];
+    const std::uint32_t end_b = b.first_chain_[band + 1];
+    common = common || (a.first_chain_[band] < end_a && b.first_chain_[band] < end_b);
+    for (std::uint32_t k = b.first_chain_[band]; k < end_b; ++k) {
+      const Outline::Chain& q = b.chains_[k];
+      const double qx = x + cosine * q.x - sine * q.y;
+      const double qy = y + sine * q.x + cosine * q.y;
+      // Beyond the rectangle around all of a by more than the best.
+      const double out_x = std::abs(qx - a.middle_x_) - a.half_x_ - q.radius;
+      const double out_y = std::abs(qy - a.middle_y_) - a.half_y_ - q.radius;
+      if (std::max(out_x, out_y) >= least) continue;
+      for (std::uint32_t i = a.first_chain_[band]; i < end_a; ++i) {
+        const Outline::Chain& p = a.chains_[i];
+        const double reach = least + p.radius + q.radius;
+        const double apart_x = qx - p.x;
+        const double apart_y = qy - p.y;
+        if (apart_x * apart_x + apart_y * apart_y < reach * reach) near_pieces(p, q);
+      }
+    }
+  }
+  return common ? least : infinity;
+}
+
+double rectangle_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+                            const PlanarPose& pose_b) noexcept {
+  const double cosine = pose_a.cosine * pose_b.cosine + pose_a.sine * pose_b.sine;
+  const double sine = pose_a.cosine * pose_b.sine - pose_a.sine * pose_b.cosine;
+  // From the middle of a's to that of b's, world.
+  const double dx = pose_b.x + pose_b.cosine * b.middle_x() - pose_b.sine * b.middle_y() -
+                    (pose_a.x + pose_a.cosine * a.middle_x() - pose_a.sine * a.middle_y());
+  const double dy = pose_b.y + pose_b.sine * b.middle_x() + pose_b.cosine * b.middle_y() -
+                    (pose_a.y + pose_a.sine * a.middle_x() + pose_a.cosine * a.middle_y());
+  const double in_a_x = pose_a.cosine * dx + pose_a.sine * dy;
+  const double in_a_y = pose_a.cosine * dy - pose_a.sine * dx;
+  const double in_b_x = -(pose_b.cosine * dx + pose_b.sine * dy);
+  const double in_b_y = -(pose_b.cosine * dy - pose_b.sine * dx);
+  // Rectangles that overlap have no axis of either along which they are apart.
+  const double c = std::abs(cosine);
+  const double s = std::abs(sine);
+  const bool apart = std::abs(in_a_x) > a.half_x() + c * b.half_x() + s * b.half_y() ||
+                     std::abs(in_a_y) > a.half_y() + s * b.half_x() + c * b.half_y() ||
+                     std::abs(in_b_x) > b.half_x() + c * a.half_x() + s * a.half_y() ||
+                     std::abs(in_b_y) > b.half_y() + s * a.half_x() + c * a.half_y();
+  if (!apart) return 0.0;
+  return std::sqrt(std::min(corners_distance2(in_a_x, in_a_y, cosine, sine, b.half_x(), b.half_y(),
+                                              a.half_x(), a.half_y()),
+                            corners_distance2(in_b_x, in_b_y, cosine, -sine, a.half_x(), a.half_y(),
+                                              b.half_x(), b.half_y())));
+}
+
+}  // namespace crashrank::detail

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "crashrank/base/pose.hpp"
+#include "crashrank/mesh/profile.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace crashrank::detail {
+
+/// Where a body is seen from above.
+struct PlanarPose {
+  double x = 0.0;  ///< of the body's origin, world, m
+  double y = 0.0;
+  double cosine = 1.0;  ///< of the heading
+  double sine = 0.0;
+};
+
+PlanarPose planar_pose(const Pose& pose) noexcept;
+
+/// A body's outlines prepared for distances: short chains of pieces with circles around them.
+class Outline {
+public:
+  Outline() = default;
+  explicit Outline(const Profile& profile);
+
+  /// Middle of the rectangle around all outlines, body coordinates, m.
+  double middle_x() const noexcept { return middle_x_; }
+  double middle_y() const noexcept { return middle_y_; }
+  /// Half its sides, m.
+  double half_x() const noexcept { return half_x_; }
+  double half_y() const noexcept { return half_y_; }
+  /// No point of an outline is further from the body's origin, m.
+  double radius_m() const noexcept { return radius_m_; }
+
+private:
+  friend double outline_distance_m(const Outline&, const PlanarPose&, const Outline&,
+                                   const PlanarPose&, double);
+  struct Piece {
+    double x = 0.0;  ///< from
+    double y = 0.0;
+    double along_x = 0.0;  ///< to its end
+    double along_y = 0.0;
+  };
+  struct Chain {
+    double x = 0.0;  ///< middle of its circle
+    double y = 0.0;
+    double radius = 0.0;
+    std::uint32_t first = 0;  ///< piece
+    std::uint32_t end = 0;
+  };
+
+  std::vector<Piece> pieces_;
+  std::vector<Chain> chains_;
+  std::array<std::uint32_t, profile_bands + 1> first_chain_{};  ///< of each band, then their number
+  double middle_x_ = 0.0;
+  double middle_y_ = 0.0;
+  double half_x_ = 0.0;
+  double half_y_ = 0.0;
+  double radius_m_ = 0.0;
+};
+
+/// Distance of the outlines of two bodies that stand on the same ground, seen from above: the least
+/// over the height bands that both have, m. A number of at least `cutoff_m` where they are no
+/// nearer than it, infinity without a common band. Bodies in each other are as far apart as their
+/// outlines are. Exact to 1e-6 m. Allocates nothing. O(chains²) a band and the pieces of the
+/// nearest.
+double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+                          const PlanarPose& pose_b, double cutoff_m);
+
+/// Distance of the rectangles around the outlines, seen from above: no outline distance is less.
+/// 0 where they overlap. Constant time.
+double rectangle_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+                            const PlanarPose& pose_b) noexcept;
+
+}  // namespace crashrank::detail

@@ -1,0 +1,96 @@
+#include "report/manoeuvre_words.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace crashrank::detail {
+namespace {
+
+std::string distance_words(const std::optional<double>& distance_m) {
+  return distance_m ? fmt::format("{:.2f} m", *distance_m)
+                    : fmt::format("over {:g} m", farthest_clearance_m);
+}
+
+std::string gap_words(const std::optional<double>& gap_s) {
+  return gap_s ? fmt::format("{:.2f} s", *gap_s) : std::string("no crossing way");
+}
+
+}  // namespace
+
+std::string demand_words(const ManoeuvreDemand& demand) {
+  const std::array<std::pair<double, const char*>, 5> all{{
+      {demand.grip, "the grip"},
+      {demand.engine, "what the engine gives"},
+      {demand.brakes, "what the brakes give"},
+      {demand.steering, "the steering angle"},
+      {demand.steering_rate, "the steering rate"},
+  }};
+  for (const auto& [share, what] : all) {
+    if (share == demand.greatest()) return fmt::format("takes {:.2f} times {}", share, what);
+  }
+  return {};
+}
+
+std::string leaving_words(const CandidateResult& ranked) {
+  if (!ranked.leaves_road) return {};
+  return fmt::format("leaves the road after {:.2f} s at {:.1f} m/s", ranked.leaves_road->time_s,
+                     ranked.leaves_road->speed_mps);
+}
+
+std::string passing_words(const CandidateResult& ranked) {
+  std::string words = ranked.grazes.empty() ? "nothing" : "nothing (grazes)";
+  // Of a candidate that touches somebody in another future both are 0.
+  if (ranked.collision_probability > 0.0) return words;
+  if (ranked.least_distance_m) words += fmt::format(", {:.2f} m", *ranked.least_distance_m);
+  if (ranked.least_time_gap_s) words += fmt::format(", {:.2f} s", *ranked.least_time_gap_s);
+  return words;
+}
+
+std::string manoeuvre_mark(const CandidateResult& ranked) {
+  std::string mark;
+  if (!ranked.feasible) mark = "cannot be followed";
+  if (ranked.leaves_road) mark += mark.empty() ? "off the road" : ", off the road";
+  return mark;
+}
+
+std::string tie_words(const CandidateResult& first, const CandidateResult& second) {
+  if (first.futures.size() + second.futures.size() > 2 &&
+      first.collision_probability != second.collision_probability) {
+    return fmt::format("a collision is less probable, {:.3g} % against {:.3g} %",
+                       100.0 * first.collision_probability, 100.0 * second.collision_probability);
+  }
+  if (first.collides != second.collides) return "it touches nothing";
+  if (first.grazes.empty() != second.grazes.empty()) {
+    return "it passes everything with more than a hair's breadth";
+  }
+  if (first.leaves_road.has_value() != second.leaves_road.has_value()) {
+    return "it stays on the road";
+  }
+  if (first.least_distance_m != second.least_distance_m) {
+    return fmt::format("it stays further from all others, {} against {}",
+                       distance_words(first.least_distance_m),
+                       distance_words(second.least_distance_m));
+  }
+  if (first.least_time_gap_s != second.least_time_gap_s) {
+    return fmt::format("it leaves more time between it and others at one place, {} against {}",
+                       gap_words(first.least_time_gap_s), gap_words(second.least_time_gap_s));
+  }
+  if (!first.collides || first.contacts.empty() || second.contacts.empty()) {
+    const double speed = first.at_horizon ? first.at_horizon->speed_mps : 0.0;
+    const double other = second.at_horizon ? second.at_horizon->speed_mps : 0.0;
+    return fmt::format("it is slower at the horizon, {:.2f} m/s against {:.2f} m/s", speed, other);
+  }
+  const Contact& p = first.contacts.front();
+  const Contact& q = second.contacts.front();
+  if (p.time_of_impact_s != q.time_of_impact_s) {
+    return fmt::format("its first contact is later, {:.3f} s against {:.3f} s", p.time_of_impact_s,
+                       q.time_of_impact_s);
+  }
+  return fmt::format("its closing speed is lower, {:.2f} m/s against {:.2f} m/s",
+                     p.closing_speed_mps, q.closing_speed_mps);
+}
+
+}  // namespace crashrank::detail

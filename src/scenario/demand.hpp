@@ -1,0 +1,54 @@
+#pragma once
+
+#include "crashrank/scenario/candidate.hpp"
+#include "crashrank/scenario/demand.hpp"
+#include "crashrank/scenario/scenario.hpp"
+
+#include <Eigen/Core>
+
+#include <limits>
+
+namespace crashrank::detail {
+
+/// What the ego can do, and how it moves at time 0.
+struct EgoLimits {
+  double grip_mps2 = 0.0;              ///< grip on the road times standard gravity
+  double off_road_grip_mps2 = 0.0;     ///< and beside it
+  double max_acceleration_mps2 = 0.0;  ///< of the engine
+  double max_deceleration_mps2 = 0.0;  ///< of the brakes; infinity: grip alone limits it
+  double max_steering_rad = 0.0;
+  double max_steering_rate_radps = 0.0;
+  double wheelbase_m = 0.0;
+  double speed_mps = 0.0;  ///< NaN: not known, nor is the yaw rate
+  double yaw_rate_radps = 0.0;
+  /// Of the mass, body coordinates, m.
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+};
+
+/// `ego_length_m` stands in for an absent wheelbase.
+EgoLimits ego_limits(const Scenario& scenario, double ego_length_m,
+                     const Eigen::Vector3d& center_m);
+
+/// Over what part of its way a manoeuvre is followed.
+struct FollowedWay {
+  double until_s = 0.0;  ///< to its first contact, or the horizon
+  double off_road_from_s = std::numeric_limits<double>::infinity();
+};
+
+/// The greatest demands of a manoeuvre as far as it is followed.
+///
+/// Constant accelerations: exact, but that the front wheels are taken to be turned at once; with a
+/// yaw rate, the steering of its begin.
+///
+/// Timed poses: second differences over poses at least 0.3 s apart each way, the ego's own motion
+/// before the first where it is known. A second difference is a weighted mean of the acceleration
+/// between the three times, so no demand is overstated but by what is wrong in the poses; peaks
+/// shorter than that are understated. Steering follows from the yaw rate over the speed, from 1 m/s
+/// on. O(poses), no allocation.
+ManoeuvreDemand demand_of(const Candidate& candidate, const EgoLimits& limits,
+                          const FollowedWay& way) noexcept;
+
+/// Whether the vehicle can follow it.
+bool is_feasible(const Candidate& candidate, const ManoeuvreDemand& demand) noexcept;
+
+}  // namespace crashrank::detail

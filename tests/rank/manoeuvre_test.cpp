@@ -1,0 +1,239 @@
+#include "oracle/random.hpp"
+#include "rank/scenes.hpp"
+
+#include "crashrank/scenario/candidate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace crashrank;
+using scenes::box_mesh;
+using scenes::of;
+using scenes::Scene;
+
+/// A car of 4 × 2 m alone on the plane.
+Scene alone(double speed_mps) {
+  Scene scene;
+  scene.scenario.measure = Measure::closing_energy;
+  scene.scenario.ego.model =
+      scene.add_model("car", box_mesh({2, 1, 0.7F}, 1, {0, 0, 0.75F}), BodyKind::car, 1500.0);
+  scene.scenario.ego.speed_mps = speed_mps;
+  return scene;
+}
+
+/// Poses of a motion every `step_s` until `until_s`, as a planner would list them.
+std::vector<TimedPose> sampled(const Motion& motion, double step_s, double until_s) {
+  std::vector<TimedPose> poses;
+  const auto count = static_cast<int>(std::lround(until_s / step_s));
+  for (int i = 0; i <= count; ++i) poses.push_back({i * step_s, motion.pose_at(i * step_s)});
+  return poses;
+}
+
+void add_planned(Scene& scene, const std::string& name, std::vector<TimedPose> poses) {
+  scene.add_candidate(name, 0.0).poses = std::move(poses);
+}
+
+double measured_acceleration(const Motion& motion, double t) {
+  constexpr double h = 1e-5;
+  const Eigen::Vector3d change =
+      motion.velocity_at(t + h).linear_mps - motion.velocity_at(t - h).linear_mps;
+  return change.norm() / (2.0 * h);
+}
+
+TEST(Demand, OfPathsIsTheHardestAcceleration) {
+  double hardest_of_grids = 0.0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    oracle::Random random(seed);
+    Scene scene = alone(random.real(-20.0, 45.0));
+    Scenario& scenario = scene.scenario;
+    scenario.grip = random.real(0.05, 1.2);
+    scenario.horizon_s = random.real(0.2, 8.0);
+    scenario.grid = CandidateGrid{3, 3};
+    scene.add_candidate("steers", random.real(-12.0, 12.0), random.real(-0.5, 0.5));
+    scene.add_candidate("turns", random.real(-12.0, 12.0)).yaw_rate_radps = random.real(-1.0, 1.0);
+    const double whole = scenario.grip * standard_gravity_mps2;
+    const double until = scenario.horizon_s;
+    const RankResult result = scene.ranked();
+    for (const CandidateResult& ranked : result.ranking) {
+      const Candidate& candidate = result.candidates[ranked.candidate];
+      double hardest = 0.0;
+      for (int k = 0; k <= 4000; ++k) {
+        const double t = 1e-4 + (until - 2e-4) * k / 4000.0;
+        if (std::abs(t - candidate.motion.rest_time()) < 1e-3) continue;
+        hardest = std::max(hardest, measured_acceleration(candidate.motion, t) / whole);
+      }
+      EXPECT_NEAR(ranked.demand.grip, hardest, 2e-3 * (1.0 + hardest)) << candidate.name;
+      if (candidate.origin != CandidateOrigin::grid) continue;
+      EXPECT_TRUE(ranked.feasible) << candidate.name << " " << ranked.demand.greatest();
+      hardest_of_grids = std::max(hardest_of_grids, ranked.demand.grip);
+    }
+  }
+  EXPECT_NEAR(hardest_of_grids, 1.0, 1e-9);
+}
+
+/// The plan that a driver can follow is that of its poses: no demand is overstated.
+TEST(Demand, OfPosesIsThatOfTheirPathAndNeverMore) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    oracle::Random random(seed);
+    Scene scene = alone(random.real(5.0, 40.0));
+    Scenario& scenario = scene.scenario;
+    scenario.horizon_s = 3.0;
+    // Of the centre of mass, which is that of a car's box: the origin moves almost as it does.
+    scenario.models[0].center_of_mass_m = Eigen::Vector3d(0.0, 0.0, 0.5);
+    const double speed = scenario.ego.speed_mps;
+    const double across = random.real(-9.0, 9.0);
+    const double along = random.real(-9.0, std::min(9.0, 0.3 * speed));
+    ArcMotion arc;
+    arc.speed_mps = speed;
+    arc.curvature_per_m = across / (speed * speed);
+    arc.acceleration_mps2 = along;
+    scenario.ego.yaw_rate_radps = arc.curvature_per_m * speed;
+    const double step = random.chance(0.5) ? 0.1 : 0.25;
+    add_planned(scene, "planned", sampled(arc, step, scenario.horizon_s));
+    const CandidateResult ranked = scene.ranked().ranking.front();
+    const double whole = scenario.grip * standard_gravity_mps2;
+    double hardest = 0.0;
+    const Motion motion = arc;
+    for (double t = 0.0; t < 3.0; t += 0.01) {
+      if (t > motion.rest_time()) break;
+      hardest = std::max(hardest, measured_acceleration(motion, t) / whole);
+    }
+    EXPECT_LE(ranked.demand.grip, hardest * 1.001 + 1e-9);
+    // Where it brakes to standstill, or curves more and more, the last and the first part of a
+    // second are in the mean.
+    EXPECT_GE(ranked.demand.grip, 0.6 * hardest);
+    if (along > 0.0) {
+      EXPECT_LE(ranked.demand.engine, 1.001 * along / scenario.ego.max_acceleration_mps2);
+      EXPECT_GE(ranked.demand.engine, 0.85 * along / scenario.ego.max_acceleration_mps2);
+    }
+    const double angle = std::atan(0.6 * 4.0 * arc.curvature_per_m);
+    EXPECT_NEAR(ranked.demand.steering, std::abs(angle) / scenario.ego.max_steering_rad,
+                0.02 * std::abs(angle) + 1e-3);
+  }
+}
+
+TEST(Demand, OfPosesThatSteerFasterAndFaster) {
+  // Steering at a constant rate from straight on, at a constant speed: a clothoid.
+  for (const double rate : {0.05, 0.2, 0.6}) {
+    Scene scene = alone(5.0);
+    scene.scenario.horizon_s = 1.5;
+    scene.scenario.grip = 1.5;
+    scene.scenario.ego.wheelbase_m = 2.5;
+    std::vector<TimedPose> poses;
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+    double heading = 0.0;
+    constexpr double tick = 1e-4;
+    for (int i = 0; i * tick <= 1.5 + 0.5 * tick; ++i) {
+      if (i % 1000 == 0) poses.push_back({i * tick, pose_from_angles(at, heading, 0, 0)});
+      at += 5.0 * tick * Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
+      heading += tick * 5.0 * std::tan(rate * i * tick) / 2.5;
+    }
+    add_planned(scene, "planned", poses);
+    const CandidateResult ranked = scene.ranked().ranking.front();
+    EXPECT_NEAR(ranked.demand.steering_rate, rate / 0.4, 0.05 * rate / 0.4) << rate;
+  }
+}
+
+TEST(Demand, OfPosesThatBeginAtAnotherSpeed) {
+  Scene scene = alone(20.0);
+  ArcMotion slow;
+  slow.speed_mps = 10.0;
+  ArcMotion same;
+  same.speed_mps = 20.0;
+  add_planned(scene, "slow", sampled(slow, 0.1, 4.0));
+  add_planned(scene, "same", sampled(same, 0.1, 4.0));
+  const RankResult result = scene.ranked();
+  EXPECT_FALSE(of(result, "slow").feasible);
+  EXPECT_TRUE(of(result, "same").feasible);
+  EXPECT_LT(of(result, "same").demand.greatest(), 1e-6);
+}
+
+TEST(Demand, KeepsToTheBrakes) {
+  Scene scene = alone(20.0);
+  scene.scenario.ego.max_deceleration_mps2 = 5.0;
+  scene.scenario.grid = CandidateGrid{5, 3};
+  scene.add_candidate("brakes as grip allows", -7.0);
+  const RankResult result = scene.ranked();
+  EXPECT_NEAR(of(result, "brakes as grip allows").demand.brakes, 1.4, 1e-12);
+  EXPECT_FALSE(of(result, "brakes as grip allows").feasible);
+  for (const CandidateResult& ranked : result.ranking) {
+    const Candidate& candidate = result.candidates[ranked.candidate];
+    if (candidate.origin != CandidateOrigin::grid) continue;
+    EXPECT_GE(candidate.acceleration_mps2, -5.0);
+    EXPECT_TRUE(ranked.feasible);
+  }
+}
+
+/// A wall ahead that only a manoeuvre beyond the grip misses.
+Scene wall_and_miracle() {
+  Scene scene = alone(20.0);
+  scene.add_actor("wall",
+                  scene.add_model("wall", box_mesh({0.5F, 8, 1}, 1, {0, 0, 1}), BodyKind::barrier),
+                  30.0, 0.0);
+  scene.add_candidate("brakes", -7.0);
+  scene.add_candidate("stops at once", -30.0);
+  scene.add_candidate("keeps going", 0.0);
+  return scene;
+}
+
+TEST(Infeasible, StandsBehindIsLeftOutOrKept) {
+  const Scene scene = wall_and_miracle();
+  const auto order = [](const RankResult& result) {
+    std::vector<std::string> names;
+    for (const CandidateResult& each : result.ranking) {
+      names.push_back(result.candidates[each.candidate].name);
+    }
+    return names;
+  };
+  RankOptions options;
+  const RankResult demoted = scene.ranked(options);
+  EXPECT_EQ(order(demoted), (std::vector<std::string>{"brakes", "keeps going", "stops at once"}));
+  EXPECT_EQ(of(demoted, "stops at once").score, 0.0);
+  EXPECT_EQ(of(demoted, "stops at once").place, 3U);
+  EXPECT_TRUE(demoted.dropped.empty());
+  options.infeasible = Infeasible::drop;
+  const RankResult dropped = scene.ranked(options);
+  EXPECT_EQ(order(dropped), (std::vector<std::string>{"brakes", "keeps going"}));
+  EXPECT_EQ(dropped.dropped, std::vector<std::size_t>{1});
+  options.infeasible = Infeasible::keep;
+  const RankResult kept = scene.ranked(options);
+  EXPECT_EQ(order(kept), (std::vector<std::string>{"stops at once", "brakes", "keeps going"}));
+  EXPECT_FALSE(of(kept, "stops at once").feasible);
+}
+
+TEST(Infeasible, CountsAsFarAsThePlanIsFollowed) {
+  // Speeding up on the curve it leaves the grip after a second; the wall comes before that.
+  Scene scene = wall_and_miracle();
+  scene.scenario.listed.clear();
+  scene.add_candidate("swerves", 3.0, 0.03);
+  const RankResult near = scene.ranked();
+  EXPECT_TRUE(of(near, "swerves").collides);
+  EXPECT_TRUE(of(near, "swerves").feasible);
+  scene.scenario.actors.clear();
+  const RankResult far = scene.ranked();
+  EXPECT_FALSE(of(far, "swerves").feasible);
+}
+
+TEST(Infeasible, AllOfThemAreRankedAfterAll) {
+  Scene scene = wall_and_miracle();
+  scene.scenario.listed.erase(scene.scenario.listed.begin());
+  scene.scenario.listed.pop_back();
+  RankOptions options;
+  options.infeasible = Infeasible::drop;
+  const RankResult result = scene.ranked(options);
+  ASSERT_EQ(result.ranking.size(), 1U);
+  EXPECT_TRUE(result.dropped.empty());
+  EXPECT_EQ(result.in_race.size(), 1U);
+}
+
+}  // namespace
