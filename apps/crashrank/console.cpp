@@ -10,10 +10,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -21,7 +23,8 @@ namespace crashrank::cli {
 namespace {
 
 int write_error = 0;
-std::atomic<bool> answering{false};
+/// Whose thread writes the answer; none yet where it is no thread's.
+std::atomic<std::thread::id> answering{};
 
 /// The terminal is one, and so is what is drawn on it.
 struct Shown {
@@ -67,11 +70,16 @@ void warn(const std::string& file, const std::string& text) {
   say("warning: " + (file.empty() ? text : file + ": " + text));
 }
 
-bool is_answering() { return answering; }
+bool begin_answer() {
+  std::thread::id writer;
+  const std::thread::id own = std::this_thread::get_id();
+  return answering.compare_exchange_strong(writer, own) || writer == own;
+}
 
 void print(const std::string& data) {
   Progress::clear();
-  answering = true;
+  // An interruption that came first writes what was known then, and ends the process.
+  while (!begin_answer()) std::this_thread::sleep_for(std::chrono::hours(1));
   if (write_error != 0) return;
   if (std::fwrite(data.data(), 1, data.size(), stdout) != data.size()) write_error = errno;
 }

@@ -32,7 +32,7 @@ int fail(const Error& error);
 /// Prints "crashrank: warning: FILE: TEXT" on stderr, escaped, on one line.
 void warn(const std::string& file, const std::string& text);
 
-/// Data on stdout. A write that fails is told once, by `finish`.
+/// Data on stdout, by the thread that began the answer: see `begin_answer`. A write that fails is told once, by `finish`.
 void print(const std::string& data);
 
 /// Flushes stdout: `code`, or exit_internal with a message when something could not be written.
@@ -41,8 +41,9 @@ int finish(int code);
 /// True when stdout is a terminal that wants colours (NO_COLOR unset or empty, TERM not dumb).
 bool colours_wanted();
 
-/// Whether an answer has begun to go to stdout. Safe from any thread.
-bool is_answering();
+/// Takes it upon the calling thread to write the answer; false where another thread has done so.
+/// Whoever interrupts has to end the process then. Safe from any thread.
+bool begin_answer();
 
 /// What takes long, on stderr when that is a terminal: a bar where there is a number to reach, else
 /// the time so far. The thread that waits for the command draws the one made last, from 0.3 s on.

@@ -1,13 +1,12 @@
 #include "crash_test_pairs.hpp"
 
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/motion/time_of_impact.hpp"
-#include "crashrank/tree/model.hpp"
 
-#include <Eigen/Geometry>
-
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
@@ -67,54 +66,42 @@ PairedCar read_car(TestLine& line, int number) {
   return car;
 }
 
-/// A car of a test, ready to be driven.
-struct Driven {
-  Model model;
-  Vehicle vehicle;
-  Motion motion;
-};
-
-Result<Driven> drive(const RigCar& rig, const PairedCar& car, RigShape shape) {
+Result<CrashBody> crash_body(const RigCar& rig, const PairedCar& car, int number, RigShape shape) {
   TriangleMesh mesh = stretched_car(rig, car.size);
   if (shape == RigShape::boxes) mesh = car_box(mesh, car.size.width_m);
   Result<Model> model = make_model(std::move(mesh));
   if (!model) return model.error();
-  VehicleFacts facts;
-  facts.mass_kg = car.mass_kg;
-  facts.yaw_inertia_kgm2 = car.izz_kgm2;
+  CrashBody body;
+  body.model = std::move(*model);
+  body.facts.name = "car" + std::to_string(number);
+  body.facts.mass_kg = car.mass_kg;
+  body.facts.yaw_inertia_kgm2 = car.izz_kgm2;
   // The height of the centre of mass has no effect in the plane.
-  facts.center_of_mass_m = Vector3d(car.cg_ahead_of_rear_axle_m, 0.0, 0.5 * car.size.height_m);
-  Result<Vehicle> vehicle = describe_vehicle(model->mesh, facts);
-  if (!vehicle) return vehicle.error();
+  body.facts.center_of_mass_m = Vector3d(car.cg_ahead_of_rear_axle_m, 0.0, 0.5 * car.size.height_m);
   const double heading = car.heading_deg * (std::numbers::pi / 180.0);
   const Vector3d ahead(std::cos(heading), std::sin(heading), 0.0);
-  FreeMotion free;
-  free.start.rotation = Eigen::AngleAxisd(heading, Vector3d::UnitZ()).toRotationMatrix();
-  free.velocity.linear_mps = car.speed_mps * ahead;
-  free.start.translation = Vector3d(car.x_m, car.y_m, 0.0) -
-                           (car.cg_ahead_of_rear_axle_m + run_up_s * car.speed_mps) * ahead;
-  return Driven{std::move(*model), std::move(*vehicle), Motion(free)};
-}
-
-ContactBody body_at(const Driven& driven, double time_s) {
-  ContactBody body;
-  body.vehicle = &driven.vehicle;
-  driven.motion.state_at(time_s, body.pose, body.velocity);
+  const Vector3d origin = Vector3d(car.x_m, car.y_m, 0.0) -
+                          (car.cg_ahead_of_rear_axle_m + run_up_s * car.speed_mps) * ahead;
+  body.start = pose_from_angles(origin, heading, 0.0, 0.0);
+  body.speed_mps = car.speed_mps;
   return body;
 }
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-bool same_bits(const Vector3d& a, const Vector3d& b) {
-  return same_bits(a.x(), b.x()) && same_bits(a.y(), b.y()) && same_bits(a.z(), b.z());
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-bool same_bits(const BodyContact& a, const BodyContact& b) {
-  return same_bits(a.impulse_ns, b.impulse_ns) && same_bits(a.delta_v_mps, b.delta_v_mps) &&
-         same_bits(a.delta_yaw_rate_radps, b.delta_yaw_rate_radps) &&
-         same_bits(a.moved_m, b.moved_m) && same_bits(a.turned_rad, b.turned_rad) &&
-         same_bits(a.crush_depth_m, b.crush_depth_m) &&
-         same_bits(a.crush_energy_j, b.crush_energy_j) && same_bits(a.intrusion_m, b.intrusion_m);
+std::array<double, 9> numbers_of(const BodyOutcome& o) {
+  return {o.delta_v_mps, o.delta_v_x_mps,  o.delta_v_y_mps, o.yaw_rate_change_radps,
+          o.pdof_deg,    o.crush_energy_j, o.ees_mps,       o.crush_m,
+          o.intrusion_m};
+}
+
+bool same_bits(const BodyOutcome& a, const BodyOutcome& b) {
+  const std::array<double, 9> p = numbers_of(a);
+  const std::array<double, 9> q = numbers_of(b);
+  return std::equal(p.begin(), p.end(), q.begin(),
+                    [](double x, double y) { return same_bits(x, y); });
 }
 
 }  // namespace
@@ -147,33 +134,26 @@ Result<std::vector<PairTest>> read_pair_rows(const TestTable& table) {
 }
 
 Result<PairOutcome> run_pair_test(const RigCar& car, const PairTest& test, RigShape shape) {
-  const Result<Driven> one = drive(car, test.cars[0], shape);
+  const Result<CrashBody> one = crash_body(car, test.cars[0], 1, shape);
   if (!one) return one.error();
-  const Result<Driven> two = drive(car, test.cars[1], shape);
+  const Result<CrashBody> two = crash_body(car, test.cars[1], 2, shape);
   if (!two) return two.error();
-  ImpactWorkspace workspace;
-  const Impact impact = time_of_impact(one->model.tree, one->motion, two->model.tree, two->motion,
-                                       0.0, run_up_s + longest_s, workspace);
-  PairOutcome outcome;
-  if (!impact.hit()) {
-    outcome.roles_agree = true;
-    return outcome;
-  }
-  if (impact.state != ImpactState::contact) {
+  const Result<Crash> crash = rank_crash(*one, *two, run_up_s + longest_s);
+  if (!crash) return crash.error();
+  if (crash->state != ImpactState::none && crash->state != ImpactState::contact) {
     return make_error(ErrorCode::bad_input,
                       "test " + test.id + ": the cars overlap 0.3 s before the stated positions",
                       "state positions at first contact or before");
   }
-  const ContactBody a = body_at(*one, impact.time_s);
-  const ContactBody b = body_at(*two, impact.time_s);
-  const Vector3d point = 0.5 * (impact.point_a_m + impact.point_b_m);
-  ContactWorkspace memory;
-  outcome.contact = simulate_contact(a, b, {}, point, {}, memory);
-  const ContactOutcome exchanged = simulate_contact(b, a, {}, point, {}, memory);
-  outcome.roles_agree = same_bits(outcome.contact.a, exchanged.b) &&
-                        same_bits(outcome.contact.b, exchanged.a) &&
-                        same_bits(outcome.contact.dissipated_j, exchanged.dissipated_j) &&
-                        same_bits(outcome.contact.duration_s, exchanged.duration_s);
+  const Result<Crash> exchanged = rank_crash(*two, *one, run_up_s + longest_s);
+  if (!exchanged) return exchanged.error();
+  const ContactSeverity& p = crash->severity;
+  const ContactSeverity& q = exchanged->severity;
+  PairOutcome outcome;
+  outcome.crash = *crash;
+  outcome.roles_agree = same_bits(p.ego, q.other) && same_bits(p.other, q.ego) &&
+                        same_bits(p.dissipated_j, q.dissipated_j) &&
+                        same_bits(p.duration_s, q.duration_s);
   return outcome;
 }
 

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "crash_test_car.hpp"
+#include "crash_test_rank.hpp"
 #include "crash_test_table.hpp"
-
-#include "crashrank/crash/contact_law.hpp"
 
 #include <array>
 #include <optional>
@@ -34,8 +33,8 @@ struct PairTest {
 
 /// What such a crash came to.
 struct PairOutcome {
-  ContactOutcome contact;  ///< `a` is of the first car
-  /// The simulation with the cars exchanged, from the same first contact, has the same bits.
+  Crash crash;  ///< with the first car as the ego
+  /// The ranking with the second car as the ego has the same bits.
   bool roles_agree = false;
 };
 
@@ -45,9 +44,9 @@ bool is_pair_table(const TestTable& table);
 /// Reads the rows of a table of crashes between cars. Errors: bad_input with line and column.
 Result<std::vector<PairTest>> read_pair_rows(const TestTable& table);
 
-/// Moves both cars back by 0.3 s, drives them straight on until first contact within 5 s, and
-/// simulates the contact in both roles. Without contact nothing acts. Errors: bad_input where the
-/// cars overlap at the start; as `make_model` and `describe_vehicle`.
+/// Moves both cars back by 0.3 s, drives them straight on until first contact within 5 s, and ranks
+/// the crash with either car as the ego. Without contact nothing acts. Errors: bad_input where the
+/// cars overlap at the start; as `make_model` and `rank`.
 Result<PairOutcome> run_pair_test(const RigCar& car, const PairTest& test, RigShape shape);
 
 }  // namespace crashrank::cli

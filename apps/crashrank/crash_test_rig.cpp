@@ -3,8 +3,6 @@
 #include "crash_test_prism.hpp"
 
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/motion/time_of_impact.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -76,25 +74,15 @@ TriangleMesh barrier_mesh(const CrashTest& test, double inner_y) {
   return prism(outline, 0.0, wall_height_m);
 }
 
-Result<Vehicle> barrier_vehicle(Barrier barrier, const TriangleMesh& mesh) {
-  VehicleFacts facts;
+ScenarioModel barrier_facts(Barrier barrier) {
+  ScenarioModel facts;
+  facts.name = "barrier";
   facts.kind = BodyKind::building;
   facts.surface = Surface::steel;
-  Result<Vehicle> vehicle = describe_vehicle(mesh, facts);
-  if (!vehicle || barrier != Barrier::deformable) return vehicle;
-  CrushStrength& strength = vehicle->strength;
-  const double height = honeycomb_high_m - honeycomb_low_m;
-  strength.rigid = false;
-  // The slope only has to be positive; behind the honeycomb stands a rigid block.
-  strength.front = {honeycomb_pa * height, 0.01 * honeycomb_pa * height, honeycomb_depth_m};
-  strength.side = strength.front;
-  strength.rear = strength.front;
-  strength.low_m = honeycomb_low_m;
-  strength.high_m = honeycomb_high_m;
-  strength.hardening_npm2 = 1e8;
-  strength.rigid_npm2 = 1e9;
-  vehicle->surface = Surface::rubber;
-  return vehicle;
+  if (barrier != Barrier::deformable) return facts;
+  facts.surface = Surface::rubber;
+  facts.honeycomb = Honeycomb{honeycomb_pa, honeycomb_depth_m, honeycomb_low_m, honeycomb_high_m};
+  return facts;
 }
 
 }  // namespace
@@ -109,7 +97,7 @@ Result<Barrier> barrier_from_name(const std::string& name) {
                     "choose one of wall, flat, pole, deformable, full");
 }
 
-Result<ContactOutcome> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape) {
+Result<Crash> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape) {
   constexpr double run_up_m = 0.5;
   TriangleMesh body = stretched_car(car, test.size);
   TriangleMesh obstacle = barrier_mesh(test, test.size.width_m * (0.5 - test.overlap));
@@ -118,35 +106,21 @@ Result<ContactOutcome> run_crash_test(const RigCar& car, const CrashTest& test, 
     const Box box = obstacle.bounds();
     obstacle = box_prism(box.min.cast<double>(), box.max.cast<double>());
   }
-  const Result<Model> a = make_model(std::move(body));
+  Result<Model> a = make_model(std::move(body));
   if (!a) return a.error();
-  const Result<Model> b = make_model(std::move(obstacle));
+  Result<Model> b = make_model(std::move(obstacle));
   if (!b) return b.error();
-  VehicleFacts facts;
-  facts.mass_kg = test.mass_kg;
-  facts.yaw_inertia_kgm2 = test.izz_kgm2;
-  const Result<Vehicle> one = describe_vehicle(a->mesh, facts);
-  if (!one) return one.error();
-  const Result<Vehicle> two = barrier_vehicle(test.barrier, b->mesh);
-  if (!two) return two.error();
-
-  FreeMotion drive;
-  drive.start.translation.x() = -run_up_m - static_cast<double>(a->mesh.bounds().max.x());
-  drive.velocity.linear_mps.x() = test.speed_mps;
-  const Motion motion(drive);
-  ImpactWorkspace workspace;
-  const double until_s = (2.0 * run_up_m + test.size.length_m) / test.speed_mps;
-  const Impact impact = time_of_impact(a->tree, motion, b->tree, Motion(), 0.0, until_s, workspace);
-  if (!impact.hit()) return ContactOutcome{};
-  ContactBody moving;
-  moving.vehicle = &*one;
-  moving.pose = motion.pose_at(impact.time_s);
-  moving.velocity = motion.velocity_at(impact.time_s);
-  ContactBody standing;
-  standing.vehicle = &*two;
-  ContactWorkspace memory;
-  return simulate_contact(moving, standing, {}, 0.5 * (impact.point_a_m + impact.point_b_m), {},
-                          memory);
+  CrashBody ego;
+  ego.facts.name = "car";
+  ego.facts.mass_kg = test.mass_kg;
+  ego.facts.yaw_inertia_kgm2 = test.izz_kgm2;
+  ego.start.translation.x() = -run_up_m - static_cast<double>(a->mesh.bounds().max.x());
+  ego.speed_mps = test.speed_mps;
+  ego.model = std::move(*a);
+  CrashBody other;
+  other.facts = barrier_facts(test.barrier);
+  other.model = std::move(*b);
+  return rank_crash(ego, other, (2.0 * run_up_m + test.size.length_m) / test.speed_mps);
 }
 
 }  // namespace crashrank::cli

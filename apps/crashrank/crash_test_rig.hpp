@@ -1,9 +1,9 @@
 #pragma once
 
 #include "crash_test_car.hpp"
+#include "crash_test_rank.hpp"
 
 #include "crashrank/base/result.hpp"
-#include "crashrank/crash/contact_law.hpp"
 
 #include <optional>
 #include <string>
@@ -33,9 +33,8 @@ struct CrashTest {
   double speed_mps = 0.0;
 };
 
-/// Drives the car into the barrier: first contact of the meshes, then `simulate_contact` as `rank`
-/// does it, on the same description of both bodies. The barrier is steel; its honeycomb folds
-/// around what enters it. Errors: as `make_model` and `describe_vehicle`.
-Result<ContactOutcome> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape);
+/// Ranks the crash of the car, the ego, into the barrier. The barrier is steel; its honeycomb folds
+/// around what enters it. Errors: as `make_model` and `rank`.
+Result<Crash> run_crash_test(const RigCar& car, const CrashTest& test, RigShape shape);
 
 }  // namespace crashrank::cli

@@ -68,7 +68,7 @@ void listen_to(int signal) {
   const bool locked = pending.mutex.try_lock_for(std::chrono::milliseconds(50));
   Progress::clear();
   Interruption known{{}, "nothing is known yet"};
-  if (is_answering()) {
+  if (!begin_answer()) {
     known.message = "a part of the answer is written";
   } else if (locked && !pending.answers.empty()) {
     known = pending.answers.back().second();

@@ -41,11 +41,10 @@ int fail_in(const std::string& file, Error error) {
 
 /// Result of one row.
 struct Outcome {
-  ContactOutcome contact;
-  double delta_v_mps() const { return contact.a.delta_v_mps.norm(); }
-  double yaw_rate_dps() const {
-    return contact.a.delta_yaw_rate_radps * (180.0 / std::numbers::pi);
-  }
+  Crash crash;
+  const BodyOutcome& car() const { return crash.severity.ego; }
+  double delta_v_mps() const { return car().delta_v_mps; }
+  double yaw_rate_dps() const { return car().yaw_rate_change_radps * (180.0 / std::numbers::pi); }
 };
 
 /// Of as many rows as have been run, which an interruption asks for.
@@ -56,10 +55,10 @@ struct Outcomes {
 
 Status run_row(const RigCar& car, const CrashTestRow& row, RigShape shape, Progress& progress,
                Outcomes& outcomes) {
-  Result<ContactOutcome> contact = run_crash_test(car, row.test, shape);
-  if (!contact) return contact.error();
+  Result<Crash> crash = run_crash_test(car, row.test, shape);
+  if (!crash) return crash.error();
   const std::lock_guard<std::mutex> lock(outcomes.mutex);
-  outcomes.list.push_back({*contact});
+  outcomes.list.push_back({std::move(*crash)});
   progress.advance();
   return Success{};
 }
@@ -75,18 +74,18 @@ TestErrors errors_of(const std::vector<CrashTestRow>& rows, const std::vector<Ou
 }
 
 Json row_json(const CrashTestRow& row, const Outcome& outcome) {
-  const ContactOutcome& contact = outcome.contact;
+  const ContactSeverity& severity = outcome.crash.severity;
   Json entry{{"id", row.test.id},
              {"delta_v_mps", outcome.delta_v_mps()},
-             {"delta_v_x_mps", contact.a.delta_v_mps.x()},
-             {"delta_v_y_mps", contact.a.delta_v_mps.y()},
+             {"delta_v_x_mps", outcome.car().delta_v_x_mps},
+             {"delta_v_y_mps", outcome.car().delta_v_y_mps},
              {"yaw_rate_dps", outcome.yaw_rate_dps()},
-             {"slides", contact.slides},
-             {"collides", contact.acts},
-             {"pdof_deg", contact.a.pdof_deg},
-             {"duration_s", contact.duration_s},
-             {"dissipated_j", contact.dissipated_j},
-             {"deepest_m", contact.a.crush_depth_m}};
+             {"slides", severity.slides},
+             {"collides", outcome.crash.acts},
+             {"pdof_deg", outcome.car().pdof_deg},
+             {"duration_s", severity.duration_s},
+             {"dissipated_j", severity.dissipated_j},
+             {"deepest_m", outcome.car().crush_m}};
   if (row.measured_delta_v_mps) entry["measured_delta_v_mps"] = *row.measured_delta_v_mps;
   if (row.measured_yaw_rate_dps) entry["measured_yaw_rate_dps"] = *row.measured_yaw_rate_dps;
   return entry;
@@ -127,7 +126,7 @@ std::string table_text(const std::vector<CrashTestRow>& rows, const std::vector<
          relative_error_text(boxes[i].delta_v_mps(), row.measured_delta_v_mps),
          measured_text(row.measured_yaw_rate_dps, 1.0), fmt::format("{:.0f}", o.yaw_rate_dps()),
          relative_error_text(o.yaw_rate_dps(), row.measured_yaw_rate_dps),
-         fmt::format("{:.0f}", boxes[i].yaw_rate_dps()), o.contact.slides ? "yes" : "no"});
+         fmt::format("{:.0f}", boxes[i].yaw_rate_dps()), o.crash.severity.slides ? "yes" : "no"});
   }
   std::string text = table.text(colours_wanted());
   text += errors_of(rows, outcomes).text("meshes");

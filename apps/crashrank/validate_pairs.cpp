@@ -18,8 +18,8 @@ constexpr double kmh = 3.6;
 
 double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
 
-const BodyContact& side_of(const PairOutcome& outcome, std::size_t car) {
-  return car == 0 ? outcome.contact.a : outcome.contact.b;
+const BodyOutcome& side_of(const PairOutcome& outcome, std::size_t car) {
+  return car == 0 ? outcome.crash.severity.ego : outcome.crash.severity.other;
 }
 
 TestErrors errors_of(const std::vector<PairTest>& tests, const std::vector<PairOutcome>& outcomes) {
@@ -27,9 +27,9 @@ TestErrors errors_of(const std::vector<PairTest>& tests, const std::vector<PairO
   for (std::size_t i = 0; i < tests.size(); ++i) {
     for (std::size_t k = 0; k < 2; ++k) {
       const PairedCar& car = tests[i].cars.at(k);
-      const BodyContact& side = side_of(outcomes[i], k);
-      errors.add_delta_v(side.delta_v_mps.norm(), car.measured_delta_v_mps);
-      errors.add_yaw_rate(degrees(side.delta_yaw_rate_radps), car.measured_yaw_rate_dps);
+      const BodyOutcome& side = side_of(outcomes[i], k);
+      errors.add_delta_v(side.delta_v_mps, car.measured_delta_v_mps);
+      errors.add_yaw_rate(degrees(side.yaw_rate_change_radps), car.measured_yaw_rate_dps);
     }
   }
   errors.finish();
@@ -98,14 +98,14 @@ Json pairs_json(const std::vector<PairTest>& tests, const std::vector<PairOutcom
     Json row{{"id", tests[i].id}};
     for (std::size_t k = 0; k < 2; ++k) {
       const PairedCar& car = tests[i].cars.at(k);
-      const BodyContact& side = side_of(outcome, k);
+      const BodyOutcome& side = side_of(outcome, k);
       const std::string number = std::to_string(k + 1);
-      const double delta_v = side.delta_v_mps.norm();
-      const double yaw_rate = degrees(side.delta_yaw_rate_radps);
+      const double delta_v = side.delta_v_mps;
+      const double yaw_rate = degrees(side.yaw_rate_change_radps);
       row["delta_v" + number + "_mps"] = delta_v;
       row["yaw_rate" + number + "_dps"] = yaw_rate;
       row["pdof" + number + "_deg"] = side.pdof_deg;
-      row["deepest" + number + "_m"] = side.crush_depth_m;
+      row["deepest" + number + "_m"] = side.crush_m;
       if (car.measured_delta_v_mps) {
         row["measured_delta_v" + number + "_mps"] = *car.measured_delta_v_mps;
         row["delta_v" + number + "_error"] = relative_error(delta_v, *car.measured_delta_v_mps);
@@ -115,10 +115,10 @@ Json pairs_json(const std::vector<PairTest>& tests, const std::vector<PairOutcom
         row["yaw_rate" + number + "_error"] = relative_error(yaw_rate, *car.measured_yaw_rate_dps);
       }
     }
-    row["slides"] = outcome.contact.slides;
-    row["collides"] = outcome.contact.acts;
-    row["duration_s"] = outcome.contact.duration_s;
-    row["dissipated_j"] = outcome.contact.dissipated_j;
+    row["slides"] = outcome.crash.severity.slides;
+    row["collides"] = outcome.crash.acts;
+    row["duration_s"] = outcome.crash.severity.duration_s;
+    row["dissipated_j"] = outcome.crash.severity.dissipated_j;
     row["roles_agree"] = outcome.roles_agree;
     rows.push_back(std::move(row));
   }
@@ -145,15 +145,15 @@ std::string pairs_text(const std::vector<PairTest>& tests,
   for (std::size_t i = 0; i < tests.size(); ++i) {
     for (std::size_t k = 0; k < 2; ++k) {
       const PairedCar& car = tests[i].cars.at(k);
-      const BodyContact& side = side_of(outcomes[i], k);
-      const double delta_v = side.delta_v_mps.norm();
-      const double yaw_rate = degrees(side.delta_yaw_rate_radps);
+      const BodyOutcome& side = side_of(outcomes[i], k);
+      const double delta_v = side.delta_v_mps;
+      const double yaw_rate = degrees(side.yaw_rate_change_radps);
       table.add_row({tests[i].id, std::to_string(k + 1), measured(car.measured_delta_v_mps, kmh),
                      fmt::format("{:.1f}", kmh * delta_v),
                      relative_error_text(delta_v, car.measured_delta_v_mps),
                      measured(car.measured_yaw_rate_dps, 1.0), fmt::format("{:.0f}", yaw_rate),
                      relative_error_text(yaw_rate, car.measured_yaw_rate_dps),
-                     outcomes[i].contact.slides ? "yes" : "no"});
+                     outcomes[i].crash.severity.slides ? "yes" : "no"});
     }
   }
   std::string text = table.text(colours_wanted());

@@ -278,8 +278,7 @@ double SceneRun::grip_of(std::size_t i) const {
   return bodies_[i].footing->wheels ? grip : std::min(grip, options_.sliding_grip);
 }
 
-/// Forces of the road. During an impact they are left out, as impact mechanics does: the contact
-/// law is validated without them.
+/// Forces of the road. During an impact they are left out, as impact mechanics does.
 void SceneRun::drive_on_road(std::size_t i, double step_s) {
   // A contact whose force is no larger than a few of the road's pushes its body along: what the
   // road takes of it at once is no change of velocity.

@@ -77,6 +77,7 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
   facts.yaw_inertia_kgm2 = model.yaw_inertia_kgm2;
   facts.stiffness = model.stiffness;
   facts.surface = model.surface;
+  facts.honeycomb = model.honeycomb;
   Result<Vehicle> vehicle = describe_vehicle(shape.mesh, facts, shape.profile);
   if (!vehicle) return error_of_model(vehicle.error(), model);
   vehicle->leading_edge_m = leading_edge_m(shape.mesh);

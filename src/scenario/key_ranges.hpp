@@ -23,6 +23,8 @@ inline constexpr NumberRange steering{-scenario_limits::steering_deg,
 inline constexpr NumberRange steering_rate{scenario_limits::min_steering_rate_dps,
                                            scenario_limits::max_steering_rate_dps};
 inline constexpr NumberRange occupants{0.0, harm_limits::people};
+inline constexpr NumberRange honeycomb_pressure{0.0, scenario_limits::honeycomb_pa, true};
+inline constexpr NumberRange honeycomb_depth{0.0, scenario_limits::honeycomb_m, true};
 /// Of a prediction or a future.
 inline constexpr NumberRange probability{0.0, 1.0, true};
 /// That an actor exists.

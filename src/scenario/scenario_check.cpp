@@ -101,6 +101,16 @@ void check_models(const Scenario& scenario, Check& check) {
     }
     check.within(path + ".stiffness", model.stiffness,
                  {limits::min_stiffness, limits::max_stiffness});
+    if (model.honeycomb) {
+      const Honeycomb& h = *model.honeycomb;
+      check.within(path + ".honeycomb.pressure_pa", h.pressure_pa, ranges::honeycomb_pressure);
+      check.within(path + ".honeycomb.depth_m", h.depth_m, ranges::honeycomb_depth);
+      check.within(path + ".honeycomb.high_m", h.high_m, ranges::honeycomb_depth);
+      check.not_negative(path + ".honeycomb.low_m", h.low_m, limits::honeycomb_m);
+      if (!(h.low_m < h.high_m)) {
+        check.refuse(path + ".honeycomb.low_m", "is not below high_m", "give the lower end");
+      }
+    }
   }
 }
 

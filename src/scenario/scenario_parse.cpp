@@ -78,11 +78,28 @@ std::optional<Surface> read_surface(const JsonObject& object) {
   return std::nullopt;
 }
 
+std::optional<Honeycomb> read_honeycomb(const JsonObject& parent) {
+  if (!parent.has("honeycomb")) return std::nullopt;
+  const JsonObject object(parent.at("honeycomb"), parent.path_of("honeycomb"), parent.status(),
+                          {"pressure_pa", "depth_m", "low_m", "high_m"});
+  for (const char* const key : {"pressure_pa", "depth_m", "high_m"}) object.require(key);
+  Honeycomb honeycomb;
+  honeycomb.pressure_pa = object.number("pressure_pa", honeycomb_pressure, 1.0);
+  honeycomb.depth_m = object.number("depth_m", honeycomb_depth, 1.0);
+  honeycomb.low_m = object.number("low_m", {0.0, limits::honeycomb_m}, 0.0);
+  honeycomb.high_m = object.number("high_m", honeycomb_depth, limits::honeycomb_m);
+  if (!(honeycomb.low_m < honeycomb.high_m)) {
+    object.refuse("low_m", "is not below high_m", "give the lower end");
+  }
+  return honeycomb;
+}
+
 ScenarioModel read_model(const json& value, const std::string& name, const std::string& path,
                          Status& status) {
-  const JsonObject object(value, path, status,
-                          {"mesh", "kind", "mass_kg", "scale", "up", "forward", "origin_m",
-                           "center_of_mass_m", "yaw_inertia_kgm2", "stiffness", "surface"});
+  const JsonObject object(
+      value, path, status,
+      {"mesh", "kind", "mass_kg", "scale", "up", "forward", "origin_m", "center_of_mass_m",
+       "yaw_inertia_kgm2", "stiffness", "surface", "honeycomb"});
   ScenarioModel model;
   model.name = name;
   object.require("mesh");
@@ -103,6 +120,7 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
       object.optional_number("yaw_inertia_kgm2", {0.0, limits::yaw_inertia_kgm2, true});
   model.stiffness = object.number("stiffness", {limits::min_stiffness, limits::max_stiffness}, 1.0);
   model.surface = read_surface(object);
+  model.honeycomb = read_honeycomb(object);
   return model;
 }
 

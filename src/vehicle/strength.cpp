@@ -9,6 +9,20 @@ double CrushStrength::share_of_band(double low, double high) const {
   return (inside + rest * (high - low - inside)) / (high_m - low_m);
 }
 
+CrushStrength honeycomb_strength(const Honeycomb& honeycomb) {
+  const double force_npm = honeycomb.pressure_pa * (honeycomb.high_m - honeycomb.low_m);
+  CrushStrength strength;
+  // The slope only has to be positive; behind the honeycomb stands a rigid block.
+  strength.front = {force_npm, 0.01 * force_npm, honeycomb.depth_m};
+  strength.side = strength.front;
+  strength.rear = strength.front;
+  strength.low_m = honeycomb.low_m;
+  strength.high_m = honeycomb.high_m;
+  strength.hardening_npm2 = 1e8;
+  strength.rigid_npm2 = 1e9;
+  return strength;
+}
+
 CrushStrength car_strength(const CarShape& shape) {
   constexpr double no_crush_mps = 2.2;
   constexpr double test_mps = 15.6;

@@ -253,7 +253,9 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
     }
     v.density_kgm3 = v.mass_kg / v.profile->volume_m3();
   }
-  v.strength = v.movable() ? strength_of(v, box) : CrushStrength::unyielding();
+  v.strength = facts.honeycomb ? honeycomb_strength(*facts.honeycomb)
+               : v.movable()   ? strength_of(v, box)
+                               : CrushStrength::unyielding();
   if (!v.strength.rigid) scale(v.strength, facts.stiffness);
   v.surface = facts.surface.value_or(surface_of(v.kind));
   return v;

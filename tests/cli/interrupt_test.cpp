@@ -30,12 +30,23 @@ void expect_interrupted(const Outcome& run) {
   EXPECT_TRUE(cli_test::is_one_message(run.err.substr(last))) << run.err;
 }
 
-/// So many candidates that their ranking takes minutes.
+/// So many candidates in so many futures that their ranking takes minutes.
 void write_long_scenario(const Workplace& place) {
   cli_test::write_box_scenario(place);
   std::string text = place.read("scenario.json");
   const std::string grid = "\"grid\": false";
   text.replace(text.find(grid), grid.size(), R"("grid": {"accelerations": 101, "steerings": 101})");
+  const std::string version = R"("scenario_version": 1)";
+  text.replace(text.find(version), version.size(), R"("scenario_version": 2)");
+  std::string stones;
+  for (int i = 0; i < 9; ++i) {
+    const std::string place_x = std::to_string(10 + 2 * i);
+    stones += std::string(i > 0 ? ", " : "") + R"({"name": "stone )" + std::to_string(i) +
+              R"(", "model": "block", "existence_probability": 0.5, "pose": {"x_m": )" + place_x +
+              "}}";
+  }
+  const std::size_t actors = text.find("\"actors\": [") + 11;
+  text.replace(actors, text.find("],", actors) - actors, "[" + stones);
   place.write("scenario.json", text);
 }
 

@@ -48,6 +48,8 @@ TEST(Scenario, EveryKeyOfTheSampleArrives) {
   EXPECT_FALSE(s.models[1].center_of_mass_m || s.models[1].yaw_inertia_kgm2);
   EXPECT_EQ(s.models[1].stiffness, 1.0);
   EXPECT_EQ(s.models[1].surface, Surface::concrete);
+  EXPECT_FALSE(s.models[0].honeycomb.has_value());
+  EXPECT_EQ(s.models[1].honeycomb, (Honeycomb{342000.0, 0.54, 0.2, 0.85}));
   EXPECT_FALSE(s.models[1].mass_kg.has_value());
   EXPECT_EQ(s.models[1].transform.scale, 10.0);
   EXPECT_EQ(s.ego.model, 0U);
@@ -141,6 +143,11 @@ TEST(Scenario, TheSchemaStatesTheParsersLimits) {
   EXPECT_EQ(at("/$defs/model/properties/yaw_inertia_kgm2/maximum"), limits::yaw_inertia_kgm2);
   EXPECT_EQ(at("/$defs/model/properties/stiffness/minimum"), limits::min_stiffness);
   EXPECT_EQ(at("/$defs/model/properties/stiffness/maximum"), limits::max_stiffness);
+  const std::string honeycomb = "/$defs/model/properties/honeycomb/properties/";
+  EXPECT_EQ(at((honeycomb + "pressure_pa/maximum").c_str()), limits::honeycomb_pa);
+  for (const char* const key : {"depth_m", "low_m", "high_m"}) {
+    EXPECT_EQ(at((honeycomb + key + "/maximum").c_str()), limits::honeycomb_m);
+  }
   EXPECT_EQ(at("/$defs/occupants/minimum"), 0.0);
   EXPECT_EQ(at("/$defs/occupants/maximum"), harm_limits::people);
   EXPECT_EQ(at("/$defs/model/properties/scale/minimum"), limits::min_scale);

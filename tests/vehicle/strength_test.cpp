@@ -94,5 +94,20 @@ TEST(Strength, TheCoreLiesInsideTheCar) {
   EXPECT_FALSE(s.rigid);
 }
 
+TEST(Strength, AHoneycombFoldsAtItsPressure) {
+  const Honeycomb honeycomb{0.342e6, 0.54, 0.2, 0.85};
+  const CrushStrength s = honeycomb_strength(honeycomb);
+  EXPECT_FALSE(s.rigid);
+  for (const CrushLaw& law : {s.front, s.side, s.rear}) {
+    EXPECT_EQ(law.length_m, honeycomb.depth_m);
+    // A wall of the honeycomb's height: the pressure times the area, within 1 % at any depth.
+    const double share = s.share_of_band(honeycomb.low_m, honeycomb.high_m);
+    for (const double crush : {0.0, 0.54}) {
+      const double pressure = (law.yield_npm + law.slope_npm2 * crush) * share / 0.65;
+      EXPECT_NEAR(pressure, honeycomb.pressure_pa, 0.01 * honeycomb.pressure_pa);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace crashrank

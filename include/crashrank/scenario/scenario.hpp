@@ -3,6 +3,7 @@
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/internal/base/export.hpp"
+#include "crashrank/internal/vehicle/strength.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/mesh/stated_mass.hpp"
 #include "crashrank/motion/motion.hpp"
@@ -37,8 +38,9 @@ struct ScenarioModel {
   /// Moment of inertia about the vertical axis through the center of mass, kg·m²; absent: as its
   /// model file states, else estimated from kind, mass and mesh.
   std::optional<double> yaw_inertia_kgm2;
-  double stiffness = 1.0;          ///< crush strength, times the default of its kind
-  std::optional<Surface> surface;  ///< outer material; absent: by kind
+  double stiffness = 1.0;              ///< crush strength, times the default of its kind
+  std::optional<Surface> surface;      ///< outer material; absent: by kind
+  std::optional<Honeycomb> honeycomb;  ///< crushable layer in place of the strength of its kind
 };
 
 /// Sets the mass, centre of mass and yaw inertia that a model file states where the scenario states
@@ -186,6 +188,8 @@ inline constexpr double max_mass_kg = 1e6;              ///< kg
 inline constexpr double yaw_inertia_kgm2 = 1e9;         ///< most, kg·m²; above 0
 inline constexpr double min_stiffness = 0.01;           ///< least factor
 inline constexpr double max_stiffness = 100.0;          ///< most
+inline constexpr double honeycomb_pa = 1e9;             ///< most pressure, Pa; above 0
+inline constexpr double honeycomb_m = 100.0;            ///< most depth or height, m
 inline constexpr double min_scale = 1e-6;               ///< metres per file unit
 inline constexpr double max_scale = 1e6;                ///< metres per file unit
 inline constexpr double min_grip = 0.01;                ///< least friction

@@ -25,6 +25,7 @@ struct VehicleFacts {
   std::optional<double> yaw_inertia_kgm2;           ///< about the centre of mass; absent: derived
   double stiffness = 1.0;                           ///< times the kind's strength, > 0
   std::optional<Surface> surface;                   ///< absent: the kind's
+  std::optional<Honeycomb> honeycomb;               ///< replaces the kind's strength
 };
 
 /// Everything that a body is in a crash besides its triangles.

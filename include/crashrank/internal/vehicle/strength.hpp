@@ -64,6 +64,24 @@ struct CrushStrength {
   CRASHRANK_API double share_of_band(double low, double high) const;
 };
 
+/// Crushable layer around a rigid core: the honeycomb of a deformable barrier, a crash cushion. It
+/// folds at a constant pressure, equal from all sides.
+struct Honeycomb {
+  double pressure_pa = 0.0;  ///< at which it folds, Pa, > 0
+  double depth_m = 0.0;      ///< free crush length, m, > 0
+  double low_m = 0.0;        ///< lower end over the ground, m
+  double high_m = 0.0;       ///< upper end, m, > low_m
+
+  /// Equal in all numbers.
+  friend bool operator==(const Honeycomb& a, const Honeycomb& b) noexcept {
+    return a.pressure_pa == b.pressure_pa && a.depth_m == b.depth_m && a.low_m == b.low_m &&
+           a.high_m == b.high_m;
+  }
+};
+
+/// Strength of a body behind such a layer.
+CRASHRANK_API CrushStrength honeycomb_strength(const Honeycomb& honeycomb);
+
 /// Measures from which a car's strength is derived.
 struct CarShape {
   double mass_kg = 1500.0;     ///< kg
