@@ -135,6 +135,16 @@ TEST(Scenario, TheSchemaStatesTheParsersLimits) {
   EXPECT_EQ(at("/$defs/acceleration_mps2/maximum"), limits::acceleration_mps2);
   EXPECT_EQ(at("/$defs/yaw_rate_dps/maximum"), limits::yaw_rate_dps);
   EXPECT_EQ(at("/$defs/ego/properties/max_steering_deg/maximum"), limits::steering_deg);
+  EXPECT_EQ(at("/$defs/ego/properties/max_deceleration_mps2/minimum"),
+            limits::min_deceleration_mps2);
+  EXPECT_EQ(at("/$defs/ego/properties/max_steering_rate_dps/minimum"),
+            limits::min_steering_rate_dps);
+  EXPECT_EQ(at("/$defs/ego/properties/max_steering_rate_dps/maximum"),
+            limits::max_steering_rate_dps);
+  EXPECT_EQ(at("/$defs/road/properties/drivable/maxItems"), road_limits::areas);
+  const std::string off_road = "/$defs/road/properties/off_road/properties/";
+  EXPECT_EQ(at((off_road + "harm_per_leaving/maximum").c_str()), road_limits::harm_per_leaving);
+  EXPECT_EQ(at((off_road + "grip/minimum").c_str()), limits::min_grip);
   EXPECT_EQ(at("/$defs/ego/properties/wheelbase_m/minimum"), limits::min_wheelbase_m);
   EXPECT_EQ(at("/$defs/ego/properties/wheelbase_m/maximum"), limits::max_wheelbase_m);
   EXPECT_EQ(at("/$defs/model/properties/mass_kg/minimum"), limits::min_mass_kg);
@@ -171,6 +181,10 @@ TEST(Scenario, DefaultsAreThoseOfTheSchema) {
             s->ego.max_acceleration_mps2);
   EXPECT_NEAR(at("/$defs/ego/properties/max_steering_deg/default").get<double>(),
               s->ego.max_steering_rad * 180.0 / M_PI, 1e-12);
+  EXPECT_NEAR(at("/$defs/ego/properties/max_steering_rate_dps/default").get<double>(),
+              s->ego.max_steering_rate_radps * 180.0 / M_PI, 1e-12);
+  EXPECT_FALSE(s->ego.max_deceleration_mps2 || s->road.ends() || s->road.off_road_grip);
+  EXPECT_EQ(s->road.harm_per_leaving, 0.0);
   ASSERT_TRUE(s->grid.has_value());
   EXPECT_EQ(s->grid->accelerations, 15U);
   EXPECT_EQ(s->grid->steerings, 15U);
