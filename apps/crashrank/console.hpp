@@ -32,7 +32,8 @@ int fail(const Error& error);
 /// Prints "crashrank: warning: FILE: TEXT" on stderr, escaped, on one line.
 void warn(const std::string& file, const std::string& text);
 
-/// Data on stdout, by the thread that began the answer: see `begin_answer`. A write that fails is told once, by `finish`.
+/// Data on stdout, by the thread that began the answer: see `begin_answer`. A write that fails is
+/// told once, by `finish`.
 void print(const std::string& data);
 
 /// Flushes stdout: `code`, or exit_internal with a message when something could not be written.

@@ -334,6 +334,36 @@ CRASHRANK_API crashrank_status crashrank_scenario_set_horizon(crashrank_scenario
 CRASHRANK_API crashrank_status crashrank_scenario_set_grip(crashrank_scenario* scenario,
                                                            double grip, crashrank_error* error);
 
+/// What the ego can do; what asks for more is marked as not feasible. 0 is the default of every
+/// member.
+typedef struct crashrank_ego_limits {
+  size_t size;                     ///< sizeof(crashrank_ego_limits)
+  double max_acceleration_mps2;    ///< of the engine; 0: 3
+  double max_deceleration_mps2;    ///< of the brakes; 0: as much as the grip
+  double max_steering_rad;         ///< of the road wheels; 0: 35 degrees
+  double max_steering_rate_radps;  ///< of their angle; 0: 0.4
+} crashrank_ego_limits;
+/// Sets what the ego can do. Errors: usage; numbers out of range are refused by crashrank_rank.
+CRASHRANK_API crashrank_status crashrank_scenario_set_ego_limits(crashrank_scenario* scenario,
+                                                                 const crashrank_ego_limits* limits,
+                                                                 crashrank_error* error);
+
+/// Adds an area that the ego may drive on: `corners` holds x and y of each of `count` corners,
+/// world, m, in their order around it. Without areas the road has no end. Errors: usage; areas that
+/// cross themselves are refused by crashrank_rank.
+CRASHRANK_API crashrank_status crashrank_scenario_add_area(crashrank_scenario* scenario,
+                                                           const double* corners, size_t count,
+                                                           crashrank_error* error);
+/// Cuts a hole into the area with that index, as a traffic island. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_add_hole(crashrank_scenario* scenario,
+                                                           size_t area, const double* corners,
+                                                           size_t count, crashrank_error* error);
+/// What leaving the road means: persons added to the harm, at least 0, and the grip beside it, 0:
+/// that of the road. Errors: usage for NULL.
+CRASHRANK_API crashrank_status crashrank_scenario_set_off_road(crashrank_scenario* scenario,
+                                                               double harm_per_leaving, double grip,
+                                                               crashrank_error* error);
+
 /// A set of published injury risk curves; crashrank/crash/injury.hpp names their sources.
 typedef int32_t crashrank_risk_model;
 /// Values of crashrank_risk_model.
@@ -431,12 +461,23 @@ enum {
 /// The measure's name in scenario files, "closing-energy"; NULL for no value.
 CRASHRANK_API const char* crashrank_measure_name(crashrank_measure measure);
 
+/// What becomes of manoeuvres that the vehicle cannot follow.
+typedef int32_t crashrank_infeasible;
+/// Values of crashrank_infeasible.
+enum {
+  CRASHRANK_INFEASIBLE_DEMOTE = 1,  ///< they stand behind all feasible ones
+  CRASHRANK_INFEASIBLE_DROP = 2,    ///< they are left out, unless there is no feasible one
+  CRASHRANK_INFEASIBLE_KEEP = 3     ///< they are ranked like all others
+};
+
 /// How candidates are ranked; 0 is the default of every member.
 typedef struct crashrank_rank_options {
   size_t size;                ///< sizeof(crashrank_rank_options)
   crashrank_measure measure;  ///< 0: as the scenario says (a scenario made here: harm)
   uint32_t workers;           ///< threads that share the work, 64 at most; the answer is the same
   int32_t json;               ///< other than 0: crashrank_ranking_json has an answer
+  int32_t unused;             ///< not read
+  crashrank_infeasible infeasible;  ///< 0: CRASHRANK_INFEASIBLE_DEMOTE
 } crashrank_rank_options;
 
 /// Ranks the candidates by what they would destroy. The model with index i is that of the shape
@@ -502,6 +543,28 @@ CRASHRANK_API crashrank_status crashrank_ranking_further(const crashrank_ranking
                                                          size_t index, size_t contact,
                                                          crashrank_further_contact* further,
                                                          crashrank_error* error);
+/// What is to be said of a candidate besides its crash; what is absent is NaN.
+typedef struct crashrank_manoeuvre {
+  size_t size;                  ///< sizeof(crashrank_manoeuvre)
+  int32_t feasible;             ///< 1: the vehicle can follow it to its first contact; else 0
+  int32_t leaves_road;          ///< 1: a wheel leaves the road before the first contact; else 0
+  double grip_demand;           ///< what it asks for over what there is: of the tyres' grip
+  double engine_demand;         ///< of the engine
+  double brakes_demand;         ///< of the brakes
+  double steering_demand;       ///< of the steering angle
+  double steering_rate_demand;  ///< of its rate
+  double leaves_road_s;         ///< when, from now
+  double leaves_road_mps;       ///< and how fast
+  double least_distance_m;      ///< to anybody along the plans, 0 where it touches somebody
+  double least_time_gap_s;      ///< between it and another that moves, at one place
+  double horizon_speed_mps;     ///< at the horizon, where it collides with nobody
+} crashrank_manoeuvre;
+/// What is to be said of the candidate under `index` besides its crash; the caller sets
+/// `manoeuvre->size`. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_ranking_manoeuvre(const crashrank_ranking* ranking,
+                                                           size_t index,
+                                                           crashrank_manoeuvre* manoeuvre,
+                                                           crashrank_error* error);
 /// The place of the candidate that crashrank_ranking_get has under `index`, from 1: candidates that
 /// are tied share it (1, 2, 2, 4) and have neighbouring indices. `sharing`, which may be NULL: how
 /// many candidates have that place. Errors: usage.

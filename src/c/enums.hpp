@@ -5,6 +5,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/crash/after_contact.hpp"
 #include "crashrank/crash/injury.hpp"
+#include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/measure.hpp"
 #include "crashrank/vehicle/body_kind.hpp"
 #include "crashrank/vehicle/surface.hpp"
@@ -45,7 +46,12 @@ template <> struct EnumInC<AfterContact> {
   static constexpr auto last = AfterContact::locks;
   static constexpr const char* name = "crashrank_after_contact";
 };
+template <> struct EnumInC<Infeasible> {
+  static constexpr auto last = Infeasible::keep;
+  static constexpr const char* name = "crashrank_infeasible";
+};
 
+static_assert(to_c(EnumInC<Infeasible>::last) == CRASHRANK_INFEASIBLE_KEEP);
 static_assert(to_c(EnumInC<BodyKind>::last) == CRASHRANK_KIND_BUILDING);
 static_assert(to_c(EnumInC<Surface>::last) == CRASHRANK_SURFACE_PERSON);
 static_assert(to_c(EnumInC<Measure>::last) == CRASHRANK_MEASURE_HARM);

@@ -28,6 +28,22 @@ using c::guarded;
 using c::refuse;
 using c::refuse_null;
 
+bool same_limits(const ScenarioEgo& a, const ScenarioEgo& b) {
+  return a.max_acceleration_mps2 == b.max_acceleration_mps2 &&
+         a.max_deceleration_mps2 == b.max_deceleration_mps2 &&
+         a.max_steering_rad == b.max_steering_rad &&
+         a.max_steering_rate_radps == b.max_steering_rate_radps;
+}
+
+bool same_road(const Road& a, const Road& b) {
+  const auto same_area = [](const Area& p, const Area& q) {
+    return p.outer == q.outer && p.holes == q.holes;
+  };
+  return a.harm_per_leaving == b.harm_per_leaving && a.off_road_grip == b.off_road_grip &&
+         std::equal(a.drivable.begin(), a.drivable.end(), b.drivable.begin(), b.drivable.end(),
+                    same_area);
+}
+
 /// A Ranker's scene holds the bodies and the horizon that it was prepared with.
 Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
   const auto other = [](const char* place) {
@@ -39,6 +55,8 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
   };
   if (scenario.horizon_s != prepared.horizon_s) return other("horizon_s");
   if (scenario.grip != prepared.grip) return other("grip");
+  if (!same_limits(scenario.ego, prepared.ego)) return other("ego's limits");
+  if (!same_road(scenario.road, prepared.road)) return other("road");
   if (!c::same_harm(scenario.harm, prepared.harm)) return other("harm");
   const auto same_model = [](const ScenarioModel& a, const ScenarioModel& b) {
     // What an update leaves out may be stated in a model file.

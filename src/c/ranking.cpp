@@ -24,6 +24,12 @@ Result<RankOptions> to_options(const crashrank_rank_options& options) {
     if (!measure) return measure.error();
     made.measure = *measure;
   }
+  if (options.infeasible != 0) {
+    const Result<Infeasible> infeasible =
+        c::from_c<Infeasible>(options.infeasible, "crashrank_rank_options.infeasible");
+    if (!infeasible) return infeasible.error();
+    made.infeasible = *infeasible;
+  }
   return made;
 }
 
@@ -50,6 +56,24 @@ crashrank_choice to_choice(const crashrank_ranking& ranking, std::size_t place) 
     choice.pdof_deg = first.severity.ego.pdof_deg;
   }
   return choice;
+}
+
+crashrank_manoeuvre to_manoeuvre(const CandidateResult& ranked) {
+  constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+  crashrank_manoeuvre made{};
+  made.feasible = ranked.feasible ? 1 : 0;
+  made.leaves_road = ranked.leaves_road ? 1 : 0;
+  made.grip_demand = ranked.demand.grip;
+  made.engine_demand = ranked.demand.engine;
+  made.brakes_demand = ranked.demand.brakes;
+  made.steering_demand = ranked.demand.steering;
+  made.steering_rate_demand = ranked.demand.steering_rate;
+  made.leaves_road_s = ranked.leaves_road ? ranked.leaves_road->time_s : absent;
+  made.leaves_road_mps = ranked.leaves_road ? ranked.leaves_road->speed_mps : absent;
+  made.least_distance_m = ranked.least_distance_m.value_or(absent);
+  made.least_time_gap_s = ranked.least_time_gap_s.value_or(absent);
+  made.horizon_speed_mps = ranked.at_horizon ? ranked.at_horizon->speed_mps : absent;
+  return made;
 }
 
 }  // namespace
@@ -138,6 +162,23 @@ crashrank_status crashrank_ranking_further(const crashrank_ranking* ranking, siz
         from.outcome_b.delta_v_mps,
         has_harm ? from.harm : std::numeric_limits<double>::quiet_NaN()};
     c::write_sized(made, *further);
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_ranking_manoeuvre(const crashrank_ranking* ranking, size_t index,
+                                             crashrank_manoeuvre* manoeuvre,
+                                             crashrank_error* error) {
+  if (const char* null = c::first_null({{"ranking", ranking}, {"manoeuvre", manoeuvre}})) {
+    return refuse_null(null, error);
+  }
+  if (index >= crashrank_ranking_size(ranking)) {
+    return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
+  }
+  return guarded(error, [&]() -> crashrank_status {
+    const Status sized = c::check_size("crashrank_manoeuvre", *manoeuvre);
+    if (!sized) return refuse(sized.error(), error);
+    c::write_sized(to_manoeuvre(ranking->result.ranking[index]), *manoeuvre);
     return CRASHRANK_OK;
   });
 }

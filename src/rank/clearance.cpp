@@ -99,10 +99,14 @@ private:
     constexpr double golden = 0.6180339887498949;
     constexpr int rounds = 10;  // 0.1 s · 0.618^10 is less than a millisecond
     const double end_s = step_s_ * static_cast<double>(a_.way.size() - 1);
-    const auto middle = step_s_ * static_cast<double>(i);
+    const double middle = step_s_ * static_cast<double>(i);
+    const double cutoff = here + travel_m_;
+    // Most often the least is at one of the ends, and the distance falls until there.
+    const bool at_end = i == 0 || i + 1 == a_.way.size();
+    const double inside = middle + (i == 0 ? 0.05 : -0.05) * step_s_;
+    if (at_end && at_time(inside, cutoff) >= here) return here;
     double low = std::max(middle - step_s_, 0.0);
     double high = std::min(middle + step_s_, end_s);
-    const double cutoff = here + travel_m_;
     double p = high - golden * (high - low);
     double q = low + golden * (high - low);
     double of_p = at_time(p, cutoff);

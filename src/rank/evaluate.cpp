@@ -269,6 +269,7 @@ void Scratch::prepare(const Scene& scene) {
   near.reserve(futures.plans.size());
   hits.reserve(futures.plans.size());
   felt.resize(futures.plans.size());
+  way.reserve(scene.ways.steps + 1);
   first_s.reserve(futures.size());
   until_s.reserve(futures.size());
   weighted.reserve(futures.size());

@@ -30,4 +30,23 @@ void find_near(const Scene& scene, const Motion& ego, double from_s, double unti
       });
 }
 
+bool all_are_clear(const Scene& scene, View<const Candidate> candidates, const Watch& watch,
+                   std::uint64_t& box_tests) {
+  constexpr std::size_t between_looks = 64;
+  for (std::size_t s = 0; s < scene.slices.size(); ++s) {
+    Box all;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (i % between_looks == 0 && watch.expired()) return false;
+      const Box box = swept_box(scene.ego, candidates[i].motion, scene.slice_s[s],
+                                scene.slice_s[s + 1], scene.impact.tolerance_m);
+      if (box.min.hasNaN() || box.max.hasNaN()) return false;  // growing by it may change nothing
+      all.grow(box);
+    }
+    bool clear = true;
+    box_tests += scene.slices[s].query(all, [&clear](std::size_t) { clear = false; });
+    if (!clear) return false;
+  }
+  return true;
+}
+
 }  // namespace crashrank::detail

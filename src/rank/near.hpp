@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rank/anytime/watch.hpp"
 #include "rank/evaluate.hpp"
 
 #include <cstdint>
@@ -10,5 +11,10 @@ namespace crashrank::detail {
 /// slices of time, the soonest first.
 void find_near(const Scene& scene, const Motion& ego, double from_s, double until_s,
                Scratch& scratch, RankWork& work);
+
+/// Whether the swept boxes of all candidates overlap no plan's in any time slice. False when time
+/// is up.
+bool all_are_clear(const Scene& scene, View<const Candidate> candidates, const Watch& watch,
+                   std::uint64_t& box_tests);
 
 }  // namespace crashrank::detail

@@ -7,8 +7,12 @@
 namespace crashrank::detail {
 namespace {
 
-/// Pieces of a chain: about 0.8 m of outline.
-constexpr std::uint32_t chain_pieces = 8;
+/// Segments of a chain.
+constexpr std::uint32_t chain_segments = 4;
+
+/// Pieces that lie so near to one line are one segment, m. Faces of vehicles have hundreds of
+/// pieces, and so few corners that distances are found several times sooner.
+constexpr double straight_m = 0.002;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -52,6 +56,53 @@ PlanarPose planar_pose(const Pose& pose) noexcept {
   return planar;
 }
 
+namespace {
+
+struct Segment {
+  Eigen::Vector2d from;
+  Eigen::Vector2d to;
+};
+
+Segment segment_of(const OutlinePiece& piece) {
+  const Eigen::Vector2d middle(static_cast<double>(piece.x), static_cast<double>(piece.y));
+  const Eigen::Vector2d half =
+      0.5 * static_cast<double>(piece.length_m) *
+      Eigen::Vector2d(-static_cast<double>(piece.normal_y), static_cast<double>(piece.normal_x));
+  return {middle - half, middle + half};
+}
+
+/// Whether all ends of the pieces but the last lie near the line from the first's begin to its end.
+bool is_straight(const std::vector<Segment>& pieces, std::size_t first, std::size_t last) {
+  const Eigen::Vector2d along = (pieces[last].to - pieces[first].from).normalized();
+  for (std::size_t i = first; i < last; ++i) {
+    const Eigen::Vector2d out = pieces[i].to - pieces[first].from;
+    const double ahead = out.dot(along);
+    if ((out - ahead * along).norm() > straight_m || ahead < 0.0) return false;
+  }
+  return true;
+}
+
+/// The pieces of a band in as few segments as their shape allows.
+std::vector<Segment> straightened(const std::vector<OutlinePiece>& all, std::size_t begin,
+                                  std::size_t end) {
+  constexpr std::size_t most_pieces = 512;  // of a segment: what is checked grows with its square
+  std::vector<Segment> pieces;
+  for (std::size_t i = begin; i < end; ++i) pieces.push_back(segment_of(all[i]));
+  std::vector<Segment> segments;
+  for (std::size_t first = 0, last = 0; first < pieces.size(); first = last + 1) {
+    last = first;
+    while (last + 1 < pieces.size() && last + 1 < first + most_pieces &&
+           (pieces[last + 1].from - pieces[last].to).norm() <= straight_m &&
+           is_straight(pieces, first, last + 1)) {
+      ++last;
+    }
+    segments.push_back({pieces[first].from, pieces[last].to});
+  }
+  return segments;
+}
+
+}  // namespace
+
 Outline::Outline(const Profile& profile) {
   double low_x = infinity;
   double low_y = infinity;
@@ -64,42 +115,45 @@ Outline::Outline(const Profile& profile) {
     high_y = std::max(high_y, y);
     radius_m_ = std::max(radius_m_, std::hypot(x, y));
   };
-  pieces_.reserve(profile.pieces.size());
-  for (const OutlinePiece& piece : profile.pieces) {
-    const auto length = static_cast<double>(piece.length_m);
-    Piece made;
-    made.along_x = -length * static_cast<double>(piece.normal_y);
-    made.along_y = length * static_cast<double>(piece.normal_x);
-    made.x = static_cast<double>(piece.x) - 0.5 * made.along_x;
-    made.y = static_cast<double>(piece.y) - 0.5 * made.along_y;
-    hold(made.x, made.y);
-    hold(made.x + made.along_x, made.y + made.along_y);
-    pieces_.push_back(made);
-  }
-  middle_x_ = 0.5 * (low_x + high_x);
-  middle_y_ = 0.5 * (low_y + high_y);
-  half_x_ = 0.5 * (high_x - low_x);
-  half_y_ = 0.5 * (high_y - low_y);
   for (std::size_t band = 0; band < profile_bands; ++band) {
     first_chain_[band] = static_cast<std::uint32_t>(chains_.size());
-    for (std::uint32_t first = profile.first[band]; first < profile.first[band + 1];
-         first += chain_pieces) {
-      Chain chain;
-      chain.first = first;
-      chain.end = std::min(first + chain_pieces, profile.first[band + 1]);
-      const Piece& begin = pieces_[first];
-      const Piece& last = pieces_[chain.end - 1];
-      chain.x = 0.5 * (begin.x + last.x + last.along_x);
-      chain.y = 0.5 * (begin.y + last.y + last.along_y);
-      for (std::uint32_t i = first; i < chain.end; ++i) {
-        const Piece& p = pieces_[i];
-        chain.radius = std::max({chain.radius, std::hypot(p.x - chain.x, p.y - chain.y),
-                                 std::hypot(p.x + p.along_x - chain.x, p.y + p.along_y - chain.y)});
-      }
-      chains_.push_back(chain);
+    const auto first_of_band = static_cast<std::uint32_t>(pieces_.size());
+    for (const Segment& segment :
+         straightened(profile.pieces, profile.first[band], profile.first[band + 1])) {
+      const Eigen::Vector2d along = segment.to - segment.from;
+      if (!(along.squaredNorm() > 0.0)) continue;
+      pieces_.push_back({segment.from.x(), segment.from.y(), along.x(), along.y()});
+      hold(segment.from.x(), segment.from.y());
+      hold(segment.to.x(), segment.to.y());
+    }
+    const auto end_of_band = static_cast<std::uint32_t>(pieces_.size());
+    for (std::uint32_t first = first_of_band; first < end_of_band; first += chain_segments) {
+      add_chain(first, std::min(first + chain_segments, end_of_band));
     }
   }
   first_chain_[profile_bands] = static_cast<std::uint32_t>(chains_.size());
+  middle_x_ = 0.5 * (low_x + high_x);
+  middle_y_ = 0.5 * (low_y + high_y);
+  // Ends within the tolerance of a straight line are left out.
+  half_x_ = 0.5 * (high_x - low_x) + straight_m;
+  half_y_ = 0.5 * (high_y - low_y) + straight_m;
+  radius_m_ += straight_m;
+}
+
+void Outline::add_chain(std::uint32_t first, std::uint32_t end) {
+  Chain chain;
+  chain.first = first;
+  chain.end = end;
+  const Piece& begin = pieces_[first];
+  const Piece& last = pieces_[end - 1];
+  chain.x = 0.5 * (begin.x + last.x + last.along_x);
+  chain.y = 0.5 * (begin.y + last.y + last.along_y);
+  for (std::uint32_t i = first; i < end; ++i) {
+    const Piece& p = pieces_[i];
+    chain.radius = std::max({chain.radius, std::hypot(p.x - chain.x, p.y - chain.y),
+                             std::hypot(p.x + p.along_x - chain.x, p.y + p.along_y - chain.y)});
+  }
+  chains_.push_back(chain);
 }
 
 double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
@@ -122,7 +176,6 @@ double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outl
       const double along_y = sine * of_b.along_x + cosine * of_b.along_y;
       for (std::uint32_t i = p.first; i < p.end; ++i) {
         const Outline::Piece& of_a = a.pieces_[i];
-        // Ends of pieces are begins of others, or of others near to them.
         const double apart_x = bx - of_a.x;
         const double apart_y = by - of_a.y;
         least2 =

@@ -115,12 +115,18 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     }
   }
   if (slips.count > 0) {
-    const char* const then = result.infeasible == Infeasible::keep
-                                 ? "is ranked like all others"
-                                 : "stands behind what it can follow";
-    doubts.push_back(fmt::format("{} than the vehicle can do and {}: {}",
-                                 slips.many("manoeuvre asks for more", "manoeuvres ask for more"),
-                                 then, slips.examples()));
+    const bool kept = result.infeasible == Infeasible::keep;
+    doubts.push_back(fmt::format(
+        "{}: {}",
+        kept ? slips.many("manoeuvre asks for more than the vehicle can do and is ranked like all "
+                          "others",
+                          "manoeuvres ask for more than the vehicle can do and are ranked like all "
+                          "others")
+             : slips.many("manoeuvre asks for more than the vehicle can do and stands behind what "
+                          "it can follow",
+                          "manoeuvres ask for more than the vehicle can do and stand behind what "
+                          "it can follow"),
+        slips.examples()));
   }
   if (!result.dropped.empty()) {
     doubts.push_back(fmt::format(

@@ -46,7 +46,7 @@ void write_long_scenario(const Workplace& place) {
               "}}";
   }
   const std::size_t actors = text.find("\"actors\": [") + 11;
-  text.replace(actors, text.find("],", actors) - actors, "[" + stones);
+  text.replace(actors, text.find("],", actors) - actors, stones);
   place.write("scenario.json", text);
 }
 

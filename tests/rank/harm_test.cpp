@@ -263,6 +263,7 @@ Scene street() {
       "person", box_mesh({0.2F, 0.3F, 0.85F}, 4, {0, 0, 0.85F}), BodyKind::pedestrian);
   scene.scenario.ego.model = car;
   scene.scenario.ego.speed_mps = 14.0;
+  scene.scenario.grip = 1.2;
   scene.add_actor("person", person, 12.0, 0.0);
   scene.add_actor("standing car", car, 12.0, 3.0);
   scene.add_candidate("straight on", 0.0);

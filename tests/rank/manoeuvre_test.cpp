@@ -211,6 +211,28 @@ TEST(Infeasible, StandsBehindIsLeftOutOrKept) {
   EXPECT_FALSE(of(kept, "stops at once").feasible);
 }
 
+TEST(Demand, CountsUpToTheFirstContact) {
+  // About 25 m/s at the contact, 60 m/s at the horizon.
+  Scene scene = alone(20.0);
+  scene.scenario.ego.max_acceleration_mps2 = 10.0;
+  scene.scenario.ego.wheelbase_m = 2.5;
+  scene.add_actor("wall",
+                  scene.add_model("wall", box_mesh({0.5F, 8, 1}, 1, {0, 0, 1}), BodyKind::barrier),
+                  13.75, 0.0);
+  scene.add_candidate("hits", 10.0, std::atan(2.5 * 0.01));
+  for (const bool enough : {true, false}) {
+    const CandidateResult free = scene.ranked().ranking.front();
+    ASSERT_TRUE(free.collides);
+    const double speed = 20.0 + 10.0 * free.contacts[0].time_of_impact_s;
+    const double grip = std::hypot(10.0, 0.01 * speed * speed) / standard_gravity_mps2;
+    EXPECT_NEAR(speed, 25.0, 0.5);
+    scene.scenario.grip = enough ? 1.0001 * grip : 0.99 * grip;
+    const CandidateResult ranked = scene.ranked().ranking.front();
+    EXPECT_NEAR(ranked.demand.grip, grip / scene.scenario.grip, 1e-9);
+    EXPECT_EQ(ranked.feasible, enough);
+  }
+}
+
 TEST(Infeasible, CountsAsFarAsThePlanIsFollowed) {
   // Speeding up on the curve it leaves the grip after a second; the wall comes before that.
   Scene scene = wall_and_miracle();

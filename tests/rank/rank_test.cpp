@@ -28,6 +28,7 @@ constexpr double tolerance_m = 1e-4;
 
 TEST(Rank, ABoxMeetsAWallAfterDistanceOverSpeed) {
   Scene scene = car_and_wall();
+  scene.scenario.grip = 1.0;
   scene.add_candidate("keep going", 0.0);
   scene.add_candidate("brake", -3.0);
   scene.add_candidate("stop", -8.0);
@@ -193,12 +194,13 @@ TEST(Rank, BodiesThatOverlapAtTheStartCollideAtTimeZero) {
 TEST(Rank, WhatHitsNothingSaysSoAndRanksFirst) {
   Scene scene = car_and_wall();
   scene.scenario.horizon_s = 3.0;
+  scene.scenario.grip = 1.0;
   scene.add_candidate("hit", 0.0);
   scene.add_candidate("stop", -9.0);
   scene.add_candidate("stop gently", -5.0);
   const RankResult result = scene.ranked();
   ASSERT_EQ(result.ranking.size(), 3U);
-  // Equal in every respect: the order of the candidates decides.
+  // Who stops further from the wall stands first.
   EXPECT_EQ(result.candidates[result.ranking[0].candidate].name, "stop");
   EXPECT_EQ(result.candidates[result.ranking[1].candidate].name, "stop gently");
   EXPECT_EQ(result.candidates[result.ranking[2].candidate].name, "hit");

@@ -127,24 +127,6 @@ TEST(Doubts, KeysWithoutEffectAreNamed) {
       "out");
 }
 
-TEST(Doubts, TheGripCountsUpToTheFirstContact) {
-  Sound told;
-  // 25 m/s at the contact, 50 m/s at the horizon.
-  ArcMotion arc;
-  arc.speed_mps = 20.0;
-  arc.acceleration_mps2 = 10.0;
-  arc.curvature_per_m = 0.01;
-  told.scenario.grip = 1.21;
-  Candidate& hits = told.result.candidates[1];
-  hits.motion = arc;
-  hits.acceleration_mps2 = 10.0;
-  EXPECT_TRUE(told.doubts().empty());
-  told.scenario.grip = 1.19;
-  ASSERT_EQ(told.doubts().size(), 1U);  // hypot(10, 6.25) / 9.80665 = 1.2025
-  EXPECT_NE(told.doubts()[0].find("'hit', in place 2, takes 1.01 times"), std::string::npos)
-      << told.doubts()[0];
-}
-
 TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
   Sound told;
   told.scenario.grip = 0.8;
@@ -163,7 +145,7 @@ TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
     told.result.ranking.back().demand.grip = 1.25 * (1.0 + 0.2 * static_cast<double>(i));
   }
   const std::string grip =
-      " than the vehicle can do and stands behind what it can follow: 'turn 0', in place 1, takes "
+      " than the vehicle can do and stand behind what it can follow: 'turn 0', in place 1, takes "
       "1.25 times the grip; 'turn 2', in place 3, takes 1.75 times the grip; 'turn 3', "
       "in place 4, takes 2.00 times the grip";
   ASSERT_EQ(told.doubts().size(), 1U);

@@ -6,6 +6,7 @@
 #include "rank/anytime/race.hpp"
 #include "rank/anytime/refine.hpp"
 #include "rank/anytime/step_rounds.hpp"
+#include "rank/near.hpp"
 #include "rank/order.hpp"
 #include "rank/scene.hpp"
 #include "scenario/motion_check.hpp"
@@ -98,6 +99,12 @@ struct CRASHRANK_HIDDEN Ranker::State {
     const auto all = static_cast<std::uint32_t>(rounds.candidates().size());
     bool going = budget.work > 0;
     std::uint32_t begin = 0;
+    if (going && all > 1) {
+      if (detail::all_are_clear(scene, rounds.candidates(), rounds.watch(), effort.work)) {
+        for (std::uint32_t i = 0; i < all; ++i) detail::bound_as_clear(scene, states[i]);
+      }
+      going = effort.work < budget.work && !rounds.expired();
+    }
     while (begin < all && going) {
       const std::size_t steps = std::min<std::size_t>(StepRounds::most_steps, all - begin);
       for (std::size_t i = 0; i < steps; ++i) {

@@ -50,10 +50,6 @@ void describe(const RefineQuery& q, const Followed& followed, Refined& state, Sc
 void look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
   const double horizon_s = q.scene.slice_s.back();
   state.leaving = find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s);
-  if (state.leaving) {
-    state.most += leaving_score(q.scene, state.leaving, never_s);
-    state.told.interval.highest = state.most;
-  }
   find_near(q.scene, q.candidate.motion, 0.0, horizon_s, scratch, work);
   state.told.stage = RankStage::near;
   if (scratch.near.empty()) {
@@ -234,8 +230,17 @@ void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candida
   state.scores = std::move(scores);
   state.scores.assign(scene.futures.size(), unknown);
   state.told.candidate = index;
+  // Whether it leaves the road is looked for later.
   state.most = bounds.most(scene, candidate.motion);
+  if (scene.road.ends()) state.most += leaving_score(scene, RoadLeaving{}, never_s);
   state.told.interval = {0.0, state.most};
+}
+
+void bound_as_clear(const Scene& scene, Refined& state) {
+  const std::optional<RoadLeaving> may_leave =
+      scene.road.ends() ? std::optional<RoadLeaving>(RoadLeaving{}) : std::nullopt;
+  state.most = leaving_score(scene, may_leave, never_s);
+  narrow(state, 0.0, state.most);
 }
 
 StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {

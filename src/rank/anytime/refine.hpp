@@ -51,6 +51,9 @@ struct StepEnd {
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Refined& state);
 
+/// The candidate is known to come near nobody: what it scores is that of leaving the road at most.
+void bound_as_clear(const Scene& scene, Refined& state);
+
 /// Takes an open candidate one stage further. Depends on the query and the candidate's own state
 /// alone. The interval only ever narrows.
 StepEnd refine(const RefineQuery& query, Refined& state, Scratch& scratch);
