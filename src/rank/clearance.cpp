@@ -10,7 +10,7 @@
 namespace crashrank::detail {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// At 30 m/s a car moves a third of its length in a step.
 constexpr double longest_step_s = 0.05;
@@ -18,7 +18,7 @@ constexpr double most_steps = 400.0;
 
 /// A body and its way.
 struct Moving {
-  const Outline& outline;
+  const BodyOutline& outline;
   const Motion& motion;
   View<const PlanarPose> way;
   double fastest_mps = 0.0;
@@ -26,7 +26,7 @@ struct Moving {
   PlanarPose at(double time_s) const { return planar_pose(motion.pose_at(time_s)); }
 };
 
-double fastest_point_mps(const Motion& motion, const Outline& outline, double until_s) {
+double fastest_point_mps(const Motion& motion, const BodyOutline& outline, double until_s) {
   const MotionBound bound = motion.bound(0.0, until_s);
   return bound.speed_mps + bound.angular_radps * outline.radius_m();
 }
@@ -63,13 +63,13 @@ public:
 
   /// Looks closely only at the times at which the rectangles come near enough.
   double find() const {
-    double best = at(nearest_, infinity);
-    double before = infinity;
+    double best = at(nearest_, unbounded);
+    double before = unbounded;
     double here = near(0, best);
     for (std::size_t i = 0; i < a_.way.size(); ++i) {
-      const double behind = i + 1 < a_.way.size() ? near(i + 1, best) : infinity;
+      const double behind = i + 1 < a_.way.size() ? near(i + 1, best) : unbounded;
       best = std::min(best, here);
-      if (here < infinity && here <= before && here <= behind && here - travel_m_ < best) {
+      if (here < unbounded && here <= before && here <= behind && here - travel_m_ < best) {
         best = std::min(best, refine(i, here));
       }
       before = here;
@@ -86,10 +86,10 @@ private:
   double near(std::size_t i, double best) const {
     const double reach = best + travel_m_;
     if (rectangle_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i]) >= reach) {
-      return infinity;
+      return unbounded;
     }
     const double apart = at(i, reach);
-    return apart < reach ? apart : infinity;
+    return apart < reach ? apart : unbounded;
   }
   double at_time(double time_s, double cutoff_m) const {
     return outline_distance_m(a_.outline, a_.at(time_s), b_.outline, b_.at(time_s), cutoff_m);
@@ -133,7 +133,7 @@ private:
   const Moving& b_;
   double step_s_;
   double travel_m_;
-  double coarse_m_ = infinity;
+  double coarse_m_ = unbounded;
   std::size_t nearest_ = 0;
 };
 
@@ -185,7 +185,7 @@ double least_time_gap_s(const Moving& a, const Moving& b, double step_s, double 
     }
     if (met) return lag_s(least);
   }
-  return infinity;
+  return unbounded;
 }
 
 }  // namespace
@@ -199,7 +199,7 @@ void place_ways(const Scene& scene, PlanWays& ways) {
   ways.poses.resize(plans.size() * (ways.steps + 1));
   ways.fastest_mps.resize(plans.size());
   for (std::size_t p = 0; p < plans.size(); ++p) {
-    const Outline& outline = *scene.actors[plans[p].actor].outline;
+    const BodyOutline& outline = *scene.actors[plans[p].actor].outline;
     ways.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
     for (std::size_t i = 0; i <= ways.steps; ++i) {
       ways.poses[p * (ways.steps + 1) + i] =

@@ -32,7 +32,9 @@ ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate
       followed.touches ? Clearance{0.0, 0.0} : clearance_of(scene, candidate.motion, scratch.way);
   Pose pose;
   Velocity velocity;
-  candidate.motion.state_at(scene.slice_s.back(), pose, velocity);
+  // Timed poses that end with the horizon stand from then on: their speed is that before it.
+  constexpr double just_before = 1.0 - 1e-9;
+  candidate.motion.state_at(just_before * scene.slice_s.back(), pose, velocity);
   facts.at_horizon.speed_mps = velocity.linear_mps.norm();
   facts.at_horizon.heading_rad = std::atan2(pose.rotation(1, 0), pose.rotation(0, 0));
   facts.at_horizon.position_m = pose.translation.head<2>();

@@ -14,7 +14,7 @@ constexpr std::uint32_t chain_segments = 4;
 /// pieces, and so few corners that distances are found several times sooner.
 constexpr double straight_m = 0.002;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nowhere_m = std::numeric_limits<double>::infinity();
 
 /// Of a point to a piece from its begin, all relative to that begin.
 double distance2(double x, double y, double along_x, double along_y) {
@@ -29,7 +29,7 @@ double distance2(double x, double y, double along_x, double along_y) {
 /// any of them to that other.
 double corners_distance2(double x, double y, double cosine, double sine, double half_x,
                          double half_y, double other_half_x, double other_half_y) {
-  double least = infinity;
+  double least = nowhere_m;
   for (const double side_x : {-1.0, 1.0}) {
     for (const double side_y : {-1.0, 1.0}) {
       const double corner_x = x + side_x * half_x * cosine - side_y * half_y * sine;
@@ -58,12 +58,12 @@ PlanarPose planar_pose(const Pose& pose) noexcept {
 
 namespace {
 
-struct Segment {
+struct OutlineSegment {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
 };
 
-Segment segment_of(const OutlinePiece& piece) {
+OutlineSegment segment_of(const OutlinePiece& piece) {
   const Eigen::Vector2d middle(static_cast<double>(piece.x), static_cast<double>(piece.y));
   const Eigen::Vector2d half =
       0.5 * static_cast<double>(piece.length_m) *
@@ -72,7 +72,7 @@ Segment segment_of(const OutlinePiece& piece) {
 }
 
 /// Whether all ends of the pieces but the last lie near the line from the first's begin to its end.
-bool is_straight(const std::vector<Segment>& pieces, std::size_t first, std::size_t last) {
+bool is_straight(const std::vector<OutlineSegment>& pieces, std::size_t first, std::size_t last) {
   const Eigen::Vector2d along = (pieces[last].to - pieces[first].from).normalized();
   for (std::size_t i = first; i < last; ++i) {
     const Eigen::Vector2d out = pieces[i].to - pieces[first].from;
@@ -83,12 +83,12 @@ bool is_straight(const std::vector<Segment>& pieces, std::size_t first, std::siz
 }
 
 /// The pieces of a band in as few segments as their shape allows.
-std::vector<Segment> straightened(const std::vector<OutlinePiece>& all, std::size_t begin,
-                                  std::size_t end) {
+std::vector<OutlineSegment> straightened(const std::vector<OutlinePiece>& all, std::size_t begin,
+                                         std::size_t end) {
   constexpr std::size_t most_pieces = 512;  // of a segment: what is checked grows with its square
-  std::vector<Segment> pieces;
+  std::vector<OutlineSegment> pieces;
   for (std::size_t i = begin; i < end; ++i) pieces.push_back(segment_of(all[i]));
-  std::vector<Segment> segments;
+  std::vector<OutlineSegment> segments;
   for (std::size_t first = 0, last = 0; first < pieces.size(); first = last + 1) {
     last = first;
     while (last + 1 < pieces.size() && last + 1 < first + most_pieces &&
@@ -103,11 +103,11 @@ std::vector<Segment> straightened(const std::vector<OutlinePiece>& all, std::siz
 
 }  // namespace
 
-Outline::Outline(const Profile& profile) {
-  double low_x = infinity;
-  double low_y = infinity;
-  double high_x = -infinity;
-  double high_y = -infinity;
+BodyOutline::BodyOutline(const Profile& profile) {
+  double low_x = nowhere_m;
+  double low_y = nowhere_m;
+  double high_x = -nowhere_m;
+  double high_y = -nowhere_m;
   const auto hold = [&](double x, double y) {
     low_x = std::min(low_x, x);
     low_y = std::min(low_y, y);
@@ -118,7 +118,7 @@ Outline::Outline(const Profile& profile) {
   for (std::size_t band = 0; band < profile_bands; ++band) {
     first_chain_[band] = static_cast<std::uint32_t>(chains_.size());
     const auto first_of_band = static_cast<std::uint32_t>(pieces_.size());
-    for (const Segment& segment :
+    for (const OutlineSegment& segment :
          straightened(profile.pieces, profile.first[band], profile.first[band + 1])) {
       const Eigen::Vector2d along = segment.to - segment.from;
       if (!(along.squaredNorm() > 0.0)) continue;
@@ -140,7 +140,7 @@ Outline::Outline(const Profile& profile) {
   radius_m_ += straight_m;
 }
 
-void Outline::add_chain(std::uint32_t first, std::uint32_t end) {
+void BodyOutline::add_chain(std::uint32_t first, std::uint32_t end) {
   Chain chain;
   chain.first = first;
   chain.end = end;
@@ -156,7 +156,7 @@ void Outline::add_chain(std::uint32_t first, std::uint32_t end) {
   chains_.push_back(chain);
 }
 
-double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
                           const PlanarPose& pose_b, double cutoff_m) {
   // b in a's frame.
   const double cosine = pose_a.cosine * pose_b.cosine + pose_a.sine * pose_b.sine;
@@ -166,16 +166,16 @@ double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outl
   const double x = pose_a.cosine * dx + pose_a.sine * dy;
   const double y = pose_a.cosine * dy - pose_a.sine * dx;
   double least = cutoff_m;
-  const auto near_pieces = [&](const Outline::Chain& p, const Outline::Chain& q) {
+  const auto near_pieces = [&](const BodyOutline::Chain& p, const BodyOutline::Chain& q) {
     double least2 = least * least;
     for (std::uint32_t k = q.first; k < q.end; ++k) {
-      const Outline::Piece& of_b = b.pieces_[k];
+      const BodyOutline::Piece& of_b = b.pieces_[k];
       const double bx = x + cosine * of_b.x - sine * of_b.y;
       const double by = y + sine * of_b.x + cosine * of_b.y;
       const double along_x = cosine * of_b.along_x - sine * of_b.along_y;
       const double along_y = sine * of_b.along_x + cosine * of_b.along_y;
       for (std::uint32_t i = p.first; i < p.end; ++i) {
-        const Outline::Piece& of_a = a.pieces_[i];
+        const BodyOutline::Piece& of_a = a.pieces_[i];
         const double apart_x = bx - of_a.x;
         const double apart_y = by - of_a.y;
         least2 =
@@ -193,7 +193,7 @@ double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outl
     const std::uint32_t end_b = b.first_chain_[band + 1];
     common = common || (a.first_chain_[band] < end_a && b.first_chain_[band] < end_b);
     for (std::uint32_t k = b.first_chain_[band]; k < end_b; ++k) {
-      const Outline::Chain& q = b.chains_[k];
+      const BodyOutline::Chain& q = b.chains_[k];
       const double qx = x + cosine * q.x - sine * q.y;
       const double qy = y + sine * q.x + cosine * q.y;
       // Beyond the rectangle around all of a by more than the best.
@@ -201,7 +201,7 @@ double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outl
       const double out_y = std::abs(qy - a.middle_y_) - a.half_y_ - q.radius;
       if (std::max(out_x, out_y) >= least) continue;
       for (std::uint32_t i = a.first_chain_[band]; i < end_a; ++i) {
-        const Outline::Chain& p = a.chains_[i];
+        const BodyOutline::Chain& p = a.chains_[i];
         const double reach = least + p.radius + q.radius;
         const double apart_x = qx - p.x;
         const double apart_y = qy - p.y;
@@ -209,10 +209,10 @@ double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outl
       }
     }
   }
-  return common ? least : infinity;
+  return common ? least : nowhere_m;
 }
 
-double rectangle_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+double rectangle_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
                             const PlanarPose& pose_b) noexcept {
   const double cosine = pose_a.cosine * pose_b.cosine + pose_a.sine * pose_b.sine;
   const double sine = pose_a.cosine * pose_b.sine - pose_a.sine * pose_b.cosine;

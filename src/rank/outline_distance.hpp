@@ -22,10 +22,10 @@ PlanarPose planar_pose(const Pose& pose) noexcept;
 
 /// A body's outlines prepared for distances: segments that follow them to 2 mm, in short chains
 /// with circles around them.
-class Outline {
+class BodyOutline {
 public:
-  Outline() = default;
-  explicit Outline(const Profile& profile);
+  BodyOutline() = default;
+  explicit BodyOutline(const Profile& profile);
 
   /// Middle of the rectangle around all outlines, body coordinates, m.
   double middle_x() const noexcept { return middle_x_; }
@@ -37,7 +37,7 @@ public:
   double radius_m() const noexcept { return radius_m_; }
 
 private:
-  friend double outline_distance_m(const Outline&, const PlanarPose&, const Outline&,
+  friend double outline_distance_m(const BodyOutline&, const PlanarPose&, const BodyOutline&,
                                    const PlanarPose&, double);
   struct Piece {
     double x = 0.0;  ///< from
@@ -70,12 +70,12 @@ private:
 /// nearer than it, infinity without a common band. Bodies in each other are as far apart as their
 /// outlines are. Exact to 4 mm. Allocates nothing. O(chains²) a band and the segments of the
 /// nearest.
-double outline_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
                           const PlanarPose& pose_b, double cutoff_m);
 
 /// Distance of the rectangles around the outlines, seen from above: no outline distance is less.
 /// 0 where they overlap. Constant time.
-double rectangle_distance_m(const Outline& a, const PlanarPose& pose_a, const Outline& b,
+double rectangle_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
                             const PlanarPose& pose_b) noexcept;
 
 }  // namespace crashrank::detail

@@ -165,13 +165,13 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   scene.ego = make_body(models[ego->model], ego->mass_kg);
   // By model: its outline takes milliseconds to cut, and many actors share one.
   std::vector<std::optional<Vehicle>> described(models.size());
-  std::vector<std::shared_ptr<const Outline>> outlines(models.size());
+  std::vector<std::shared_ptr<const BodyOutline>> outlines(models.size());
   const auto describe = [&](std::size_t model, Body& body) -> Status {
     if (!described[model]) {
       Result<Vehicle> made = vehicle_of(scenario.models[model], models[model]);
       if (!made) return made.error();
       described[model] = std::move(*made);
-      outlines[model] = std::make_shared<const Outline>(*described[model]->profile);
+      outlines[model] = std::make_shared<const BodyOutline>(*described[model]->profile);
     }
     body.vehicle = *described[model];
     body.outline = outlines[model];

@@ -31,11 +31,11 @@ struct Body {
   Pose standing;                                          ///< of what nothing moves
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
-  double radius_m = 0.0;                   ///< no point of the body is further from its origin
-  Vehicle vehicle;                         ///< what it is in a crash
-  Footing footing;                         ///< of what moves
-  std::shared_ptr<const Outline> outline;  ///< for distances, never null
-  std::optional<double> occupants;         ///< persons; absent: the kind's
+  double radius_m = 0.0;                       ///< no point of the body is further from its origin
+  Vehicle vehicle;                             ///< what it is in a crash
+  Footing footing;                             ///< of what moves
+  std::shared_ptr<const BodyOutline> outline;  ///< for distances, never null
+  std::optional<double> occupants;             ///< persons; absent: the kind's
 };
 
 /// A box in world coordinates that holds every point of the body at every time of [from, until],

@@ -6,6 +6,7 @@
 #include "report/contact_table.hpp"
 #include "report/damage_summary.hpp"
 #include "report/future_words.hpp"
+#include "report/manoeuvre_words.hpp"
 #include "report/page/embedded.hpp"
 #include "report/parts_table.hpp"
 #include "report/plan_view.hpp"
@@ -219,7 +220,9 @@ private:
     out_ += fmt::format("<tr data-place='{}'><td class='n'>{}</td>", place + 1,
                         detail::place_text(ranked));
     out_ += is_drawn(place) ? fmt::format("<td><a href='#c{}'>", place + 1) : std::string("<td>");
-    out_ += escape_xml(name_of(place)) + (is_drawn(place) ? "</a></td>" : "</td>");
+    out_ += escape_xml(name_of(place)) + (is_drawn(place) ? "</a>" : "");
+    const std::string mark = detail::manoeuvre_mark(ranked);
+    out_ += (mark.empty() ? "" : " <em>" + mark + "</em>") + "</td>";
     out_ += fmt::format("<td class='score'><span class='bar' style='width:{:.1f}px'></span>{}</td>",
                         width, scores_[place]);
     if (simulated()) {
@@ -228,9 +231,7 @@ private:
     }
     if (ranked.contacts.empty()) {
       out_ += "<td colspan='3' class='free'>";
-      out_ += !ranked.score           ? "not known yet"
-              : ranked.grazes.empty() ? "nothing"
-                                      : "nothing, but grazes";
+      out_ += ranked.score ? detail::passing_words(ranked) : "not known yet";
       out_ += "</td></tr>\n";
       return;
     }
@@ -306,7 +307,8 @@ private:
         fmt::format("<section class='candidate' id='c{}'><h2>{}. {}{}</h2>\n", place + 1,
                     ranked.place, escape_xml(name_of(place)), ranked.sharing > 1 ? " (tied)" : "");
     out_ += "<p>It " + escape_xml(detail::outcome_words(scenario_, ranked)) + ": " +
-            escape_xml(detail::score_words(ranked, scores_[place], result_.measure)) + ".";
+            escape_xml(detail::score_words(ranked, scores_[place], result_.measure)) + ". " +
+            detail::manoeuvre_words(ranked);
     if (place > 0 && place + 1 < result_.ranking.size() && is_drawn(place + 1)) {
       out_ += std::string(ranked.place == result_.ranking[place + 1].place
                               ? " Tied with the next: "

@@ -56,6 +56,22 @@ std::string manoeuvre_mark(const CandidateResult& ranked) {
   return mark;
 }
 
+std::string manoeuvre_words(const CandidateResult& ranked) {
+  if (!ranked.score) return {};
+  std::string words = "It " + demand_words(ranked.demand) + ".";
+  if (!ranked.feasible) words += " The vehicle cannot follow it.";
+  if (ranked.collides || ranked.collision_probability > 0.0) return words;
+  words += fmt::format(" It stays {} from all others", distance_words(ranked.least_distance_m));
+  if (ranked.least_time_gap_s) {
+    words += fmt::format(", {:.2f} s from those that move where it was or will be",
+                         *ranked.least_time_gap_s);
+  }
+  if (ranked.at_horizon) {
+    words += fmt::format(", and is at {:.1f} m/s at the horizon", ranked.at_horizon->speed_mps);
+  }
+  return words + ".";
+}
+
 std::string tie_words(const CandidateResult& first, const CandidateResult& second) {
   if (first.futures.size() + second.futures.size() > 2 &&
       first.collision_probability != second.collision_probability) {

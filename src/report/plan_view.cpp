@@ -124,6 +124,17 @@ std::string arrow(const Canvas& canvas, const Eigen::Vector2d& at,
       right.y());
 }
 
+/// What is drivable; without areas all is.
+std::string road(const Canvas& canvas, const Road& road) {
+  std::string svg;
+  for (const Area& area : road.drivable) {
+    svg += "<path class='road' d='M" + canvas.path(area.outer) + "Z";
+    for (const auto& hole : area.holes) svg += " M" + canvas.path(hole) + "Z";
+    svg += "'/>\n";
+  }
+  return svg.empty() ? svg : "<rect class='ground' width='100%' height='100%'/>\n" + svg;
+}
+
 std::string way(const Canvas& canvas, const Motion& motion, double until_s) {
   constexpr int steps = 48;
   Outline points;
@@ -182,6 +193,7 @@ std::string PlanView::draw(std::size_t place) const {
          (hit ? fmt::format("first contact, {:.3f} s", time_s)
               : fmt::format("the horizon, {:.1f} s", time_s)) +
          "</title>\n";
+  svg += road(canvas, scenario_.road);
   std::string labels;
   for (std::size_t i = 0; i < scenario_.actors.size(); ++i) {
     if (scenario_.actors[i].existence_probability == 0.0) continue;

@@ -9,7 +9,6 @@
 namespace crashrank::detail {
 namespace {
 
-namespace limits = road_limits;
 using nlohmann::json;
 using Ring = std::vector<Eigen::Vector2d>;
 
@@ -25,7 +24,7 @@ public:
       return ring;
     }
     corners_ += value.size();
-    if (corners_ > limits::corners) {
+    if (corners_ > road_limits::corners) {
       refuse_at(status_, path, "brings the road to more than 10,000 corners", "simplify it",
                 ErrorCode::limit_exceeded);
       return ring;
@@ -55,7 +54,7 @@ Area read_area(const JsonObject& object, RingReader& rings) {
   Area area;
   object.require("outer");
   if (object.has("outer")) area.outer = rings.read(object.at("outer"), object.path_of("outer"));
-  if (const json* const holes = object.array("holes", 0, limits::holes)) {
+  if (const json* const holes = object.array("holes", 0, road_limits::holes)) {
     for (std::size_t i = 0; i < holes->size() && object.status().ok(); ++i) {
       area.holes.push_back(
           rings.read((*holes)[i], object.path_of(ranges::indexed("holes", i).c_str())));
@@ -70,7 +69,7 @@ Road read_road(const JsonObject& root) {
   Road road;
   if (!root.has("road")) return road;
   const JsonObject object(root.at("road"), "road", root.status(), {"drivable", "off_road"});
-  if (const json* const areas = object.array("drivable", 1, limits::areas)) {
+  if (const json* const areas = object.array("drivable", 1, road_limits::areas)) {
     RingReader rings(root.status());
     for (std::size_t i = 0; i < areas->size() && root.status().ok(); ++i) {
       const std::string path = object.path_of(ranges::indexed("drivable", i).c_str());
@@ -81,7 +80,8 @@ Road read_road(const JsonObject& root) {
   if (object.has("off_road")) {
     const JsonObject off(object.at("off_road"), object.path_of("off_road"), root.status(),
                          {"harm_per_leaving", "grip"});
-    road.harm_per_leaving = off.number("harm_per_leaving", {0.0, limits::harm_per_leaving}, 0.0);
+    road.harm_per_leaving =
+        off.number("harm_per_leaving", {0.0, road_limits::harm_per_leaving}, 0.0);
     road.off_road_grip =
         off.optional_number("grip", {scenario_limits::min_grip, scenario_limits::max_grip});
   }
