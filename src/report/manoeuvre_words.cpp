@@ -41,11 +41,11 @@ std::string leaving_words(const CandidateResult& ranked) {
 }
 
 std::string passing_words(const CandidateResult& ranked) {
-  std::string words = ranked.grazes.empty() ? "nothing" : "nothing (grazes)";
+  std::string words = ranked.grazes.empty() ? "nothing" : "nothing, but grazes";
   // Of a candidate that touches somebody in another future both are 0.
   if (ranked.collision_probability > 0.0) return words;
-  if (ranked.least_distance_m) words += fmt::format(", {:.2f} m", *ranked.least_distance_m);
-  if (ranked.least_time_gap_s) words += fmt::format(", {:.2f} s", *ranked.least_time_gap_s);
+  if (ranked.least_distance_m) words += fmt::format(", {:.2f} m away", *ranked.least_distance_m);
+  if (ranked.least_time_gap_s) words += fmt::format(", {:.2f} s apart", *ranked.least_time_gap_s);
   return words;
 }
 

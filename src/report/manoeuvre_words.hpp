@@ -9,8 +9,8 @@ namespace crashrank::detail {
 /// The greatest demand of a manoeuvre: "takes 1.32 times the grip".
 std::string demand_words(const ManoeuvreDemand& demand);
 
-/// What a candidate without contact hits, with its least distance and time gap: "nothing, 0.84 m,
-/// 1.20 s".
+/// What a candidate without contact hits, with its least distance and time gap: "nothing, 0.84 m
+/// away, 1.20 s apart".
 std::string passing_words(const CandidateResult& ranked);
 
 /// When and how fast a wheel leaves the road: "leaves the road after 1.31 s at 17.2 m/s"; empty

@@ -50,7 +50,7 @@ TEST(RankingText, IsSafeForATerminalAndSaysThatItIsPartial) {
   const std::string text = ranking_text(told.scenario, told.models, told.result);
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
   for (const char* word :
-       {"miss", "nothing (grazes)", "wall +1", "1 to 8", "not every score is known", "hood",
+       {"miss", "nothing, but grazes", "wall +1", "1 to 8", "not every score is known", "hood",
         "1 of 3 are known to touch nothing", "not known yet"}) {
     EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
   }
