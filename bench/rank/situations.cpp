@@ -58,18 +58,23 @@ Result<Situations> make_situations(const std::string& file, std::size_t triangle
 
   std::mt19937_64 engine(seed);
   for (std::size_t variant = 0; variant < variants; ++variant) {
-    std::vector<Motion> motions;
-    for (ScenarioActor actor : s.scenario.actors) {
-      if (variant > 0 && actor.poses.empty()) {
-        actor.pose.translation.x() += 2.0 * even(engine);
-        actor.pose.translation.y() += 0.5 * even(engine);
-        actor.speed_mps *= 1.0 + 0.2 * even(engine);
-      }
-      Result<Motion> motion = make_motion(actor);
-      if (!motion) return motion.error();
-      motions.push_back(std::move(*motion));
+    Scenario moved = s.scenario;
+    for (ScenarioActor& actor : moved.actors) {
+      if (variant == 0) continue;
+      const double aside_x = 2.0 * even(engine);
+      const double aside_y = 0.5 * even(engine);
+      const double faster = 1.0 + 0.2 * even(engine);
+      const auto move = [=](ActorMotion& motion) {
+        if (!motion.poses.empty()) return;
+        motion.pose.translation += Eigen::Vector3d(aside_x, aside_y, 0.0);
+        motion.speed_mps *= faster;
+      };
+      move(actor);
+      for (Prediction& prediction : actor.predictions) move(prediction);
     }
-    s.motions.push_back(std::move(motions));
+    Result<std::vector<Motion>> motions = plan_motions(moved);
+    if (!motions) return motions.error();
+    s.motions.push_back(std::move(*motions));
   }
   return s;
 }

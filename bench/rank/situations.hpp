@@ -17,7 +17,7 @@ struct Situations {
   crashrank::Scenario scenario;
   std::vector<crashrank::Model> models;
   std::vector<crashrank::Candidate> candidates;
-  std::vector<std::vector<crashrank::Motion>> motions;  ///< of the actors, by variant
+  std::vector<std::vector<crashrank::Motion>> motions;  ///< of the plans, by variant
   std::size_t triangles = 0;                            ///< of the largest model
   double load_s = 0.0;                                  ///< making the meshes
   double build_s = 0.0;                                 ///< and their trees

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-struct Edge {
+struct RingEdge {
   Vector2d from;
   Vector2d to;
   std::size_t ring = 0;   ///< 0: the outer one, then the holes
@@ -34,14 +34,14 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-bool boxes_meet(const Edge& p, const Edge& q) {
+bool boxes_meet(const RingEdge& p, const RingEdge& q) {
   return std::min(p.from.x(), p.to.x()) <= std::max(q.from.x(), q.to.x()) &&
          std::min(q.from.x(), q.to.x()) <= std::max(p.from.x(), p.to.x()) &&
          std::min(p.from.y(), p.to.y()) <= std::max(q.from.y(), q.to.y()) &&
          std::min(q.from.y(), q.to.y()) <= std::max(p.from.y(), p.to.y());
 }
 
-bool meet(const Edge& p, const Edge& q) {
+bool meet(const RingEdge& p, const RingEdge& q) {
   if (!boxes_meet(p, q)) return false;
   const double a = turn(p.from, p.to, q.from);
   const double b = turn(p.from, p.to, q.to);
@@ -52,24 +52,24 @@ bool meet(const Edge& p, const Edge& q) {
 }
 
 /// Whether an edge runs back along the one before it.
-bool turns_back(const Edge& edge, const Edge& next) {
+bool turns_back(const RingEdge& edge, const RingEdge& next) {
   return turn(edge.from, edge.to, next.to) == 0.0 &&
          (edge.to - edge.from).dot(next.to - next.from) < 0.0;
 }
 
-bool are_neighbours(const Edge& p, const Edge& q) {
+bool are_neighbours(const RingEdge& p, const RingEdge& q) {
   return p.ring == q.ring &&
          ((p.index + 1) % p.corners == q.index || (q.index + 1) % q.corners == p.index);
 }
 
 Status add_edges(const std::vector<Vector2d>& ring, std::size_t index, const std::string& place,
-                 std::vector<Edge>& edges) {
+                 std::vector<RingEdge>& edges) {
   if (ring.size() < 3) {
     return refused(ring_name(place, index), "has fewer than three corners",
                    "list the corners of a polygon in their order");
   }
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Edge edge{ring[i], ring[(i + 1) % ring.size()], index, i, ring.size()};
+    const RingEdge edge{ring[i], ring[(i + 1) % ring.size()], index, i, ring.size()};
     if (!edge.from.allFinite()) {
       return refused(ring_name(place, index), "has a corner that is not finite", "mend it");
     }
@@ -86,15 +86,15 @@ Status add_edges(const std::vector<Vector2d>& ring, std::size_t index, const std
 }  // namespace
 
 Status check_area(const Area& area, const std::string& place) {
-  std::vector<Edge> edges;
+  std::vector<RingEdge> edges;
   if (Status sound = add_edges(area.outer, 0, place, edges); !sound) return sound;
   for (std::size_t i = 0; i < area.holes.size(); ++i) {
     if (Status sound = add_edges(area.holes[i], i + 1, place, edges); !sound) return sound;
   }
   for (std::size_t i = 0; i < edges.size(); ++i) {
     for (std::size_t k = i + 1; k < edges.size(); ++k) {
-      const Edge& p = edges[i];
-      const Edge& q = edges[k];
+      const RingEdge& p = edges[i];
+      const RingEdge& q = edges[k];
       bool crossing = false;
       if (are_neighbours(p, q)) {
         const bool p_first = (p.index + 1) % p.corners == q.index;
@@ -103,7 +103,7 @@ Status check_area(const Area& area, const std::string& place) {
         crossing = meet(p, q);
       }
       if (!crossing) continue;
-      const auto name = [](const Edge& edge) {
+      const auto name = [](const RingEdge& edge) {
         return std::to_string(edge.index) + " to " +
                std::to_string((edge.index + 1) % edge.corners);
       };
