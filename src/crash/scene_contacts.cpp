@@ -135,7 +135,9 @@ void SceneRun::tell(const ContactRun& run, const ContactOutcome& outcome, bool s
   told.b = b;
   told.begin_s = begin_s;
   told.goes_on = goes_on_[static_cast<std::size_t>(&run - runs_.data())] != 0;
-  told.is_first = &run == first_run_;
+  told.is_first =
+      &run == first_run_ && (members_[partner_].state != State::fixed || second == partner_ ||
+                             members_[second].state != State::fixed);
   told.outcome = outcome;
   const ContactBody given_second = stands ? given(second) : run.given_second();
   told.given_a = swapped ? given_second : run.given_first();

@@ -93,6 +93,7 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   list_near();
   open_contacts();
   first_run_ = live_with(first, partner);
+  partner_ = partner;
 }
 
 ContactBody SceneRun::given(std::size_t i) const {

@@ -59,7 +59,9 @@ struct SceneContact {
   /// It goes on where the contact law ended an earlier contact of the two, which is validated as
   /// far as that end: no part of that one's event.
   bool goes_on = false;
-  bool is_first = false;  ///< with the body that the chain's first body meets first
+  /// With the body that the chain's first body meets first. Where other fixed bodies press more, the
+  /// contact is theirs.
+  bool is_first = false;
   ContactBody given_a;    ///< as it began
   ContactBody given_b;
   ContactOutcome outcome;
@@ -200,6 +202,7 @@ private:
   std::vector<SceneContact> contacts_;
   std::vector<Listing> listings_;
   const ContactRun* first_run_ = nullptr;  ///< with the first body's partner
+  std::size_t partner_ = 0;
   double start_s_ = 0.0;
   double now_s_ = 0.0;
   double placed_s_ = 0.0;  ///< middle of the last step, for which near bodies were placed

@@ -31,6 +31,22 @@ Scene road() {
   return scene;
 }
 
+/// A post at the corner of the front, met just before a wall across the lane.
+TEST(Aftermath, TheForceIsTheWallsThatBearsItNotThePostsMetFirst) {
+  Scene scene = scenes::car_and_wall();
+  scene.scenario.measure = Measure::delta_v;
+  const std::size_t post = scene.add_model("post", box_mesh({0.05F, 0.05F, 1.0F}), BodyKind::pole);
+  scene.add_actor("post", post, 49.2, 1.04);
+  scene.add_candidate("straight on", 0.0);
+  const CandidateResult ranked = scene.ranked().ranking.front();
+  ASSERT_EQ(ranked.contacts.size(), 2U);
+  EXPECT_EQ(scene.scenario.actors[ranked.contacts[0].actor].name, "post");
+  EXPECT_LT(ranked.contacts[0].severity.ego.delta_v_mps, 1.0);
+  EXPECT_EQ(scene.scenario.actors[ranked.contacts[1].actor].name, "wall");
+  EXPECT_GT(ranked.contacts[1].severity.ego.delta_v_mps, 20.0);
+  EXPECT_GE(ranked.contacts[1].time_of_impact_s, ranked.contacts[0].time_of_impact_s);
+}
+
 TEST(Aftermath, AChainOfEqualMassesHandsTheSpeedOn) {
   Scene scene = road();
   for (const double x : {10.0, 20.0, 30.0}) {
