@@ -25,6 +25,33 @@ void add_intervals(const Scene& scene, CandidateResult& result) {
   }
 }
 
+/// The ego before all actors.
+std::size_t rank_of_body(std::size_t body) { return body + 1; }
+
+/// Mean over the futures.
+std::vector<PersonRisk> mean_risks(const std::vector<CandidateResult>& results,
+                                   const std::vector<Approach>& outcomes) {
+  std::vector<PersonRisk> people;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    for (PersonRisk risk : results[k].people) {
+      risk.probability *= outcomes[k].outcome.probability;
+      const auto same = std::find_if(people.begin(), people.end(), [&](const PersonRisk& each) {
+        return each.body == risk.body;
+      });
+      if (same == people.end()) {
+        people.push_back(risk);
+      } else {
+        same->probability += risk.probability;
+      }
+    }
+  }
+  static_assert(ego_body + 1 == 0);
+  std::sort(people.begin(), people.end(), [](const PersonRisk& p, const PersonRisk& q) {
+    return rank_of_body(p.body) < rank_of_body(q.body);
+  });
+  return people;
+}
+
 }  // namespace
 
 double risk_of_futures(const Scene& scene, View<const double> scores,
@@ -60,7 +87,9 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
       told.begin() + 1, told.end(),
       [](const FutureOutcome& p, const FutureOutcome& q) { return p.probability > q.probability; });
   const double score = risk_over([](const CandidateResult& result) { return *result.score; });
+  std::vector<PersonRisk> people = mean_risks(results, outcomes);
   CandidateResult combined = std::move(results.front());
+  combined.people = std::move(people);
   combined.score = score;
   if (summary.method == FutureMethod::sampled) {
     combined.sampling_error = sampling_error(summary.risk, scratch.weighted, summary.sampled);

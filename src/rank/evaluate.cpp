@@ -251,6 +251,7 @@ CandidateResult finish_outcome(const Scene& scene, Approach& approach, FoundDama
   if (result.collides) result.ego = damage.at(ego_body);
   const double simulated =
       approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
+  if (!approach.effects.empty()) result.people = scratch.tally.people(scene);
   const double left = leaving_score(scene, leaving, first_contact_s(approach.outcome));
   result.score = scored_by_damage(scene.measure) ? damage_score(damage, measure_row(scene.measure))
                                                  : left + simulated;

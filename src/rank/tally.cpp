@@ -154,6 +154,19 @@ double Tally::people_score(const Scene& scene, std::size_t body) const {
   return people_weight(exposure_of(scene, body, e->open), scene.harm.weights) * people;
 }
 
+std::vector<PersonRisk> Tally::people(const Scene& scene) const {
+  std::vector<PersonRisk> people;
+  if (!measure_row(scene.measure).counts_people) return people;
+  HarmWeights heads = scene.harm.weights;
+  heads.ego_occupant = heads.other_occupant = 1.0;
+  heads.pedestrian = heads.cyclist = heads.motorcyclist = 1.0;
+  for (const Entry& e : bodies_) {
+    const double persons = people_weight(exposure_of(scene, e.body, e.open), heads);
+    if (persons > 0.0) people.push_back({e.body, persons, term(scene, e)});
+  }
+  return people;
+}
+
 BodyEvent Tally::event(std::size_t body) const {
   const Entry* const e = find(body);
   return e == nullptr ? BodyEvent{} : e->open;

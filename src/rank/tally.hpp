@@ -90,6 +90,8 @@ public:
   double least_score(const Scene& scene) const;
   /// The share of a body's people in the score; measures but harm: of the ego's delta-v.
   double people_score(const Scene& scene, std::size_t body) const;
+  /// What the people of every body with contacts risk, the ego first; measure harm only.
+  std::vector<PersonRisk> people(const Scene& scene) const;
   /// The event of a body that its last contact belongs to.
   BodyEvent event(std::size_t body) const;
 

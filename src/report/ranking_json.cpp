@@ -236,6 +236,17 @@ Json futures_json(const Scenario& scenario, const CandidateResult& ranked) {
   return futures;
 }
 
+/// What people risk, without weights.
+Json people_json(const Scenario& scenario, const CandidateResult& ranked) {
+  Json people = Json::array();
+  for (const PersonRisk& risk : ranked.people) {
+    people.push_back({{"body", risk.body == ego_body ? "ego" : scenario.actors[risk.body].name},
+                      {"persons", risk.persons},
+                      {"probability", risk.probability}});
+  }
+  return people;
+}
+
 Json demand_json(const ManoeuvreDemand& demand) {
   return {{"grip", demand.grip},
           {"engine", demand.engine},
@@ -300,6 +311,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"separable_from_next", sampled ? Json(ranked.separable) : Json(nullptr)},
       {"overtaken_share", sampled ? Json(ranked.overtaken) : Json(nullptr)},
       {"collision_probability", ranked.score ? Json(ranked.collision_probability) : Json(nullptr)},
+      {"people", people_json(scenario, ranked)},
       {"futures", futures_json(scenario, ranked)},
       {"sampling_error", ranked.sampling_error ? Json(*ranked.sampling_error) : Json(nullptr)},
       {"collides", ranked.score || ranked.collides ? Json(ranked.collides) : Json(nullptr)},

@@ -141,6 +141,14 @@ TEST(Futures, IndependentPredictionsAreTheWeightedSumOfAllCombinations) {
     for (const CandidateResult& c : whole.ranking) {
       outcomes += c.futures.size();
       futures += whole.futures.futures;
+      // Everybody counts as one, and damage to property as nothing: harm is the sum of all risks.
+      double sum = 0.0;
+      for (const PersonRisk& risk : c.people) {
+        EXPECT_GE(risk.probability, 0.0);
+        EXPECT_LE(risk.probability, 1.0);
+        sum += risk.persons * risk.probability;
+      }
+      EXPECT_NEAR(sum, *c.score, 1e-12 * (1.0 + sum));
     }
   }
   std::printf("%zu outcomes simulated for %zu futures of candidates, seeds from %llu\n", outcomes,

@@ -211,6 +211,15 @@ struct FutureOutcome {
   std::size_t contacts = 0;        ///< with a force, those between others included
 };
 
+/// What those in or on one body risk.
+struct PersonRisk {
+  std::size_t body = ego_body;  ///< `ego_body`, or an index into Scenario::actors
+  double persons = 0.0;         ///< in or on it
+  /// Of the risk model's outcome (`risk_outcome`) for one of them, without weights: the mean over
+  /// all futures, whatever the risk measure.
+  double probability = 0.0;
+};
+
 /// A plan that takes a wheel off the road.
 struct RoadLeaving {
   double time_s = 0.0;                                ///< from the decision
@@ -254,8 +263,11 @@ struct CandidateResult {
   /// Where the score is known: what the futures lead to, the likeliest first, then by probability.
   std::vector<FutureOutcome> futures;
   double collision_probability = 0.0;  ///< of a contact of the ego's
-  ManoeuvreDemand demand;              ///< as far as it is followed in any future
-  bool feasible = true;                ///< the vehicle can follow it so far
+  /// Where the measure is harm: of every body with people that has a contact in some future, the
+  /// ego first, then in the actors' order.
+  std::vector<PersonRisk> people;
+  ManoeuvreDemand demand;  ///< as far as it is followed in any future
+  bool feasible = true;    ///< the vehicle can follow it so far
   /// Before its first contact in the likeliest future, a wheel leaves the road.
   std::optional<RoadLeaving> leaves_road;
   /// Between the ego's outline and any other's, seen from above and height by height, along the
