@@ -47,9 +47,9 @@ struct StepEnd {
   bool finished = true;  ///< false: time was up first; the interval may be narrower all the same
 };
 
-/// Begins with a candidate of which nothing is known yet.
+/// Begins with a candidate of which nothing is known yet. `room` is for a motion.
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
-                    std::size_t index, Refined& state);
+                    std::size_t index, Motion& room, Refined& state);
 
 /// Takes an open candidate one stage further. Depends on the query and the candidate's own state
 /// alone. The interval only ever narrows.
