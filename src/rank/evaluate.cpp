@@ -327,6 +327,7 @@ void Scratch::prepare(const Scene& scene) {
   until_s.reserve(futures.size());
   weighted.reserve(futures.size());
   for (auto* const each : {&same, &open, &others}) each->reserve(futures.size());
+  way.reserve(scene.ways.steps + 1);
   chain.prepare(scene);
   effects.reserve(SceneRun::most_contacts + 1);
   order.reserve(SceneRun::most_contacts + 1);

@@ -71,7 +71,7 @@ struct Approach {
 struct Approaches {
   std::vector<Approach> outcomes;  ///< the likeliest future's first
   double collision_probability = 0.0;
-  bool decided = true;             ///< else the search came to no end or was stopped
+  bool decided = true;  ///< else the search came to no end or was stopped
 };
 
 /// Follows one candidate through its crash. Depends on the scene and the candidate alone, as do

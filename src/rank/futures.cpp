@@ -156,8 +156,8 @@ void Futures::read_joint(const Scenario& scenario) {
 void Futures::add_joint() {
   probability_ = joint_;
   plan_of_ = joint_plans_;
-  likeliest_ = static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) -
-                                        joint_.begin());
+  likeliest_ =
+      static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin());
   note_followed();
 }
 
@@ -276,8 +276,8 @@ void Futures::draw_joint() {
     }
     follow(f, joint);
   }
-  follow(likeliest_, static_cast<std::size_t>(
-                         std::max_element(joint_.begin(), joint_.end()) - joint_.begin()));
+  follow(likeliest_,
+         static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin()));
 }
 
 void Futures::split(std::size_t future, const std::vector<char>& felt,

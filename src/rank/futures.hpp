@@ -30,7 +30,8 @@ struct FutureGroup {
 };
 
 /// The futures that candidates are evaluated in, the same for all of them. A future says of every
-/// actor which plan it follows, or that it does not exist, and how far the ego is off its candidate.
+/// actor which plan it follows, or that it does not exist, and how far the ego is off its
+/// candidate.
 ///
 /// Behind the scenario's own plans there is one for each drawn future and each actor whose
 /// perceived state has errors: the plan that it follows in that future, displaced.
@@ -69,7 +70,8 @@ public:
   }
   /// The least and the greatest error of the ego's speed, m/s.
   const std::array<double, 2>& ego_speed_errors() const noexcept { return ego_speed_errors_; }
-  /// Each actor follows its likeliest plan without errors; of joint futures the likeliest, of equal ones the first.
+  /// Each actor follows its likeliest plan without errors; of joint futures the likeliest, of equal
+  /// ones the first.
   std::size_t likeliest() const noexcept { return likeliest_; }
   /// Whether an actor exists in every future and follows one plan without errors.
   bool is_certain(std::size_t actor) const;

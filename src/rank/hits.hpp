@@ -6,8 +6,8 @@ namespace crashrank::detail {
 
 /// Fills `scratch.hits` with the impacts between the ego on its motion in a group of futures
 /// and the actors on each of their plans in those, in time order, everything but clean misses; no
-/// plan is searched beyond the first contacts of all of its futures. Returns false when some question
-/// stayed undecided.
+/// plan is searched beyond the first contacts of all of its futures. Returns false when some
+/// question stayed undecided.
 bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, Scratch& scratch,
                RankWork& work);
 

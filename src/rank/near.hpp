@@ -6,8 +6,8 @@
 
 namespace crashrank::detail {
 
-/// Fills `scratch.near` with the plans on which an actor may come near the ego in [from, until] in a
-/// future of the group, by slices of time, the soonest first.
+/// Fills `scratch.near` with the plans on which an actor may come near the ego in [from, until] in
+/// a future of the group, by slices of time, the soonest first.
 void find_near(const Scene& scene, const Motion& ego, const FutureGroup& group, double from_s,
                double until_s, Scratch& scratch, RankWork& work);
 

@@ -125,11 +125,10 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
 }
 
 ScenarioEgo read_ego(const JsonObject& root, const std::vector<ScenarioModel>& models) {
-  const JsonObject object(
-      root.at("ego"), "ego", root.status(),
-      {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m", "max_acceleration_mps2",
-       "max_deceleration_mps2", "max_steering_deg", "max_steering_rate_dps", "occupants",
-       "uncertainty"});
+  const JsonObject object(root.at("ego"), "ego", root.status(),
+                          {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m",
+                           "max_acceleration_mps2", "max_deceleration_mps2", "max_steering_deg",
+                           "max_steering_rate_dps", "occupants", "uncertainty"});
   detail::require_version_2(root, object,
                             {"max_deceleration_mps2", "max_steering_rate_dps", "uncertainty"});
   ScenarioEgo ego;

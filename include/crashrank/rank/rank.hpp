@@ -191,10 +191,10 @@ enum class FutureMethod {
 /// The futures of a ranking.
 struct FutureSummary {
   FutureMethod method = FutureMethod::certain;  ///< where they come from
-  std::size_t futures = 1;    ///< evaluated; with `sampled`, the likeliest is one more
-  std::size_t sampled = 0;    ///< of these drawn, each with the same probability
-  double combinations = 1.0;  ///< that the scenario allows
-  RiskMeasure risk;           ///< how their scores become one
+  std::size_t futures = 1;        ///< evaluated; with `sampled`, the likeliest is one more
+  std::size_t sampled = 0;        ///< of these drawn, each with the same probability
+  double combinations = 1.0;      ///< that the scenario allows
+  RiskMeasure risk;               ///< how their scores become one
   bool has_state_errors = false;  ///< drawn with errors of positions, headings and speeds
 };
 

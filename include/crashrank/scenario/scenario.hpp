@@ -142,7 +142,8 @@ struct CandidateGrid {
 };
 
 /// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json;
-/// predictions, existence, futures, risk, errors of states, road, braking and steering rate belong to its version 2.
+/// predictions, existence, futures, risk, errors of states, road, braking and steering rate belong
+/// to its version 2.
 struct Scenario {
   std::string name;                                     ///< unique
   std::string description;                              ///< for people
@@ -169,10 +170,10 @@ struct Scenario {
 /// ego or an actor has errors.
 CRASHRANK_API bool is_uncertain(const Scenario& scenario) noexcept;
 
-/// The scenario in its likeliest future, without uncertainty or errors of states: every actor follows its likeliest
-/// prediction, or its motion in the likeliest joint future; of equal ones the first. An actor that
-/// is rather not there than on any of its motions stays in the list with an existence probability
-/// of 0.
+/// The scenario in its likeliest future, without uncertainty or errors of states: every actor
+/// follows its likeliest prediction, or its motion in the likeliest joint future; of equal ones the
+/// first. An actor that is rather not there than on any of its motions stays in the list with an
+/// existence probability of 0.
 CRASHRANK_API Scenario likeliest_future(const Scenario& scenario);
 
 /// Bounds on what a scenario may ask for; the published schema states the same numbers.
