@@ -282,6 +282,22 @@ CRASHRANK_API crashrank_status crashrank_scenario_add_prediction(crashrank_scena
 CRASHRANK_API crashrank_status crashrank_scenario_set_existence(crashrank_scenario* scenario,
                                                                 size_t actor, double probability,
                                                                 crashrank_error* error);
+/// Sets the standard deviations of the errors of the ego's state, against what its candidates
+/// assume: of x and of y (m, 0 to 10), of its heading (rad, 0 to pi/4) and, where it moves, of its
+/// speed (m/s, 0 to 20). Above 0 the futures are drawn with them; crashrank_rank checks them.
+/// Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_set_ego_uncertainty(crashrank_scenario* scenario,
+                                                                      double position_m,
+                                                                      double heading_rad,
+                                                                      double speed_mps,
+                                                                      crashrank_error* error);
+/// Sets the same of the perceived state of the actor with that index, whatever it does;
+/// crashrank_rank refuses it for a body that nothing moves. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_set_perception(crashrank_scenario* scenario,
+                                                                 size_t actor, double position_m,
+                                                                 double heading_rad,
+                                                                 double speed_mps,
+                                                                 crashrank_error* error);
 /// Adds a joint future of all actors, in place of predictions; its index is the number added
 /// before. Their probabilities sum to 1, which crashrank_rank checks. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_scenario_add_future(crashrank_scenario* scenario,

@@ -50,6 +50,25 @@ crashrank_status crashrank_scenario_set_existence(crashrank_scenario* scenario, 
   return CRASHRANK_OK;
 }
 
+crashrank_status crashrank_scenario_set_ego_uncertainty(crashrank_scenario* scenario,
+                                                        double position_m, double heading_rad,
+                                                        double speed_mps, crashrank_error* error) {
+  if (const char* null = c::first_null({{"scenario", scenario}})) return refuse_null(null, error);
+  scenario->scenario.ego.uncertainty = {position_m, heading_rad, speed_mps};
+  return CRASHRANK_OK;
+}
+
+crashrank_status crashrank_scenario_set_perception(crashrank_scenario* scenario, size_t actor,
+                                                   double position_m, double heading_rad,
+                                                   double speed_mps, crashrank_error* error) {
+  if (const char* null = c::first_null({{"scenario", scenario}})) return refuse_null(null, error);
+  if (actor >= scenario->scenario.actors.size()) {
+    return refuse(CRASHRANK_USAGE, "actor: the scenario has no such actor", error);
+  }
+  scenario->scenario.actors[actor].perception = {position_m, heading_rad, speed_mps};
+  return CRASHRANK_OK;
+}
+
 crashrank_status crashrank_scenario_add_future(crashrank_scenario* scenario, double probability,
                                                crashrank_error* error) {
   if (const char* null = c::first_null({{"scenario", scenario}})) return refuse_null(null, error);

@@ -74,9 +74,10 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
   }
   if (scenario.ego.model != prepared.ego.model) return other("ego.model");
   if (scenario.ego.occupants != prepared.ego.occupants) return other("ego.occupants");
+  if (scenario.ego.uncertainty != prepared.ego.uncertainty) return other("ego.uncertainty");
   const auto same_actor = [](const ScenarioActor& a, const ScenarioActor& b) {
     return a.model == b.model && a.occupants == b.occupants &&
-           a.predictions.size() == b.predictions.size() &&
+           a.predictions.size() == b.predictions.size() && a.perception == b.perception &&
            a.existence_probability == b.existence_probability;
   };
   if (!std::equal(scenario.actors.begin(), scenario.actors.end(), prepared.actors.begin(),

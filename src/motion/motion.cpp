@@ -80,6 +80,7 @@ Motion::Profile Motion::make_profile(double speed, double acceleration, double t
   p.speed = speed;
   p.acceleration = acceleration;
   p.end = infinity;
+  p.top_speed = top_speed;
   if (acceleration == 0.0) {
     p.end = 0.0;
     p.end_speed = speed;

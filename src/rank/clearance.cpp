@@ -196,9 +196,10 @@ void place_ways(const Scene& scene, PlanWays& ways) {
       static_cast<std::size_t>(std::clamp(std::ceil(horizon_s / longest_step_s), 1.0, most_steps));
   ways.step_s = horizon_s / static_cast<double>(ways.steps);
   const std::vector<Plan>& plans = scene.futures.plans;
-  ways.poses.resize(plans.size() * (ways.steps + 1));
-  ways.fastest_mps.resize(plans.size());
-  for (std::size_t p = 0; p < plans.size(); ++p) {
+  const std::size_t count = scene.futures.own_plans();
+  ways.poses.resize(count * (ways.steps + 1));
+  ways.fastest_mps.resize(count);
+  for (std::size_t p = 0; p < count; ++p) {
     const BodyOutline& outline = *scene.actors[plans[p].actor].outline;
     ways.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
     for (std::size_t i = 0; i <= ways.steps; ++i) {
@@ -223,7 +224,7 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
   // decide the least.
   double nearest = farthest_clearance_m;
   const std::vector<Plan>& plans = scene.futures.plans;
-  for (std::size_t p = 0; p < plans.size(); ++p) {
+  for (std::size_t p = 0; p < scene.futures.own_plans(); ++p) {
     if (!scene.futures.is_followed(p)) continue;
     const Body& actor = scene.actors[plans[p].actor];
     if (passes_over(scene.ego, ego, actor, plans[p].motion)) continue;

@@ -21,7 +21,7 @@ struct Clearance {
   double time_gap_s = std::numeric_limits<double>::infinity();
 };
 
-/// Ways of the plans seen from above, at even times from 0 to the horizon.
+/// Ways of the scenario's own plans seen from above, at even times from 0 to the horizon.
 struct PlanWays {
   double step_s = 0.0;
   std::size_t steps = 0;            ///< one more pose each
@@ -35,7 +35,8 @@ struct PlanWays {
 /// Reads the ways of a scene's plans. Allocates only to grow.
 void place_ways(const Scene& scene, PlanWays& ways);
 
-/// Of the ego's motion to all plans that are followed in a future, up to the horizon. The answer
+/// Of the ego's motion to all plans that are followed in a future, up to the horizon; displaced
+/// plans are taken as those that they are derived from. The answer
 /// does not depend on the order of the actors. `way` is room for the ego's poses; nothing else is
 /// allocated. Distances to about a centimetre, time gaps to `PlanWays::step_s` / 16.
 Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& way);

@@ -103,11 +103,12 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
   return combined;
 }
 
-double collision_probability(const Scene& scene, const Scratch& scratch) {
+double collision_probability(const Scene& scene, const FutureGroup& group, const Scratch& scratch,
+                             double before) {
   const Futures& futures = scene.futures;
   if (futures.size() == 1) return first_hit(scene, scratch, 0) != nullptr ? 1.0 : 0.0;
-  double sum = 0.0;
-  for (std::size_t f = 0; f < futures.size(); ++f) {
+  double sum = before;
+  for (std::size_t f = group.begin; f < group.end; ++f) {
     if (first_hit(scene, scratch, f) != nullptr) sum += futures.probability(f);
   }
   return sum;

@@ -17,7 +17,9 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
 double risk_of_futures(const Scene& scene, View<const double> scores,
                        std::vector<WeightedScore>& weighted);
 
-/// Probability of the futures in which the ego touches somebody, from the hits that were found.
-double collision_probability(const Scene& scene, const Scratch& scratch);
+/// Probability of the futures of a group in which the ego touches somebody, from the hits that were
+/// found, added to that of the groups before.
+double collision_probability(const Scene& scene, const FutureGroup& group, const Scratch& scratch,
+                             double before);
 
 }  // namespace crashrank::detail

@@ -40,7 +40,7 @@ SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
   // A candidate that touches nobody is looked at until the horizon, and so is what follows here.
   options.until_s = scene.slice_s.back();
   options.fastest_plan_mps = scene.fastest_plan_mps;
-  options.records_lists = scene.futures.size() > 1;
+  options.records_lists = scene.futures.size() > 1 && !scene.futures.displaces_ego();
   return options;
 }
 
@@ -73,21 +73,21 @@ void CrashChain::prepare(const Scene& scene) {
   run_.prepare(scene.actors.size() + 1, pieces);
 }
 
-void CrashChain::begin(const Scene& scene, const Candidate& candidate, std::size_t future,
-                       const Contact& first, const HarmSample& sample) {
+void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Motion& plan,
+                       std::size_t future, const Contact& first, const HarmSample& sample) {
   first_ = &first;
   bodies_.clear();
   actors_.clear();
-  const auto add = [&](std::size_t index, const Vehicle& vehicle, const Motion& plan) {
+  const auto add = [&](std::size_t index, const Vehicle& vehicle, const Motion& motion) {
     SceneBody body;
     body.vehicle = &vehicle;
-    body.plan = &plan;
+    body.plan = &motion;
     body.brake = brake_after_contact;
     body.footing = vehicle.movable() ? &body_of(scene, index).footing : nullptr;
     bodies_.push_back(body);
     actors_.push_back(index);
   };
-  add(ego_body, scene.ego.vehicle, candidate.motion);
+  add(ego_body, scene.ego.vehicle, plan);
   std::size_t partner = 0;
   SceneBody& ego = bodies_.front();
   const double braking = -candidate.acceleration_mps2 / (scene.grip * standard_gravity_mps2);
@@ -97,9 +97,9 @@ void CrashChain::begin(const Scene& scene, const Candidate& candidate, std::size
   const double speed = across.norm();
   if (speed > 0.0) ego.shift_m = (sample.shift_m / speed) * across;
   for (std::size_t i = 0; i < scene.actors.size(); ++i) {
-    const std::uint32_t plan = scene.futures.plan(future, i);
-    if (plan == Futures::absent) continue;
-    const Motion& motion = scene.futures.plans[plan].motion;
+    const std::uint32_t followed = scene.futures.plan(future, i);
+    if (followed == Futures::absent) continue;
+    const Motion& motion = scene.futures.plans[followed].motion;
     const std::size_t joined = scene.joined_of[i];
     if (joined == Scene::alone) {
       add(i, scene.actors[i].vehicle, motion);

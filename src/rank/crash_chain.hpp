@@ -20,9 +20,9 @@ public:
   /// Room for the scene: nothing allocates after it.
   void prepare(const Scene& scene);
 
-  /// Begins with the ego on its plan at its first contact, the actors on theirs of a future; scene
-  /// and candidate outlive the run.
-  void begin(const Scene& scene, const Candidate& candidate, std::size_t future,
+  /// Begins with the ego on its motion in a future at its first contact, the actors on their plans
+  /// in that future; all of them outlive the run.
+  void begin(const Scene& scene, const Candidate& candidate, const Motion& ego, std::size_t future,
              const Contact& first, const HarmSample& sample);
   /// Takes at most so many steps; false once everything rests.
   bool advance(int steps) { return run_.advance(steps); }

@@ -2,6 +2,7 @@
 
 #include "rank/anytime/bounds.hpp"
 #include "rank/combine_futures.hpp"
+#include "rank/ego_motion.hpp"
 #include "rank/hits.hpp"
 #include "rank/manoeuvre.hpp"
 #include "rank/measure_table.hpp"
@@ -83,10 +84,10 @@ std::vector<std::size_t> effect_of_sample(const Scene& scene) {
 }
 
 /// Simulates the chain of a first contact in a future and a sample.
-void simulate(const Scene& scene, const Candidate& candidate, std::size_t future,
+void simulate(const Scene& scene, const Candidate& candidate, const Motion& ego, std::size_t future,
               const Contact& first, const HarmSample& sample, Scratch& scratch, RankWork& work,
               std::vector<ContactEffect>& effects) {
-  scratch.chain.begin(scene, candidate, future, first, sample);
+  scratch.chain.begin(scene, candidate, ego, future, first, sample);
   scratch.chain.finish();
   scratch.chain.feel(scene, scratch.felt);
   scratch.chain.effects(effects, scratch.order);
@@ -163,8 +164,8 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
 }
 
 /// Follows one candidate through its crash in a future. False where it was stopped.
-bool approach_future(const Scene& scene, const Candidate& candidate, std::size_t future,
-                     Scratch& scratch, RankWork& work, Approach& found) {
+bool approach_future(const Scene& scene, const Candidate& candidate, const Motion& ego,
+                     std::size_t future, Scratch& scratch, RankWork& work, Approach& found) {
   std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
   const Scratch::Hit* const hit = first_hit(scene, scratch, future);
   feel_hits(scratch, hit, scratch.felt);
@@ -172,19 +173,19 @@ bool approach_future(const Scene& scene, const Candidate& candidate, std::size_t
   result.collides = found.outcome.collides = hit != nullptr;
   if (result.collides) {
     const Motion& other = scene.futures.plans[hit->plan].motion;
-    result.contacts.push_back(
-        first_contact(scene, candidate.motion, hit->actor, other, hit->impact));
+    result.contacts.push_back(first_contact(scene, ego, hit->actor, other, hit->impact));
     const Contact first = result.contacts.front();
     result.contacts.front().severity.simulated = needs_crash(scene.measure);
     found.outcome.actor = first.actor;
     found.outcome.time_of_impact_s = first.time_of_impact_s;
     found.outcome.closing_speed_mps = first.closing_speed_mps;
     found.effects.emplace_back();
-    simulate(scene, candidate, future, first, scene.plain, scratch, work, found.effects.back());
+    simulate(scene, candidate, ego, future, first, scene.plain, scratch, work,
+             found.effects.back());
     result.crowded = scratch.chain.run().crowded();
     found.outcome.contacts = scratch.chain.contacts().size();
     found.told = tell_contacts(scene, scratch.chain, scratch.order, hit->impact,
-                               candidate.motion.pose_at(first.time_of_impact_s),
+                               ego.pose_at(first.time_of_impact_s),
                                other.pose_at(first.time_of_impact_s), result, found.plans);
     std::size_t last = 0;
     const std::vector<std::size_t> places = effect_of_sample(scene);
@@ -193,7 +194,7 @@ bool approach_future(const Scene& scene, const Candidate& candidate, std::size_t
       last = places[i];
       if (scratch.stopped()) return false;
       found.effects.emplace_back();
-      simulate(scene, candidate, future, first, scene.samples[i], scratch, work,
+      simulate(scene, candidate, ego, future, first, scene.samples[i], scratch, work,
                found.effects.back());
     }
   }
@@ -236,8 +237,7 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
 
 /// Reads the damage of one outcome and scores it.
 CandidateResult finish_outcome(const Scene& scene, Approach& approach, FoundDamage& found,
-                               const std::optional<RoadLeaving>& leaving, Scratch& scratch,
-                               RankWork& work) {
+                               Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(approach.result);
   for (std::size_t i = 0; i < approach.plans.size(); ++i) {
     const std::size_t k = i - std::min(i, result.contacts.size());
@@ -252,11 +252,65 @@ CandidateResult finish_outcome(const Scene& scene, Approach& approach, FoundDama
   const double simulated =
       approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
   if (!approach.effects.empty()) result.people = scratch.tally.people(scene);
-  const double left = leaving_score(scene, leaving, first_contact_s(approach.outcome));
+  const double left = leaving_score(scene, approach.leaving, first_contact_s(approach.outcome));
   result.score = scored_by_damage(scene.measure) ? damage_score(damage, measure_row(scene.measure))
                                                  : left + simulated;
   add_samples(scene, approach.effects, left, scratch.tally, result);
   return result;
+}
+
+/// An outcome without contact that scores the same: two such outcomes do not differ.
+Approach* same_without_contact(const Scene& scene, const std::optional<RoadLeaving>& leaving,
+                               std::vector<Approach>& outcomes) {
+  const auto score = [&](const std::optional<RoadLeaving>& of) {
+    return leaving_score(scene, of, std::numeric_limits<double>::infinity());
+  };
+  const auto same = std::find_if(outcomes.begin(), outcomes.end(), [&](const Approach& each) {
+    return !each.outcome.collides && score(each.leaving) == score(leaving);
+  });
+  return same != outcomes.end() ? &*same : nullptr;
+}
+
+/// Follows one candidate through its crashes in the futures of a group, beginning with one of them.
+/// False where it was stopped.
+bool approach_group(const Scene& scene, const Candidate& candidate, std::size_t first,
+                    Scratch& scratch, RankWork& work, Approaches& found) {
+  const Futures& futures = scene.futures;
+  const FutureGroup group = futures.group(first);
+  const Motion& ego = ego_motion(scene, candidate, first, scratch.ego);
+  found.decided = find_hits(scene, ego, group, scratch, work) && found.decided;
+  if (scratch.stopped()) return false;
+  found.collision_probability =
+      collision_probability(scene, group, scratch, found.collision_probability);
+  const auto leaving = find_leaving(scene.road, scene.ego, ego, scene.slice_s.back());
+  if (group.size() < futures.size() && first_hit(scene, scratch, first) == nullptr) {
+    if (Approach* const same = same_without_contact(scene, leaving, found.outcomes)) {
+      same->futures.push_back(static_cast<std::uint32_t>(first));
+      ++same->outcome.futures;
+      same->outcome.probability += futures.probability(first);
+      return true;
+    }
+  }
+  scratch.open.clear();
+  for (std::size_t f = group.begin; f < group.end; ++f) {
+    scratch.open.push_back(static_cast<std::uint32_t>(f));
+  }
+  while (!scratch.open.empty()) {
+    const bool is_first = scratch.open.size() == group.size();
+    const std::size_t future = is_first ? first : scratch.open.front();
+    found.outcomes.emplace_back();
+    Approach& each = found.outcomes.back();
+    if (!approach_future(scene, candidate, ego, future, scratch, work, each)) return false;
+    scratch.same.swap(scratch.open);
+    scratch.open.clear();
+    futures.split(future, scratch.felt, scratch.same, scratch.open);
+    each.leaving = leaving;
+    each.futures.assign(scratch.same.begin(), scratch.same.end());
+    each.outcome.futures = each.futures.size();
+    each.outcome.is_likeliest = future == futures.likeliest();
+    for (const std::uint32_t f : scratch.same) each.outcome.probability += futures.probability(f);
+  }
+  return true;
 }
 
 }  // namespace
@@ -275,6 +329,7 @@ void Scratch::prepare(const Scene& scene) {
   until_s.reserve(futures.size());
   weighted.reserve(futures.size());
   for (auto* const each : {&same, &open, &others}) each->reserve(futures.size());
+  way.reserve(scene.ways.steps + 1);
   chain.prepare(scene);
   effects.reserve(SceneRun::most_contacts + 1);
   order.reserve(SceneRun::most_contacts + 1);
@@ -288,37 +343,26 @@ Approaches approach(const Scene& scene, const Candidate& candidate, Scratch& scr
   Approaches found;
   const Futures& futures = scene.futures;
   scratch.felt.resize(futures.plans.size());
-  found.decided = find_hits(scene, candidate.motion, scratch, work);
-  if (scratch.stopped()) return stopped;
-  scratch.open.clear();
-  for (std::size_t f = 0; f < futures.size(); ++f) {
-    scratch.open.push_back(static_cast<std::uint32_t>(f));
+  const std::size_t likeliest = futures.likeliest();
+  if (!approach_group(scene, candidate, likeliest, scratch, work, found)) return stopped;
+  for (std::size_t f = 0; futures.displaces_ego() && f < futures.size(); ++f) {
+    if (f == likeliest) continue;
+    if (!approach_group(scene, candidate, f, scratch, work, found)) return stopped;
   }
-  while (!scratch.open.empty()) {
-    const bool is_first = found.outcomes.empty();
-    const std::size_t future = is_first ? futures.likeliest() : scratch.open.front();
-    found.outcomes.emplace_back();
-    Approach& each = found.outcomes.back();
-    if (!approach_future(scene, candidate, future, scratch, work, each)) return stopped;
-    scratch.same.swap(scratch.open);
-    scratch.open.clear();
-    futures.split(future, scratch.felt, scratch.same, scratch.open);
-    each.futures.assign(scratch.same.begin(), scratch.same.end());
-    each.outcome.futures = each.futures.size();
-    each.outcome.is_likeliest = is_first;
-    for (const std::uint32_t f : scratch.same) each.outcome.probability += futures.probability(f);
-    each.result.collision_probability = collision_probability(scene, scratch);
-  }
+  found.outcomes.front().result.collision_probability = found.collision_probability;
   return found;
 }
 
 CandidateResult finish(const Scene& scene, const Candidate& candidate, Approaches&& approaches,
                        FoundDamage found, Scratch& scratch, RankWork& work) {
+  // The likeliest future's, in which the ego is not displaced.
   const std::optional<RoadLeaving> leaving =
-      find_leaving(scene.road, scene.ego, candidate.motion, scene.slice_s.back());
+      approaches.outcomes.empty()
+          ? find_leaving(scene.road, scene.ego, candidate.motion, scene.slice_s.back())
+          : approaches.outcomes.front().leaving;
   std::vector<CandidateResult> results;
   for (Approach& each : approaches.outcomes) {
-    results.push_back(finish_outcome(scene, each, found, leaving, scratch, work));
+    results.push_back(finish_outcome(scene, each, found, scratch, work));
   }
   if (approaches.decided) {
     CandidateResult result =
@@ -332,8 +376,8 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approache
   result.sample_scores.clear();
   ScoreBounds bounds;
   bounds.prepare(scene);
-  result.score_interval = {
-      0.0, bounds.most(scene, candidate.motion) + leaving_score(scene, leaving, 0.0)};
+  result.score_interval = {0.0, bounds.most_displaced(scene, candidate.motion, scratch.ego) +
+                                    most_leaving_score(scene, leaving)};
   result.numerical_interval = result.score_interval;
   // What it asks for at its begin is all that is known of it.
   result.demand = demand_until(scene, candidate, 0.0, leaving);

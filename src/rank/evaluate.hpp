@@ -8,6 +8,7 @@
 #include "rank/tell_contacts.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace crashrank::detail {
@@ -35,6 +36,7 @@ struct Scratch {
   std::vector<std::uint32_t> open;      ///< and those still to be evaluated
   std::vector<std::uint32_t> others;    ///< while these are split
   std::vector<WeightedScore> weighted;  ///< while futures are combined
+  Motion ego;                           ///< in a future that displaces it
   ImpactWorkspace impact;
   CrashChain chain;
   std::vector<PlanarPose> way;  ///< of the candidate
@@ -61,13 +63,15 @@ struct Approach {
   /// Of the plain variant, then of those of the samples.
   std::vector<std::vector<ContactEffect>> effects;
   FutureOutcome outcome;               ///< without its score
+  std::optional<RoadLeaving> leaving;  ///< of the ego's motion until the horizon
   std::vector<std::uint32_t> futures;  ///< that it is of
 };
 
 /// The same in all futures.
 struct Approaches {
   std::vector<Approach> outcomes;  ///< the likeliest future's first
-  bool decided = true;             ///< else the search came to no end or was stopped
+  double collision_probability = 0.0;
+  bool decided = true;  ///< else the search came to no end or was stopped
 };
 
 /// Follows one candidate through its crash. Depends on the scene and the candidate alone, as do

@@ -12,27 +12,10 @@
 namespace crashrank::detail {
 namespace {
 
-constexpr std::uint64_t sample_seed = 0x6372617368;
-
-/// One number of the sequence that a state stands for (splitmix64, Steele, Lea & Flood 2014).
-std::uint64_t next_word(std::uint64_t& state) {
-  state += 0x9e3779b97f4a7c15U;
-  std::uint64_t word = state;
-  word = (word ^ (word >> 30U)) * 0xbf58476d1ce4e5b9U;
-  word = (word ^ (word >> 27U)) * 0x94d049bb133111ebU;
-  return word ^ (word >> 31U);
-}
-
-/// In [0, 1).
-double next_share(std::uint64_t& state) {
-  return static_cast<double>(next_word(state) >> 11U) * 0x1.0p-53;
-}
-
-/// By its name, so that no sample depends on the order of the actors.
-std::uint64_t seed_of(const std::string& name) {
-  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash ^ sample_seed;
+bool has_errors(const Scenario& scenario) {
+  return scenario.ego.uncertainty.any() ||
+         std::any_of(scenario.actors.begin(), scenario.actors.end(),
+                     [](const ScenarioActor& actor) { return actor.perception.any(); });
 }
 
 }  // namespace
@@ -79,14 +62,16 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
     }
   }
   if (!sound) return sound.error();
-  made.first_plan_.push_back(static_cast<std::uint32_t>(made.plans.size()));
+  made.own_plans_ = made.plans.size();
+  made.first_plan_.push_back(static_cast<std::uint32_t>(made.own_plans_));
 
   FutureSummary& summary = made.summary;
   summary.risk = scenario.risk;
+  summary.sampled = std::max<std::size_t>(sampled, 1);
+  summary.has_state_errors = has_errors(scenario);
   if (!scenario.futures.empty()) {
-    summary.method = FutureMethod::joint;
     summary.combinations = static_cast<double>(scenario.futures.size());
-    made.add_joint(scenario);
+    made.read_joint(scenario);
   } else {
     summary.combinations = 1.0;
     for (std::size_t i = 0; i < made.actors_; ++i) {
@@ -94,18 +79,24 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
       summary.combinations =
           std::min(summary.combinations * static_cast<double>(made.choices(i)), countable);
     }
-    if (summary.combinations <= static_cast<double>(most_combinations)) {
+  }
+  const bool lists = made.is_joint() || summary.combinations <= double{most_combinations};
+  if (summary.has_state_errors || !lists) {
+    summary.method = FutureMethod::sampled;
+    made.strata_.prepare(summary.sampled);
+    made.read_errors(scenario);
+    made.add_sample();
+  } else {
+    summary.sampled = 0;
+    if (made.is_joint()) {
+      summary.method = FutureMethod::joint;
+      made.add_joint();
+    } else {
       summary.method = summary.combinations > 1.0 ? FutureMethod::all : FutureMethod::certain;
       made.add_combinations();
-    } else {
-      summary.method = FutureMethod::sampled;
-      summary.sampled = std::max<std::size_t>(sampled, 1);
-      made.strata_.resize(summary.sampled);
-      made.add_sample();
     }
   }
   summary.futures = made.size();
-  made.note_followed();
   return made;
 }
 
@@ -144,23 +135,30 @@ std::size_t Futures::likeliest_choice(std::size_t actor) const {
 }
 
 bool Futures::is_certain(std::size_t actor) const {
-  return existence_[actor] == 1.0 && first_plan_[actor + 1] - first_plan_[actor] == 1;
+  return existence_[actor] == 1.0 && first_plan_[actor + 1] - first_plan_[actor] == 1 &&
+         (displaced_.empty() || displaced_[actor] == exact);
 }
 
-void Futures::add_joint(const Scenario& scenario) {
+void Futures::read_joint(const Scenario& scenario) {
   double sum = 0.0;
   for (const JointFuture& future : scenario.futures) sum += future.probability;
   // Each actor's plans: one for each future that lists it, in their order, then its own.
   std::vector<std::uint32_t> next(first_plan_.begin(), first_plan_.end() - 1);
   for (const JointFuture& future : scenario.futures) {
-    probability_.push_back(future.probability / sum);
-    const std::size_t row = plan_of_.size();
-    for (std::size_t i = 0; i < actors_; ++i) plan_of_.push_back(first_plan_[i + 1] - 1);
+    joint_.push_back(future.probability / sum);
+    const std::size_t row = joint_plans_.size();
+    for (std::size_t i = 0; i < actors_; ++i) joint_plans_.push_back(first_plan_[i + 1] - 1);
     for (const FutureMotion& moved : future.motions)
-      plan_of_[row + moved.actor] = next[moved.actor]++;
+      joint_plans_[row + moved.actor] = next[moved.actor]++;
   }
-  likeliest_ = static_cast<std::size_t>(std::max_element(probability_.begin(), probability_.end()) -
-                                        probability_.begin());
+}
+
+void Futures::add_joint() {
+  probability_ = joint_;
+  plan_of_ = joint_plans_;
+  likeliest_ =
+      static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin());
+  note_followed();
 }
 
 void Futures::add_combinations() {
@@ -183,40 +181,103 @@ void Futures::add_combinations() {
     probability_.push_back(probability);
     if (is_likeliest) likeliest_ = f;
   }
+  note_followed();
 }
 
-/// A Latin hypercube (McKay, Beckman & Conover 1979): each actor's probabilities are cut into as
-/// many equal strata as there are samples, and each sample takes one of every actor.
+/// Makes room for the errors that are drawn.
+void Futures::read_errors(const Scenario& scenario) {
+  const std::size_t count = summary.sampled;
+  ego_uncertainty_ = scenario.ego.uncertainty;
+  if (displaces_ego()) {
+    ego_errors_.assign(count + 1, {});
+    strata_.draw(reserved_seed("ego"), ego_uncertainty_, ego_errors_.data());
+    for (const StateError& error : ego_errors_) {
+      ego_speed_errors_[0] = std::min(ego_speed_errors_[0], error.speed_mps);
+      ego_speed_errors_[1] = std::max(ego_speed_errors_[1], error.speed_mps);
+    }
+  }
+  displaced_.assign(actors_, exact);
+  for (std::size_t i = 0; i < actors_; ++i) {
+    if (!scenario.actors[i].perception.any()) continue;
+    displaced_[i] = static_cast<std::uint32_t>(plans.size());
+    errors_.resize(errors_.size() + count);
+    strata_.draw(seed_of(scenario.actors[i].name), scenario.actors[i].perception,
+                 errors_.data() + (displaced_[i] - own_plans_));
+    const Plan own = plans[first_plan_[i]];
+    plans.resize(plans.size() + count, own);
+  }
+  bases_.assign(errors_.size(), absent);
+}
+
 void Futures::add_sample() {
   const std::size_t count = summary.sampled;
   probability_.assign(count, 1.0 / static_cast<double>(count));
-  plan_of_.assign(count * actors_, absent);
-  for (std::size_t i = 0; i < actors_; ++i) draw(i);
   probability_.push_back(0.0);
-  for (std::size_t i = 0; i < actors_; ++i) {
-    plan_of_.push_back(plan_of_choice(i, likeliest_choice(i)));
-  }
+  plan_of_.assign((count + 1) * actors_, absent);
   likeliest_ = count;
+  if (is_joint()) {
+    draw_joint();
+  } else {
+    for (std::size_t i = 0; i < actors_; ++i) {
+      draw(i);
+      plan_of_[count * actors_ + i] = plan_of_choice(i, likeliest_choice(i));
+    }
+  }
+  note_followed();
+  std::fill(bases_.begin(), bases_.end(), absent);
+  for (std::size_t i = 0; i < displaced_.size(); ++i) {
+    if (displaced_[i] == exact) continue;
+    for (std::size_t f = 0; f < count; ++f) {
+      std::uint32_t& plan = plan_of_[f * actors_ + i];
+      if (plan == absent) continue;
+      const std::uint32_t moved = displaced_[i] + static_cast<std::uint32_t>(f);
+      bases_[moved - own_plans_] = plan;
+      followed_[moved] = 1;
+      plan = moved;
+    }
+  }
+  displace_plans();
+}
+
+void Futures::displace_plans() {
+  for (std::size_t k = 0; k < bases_.size(); ++k) {
+    Plan& moved = plans[own_plans_ + k];
+    // Where the actor does not exist, the plan that nobody follows has to be somewhere.
+    moved.motion = plans[bases_[k] != absent ? bases_[k] : first_plan_[moved.actor]].motion;
+    moved.motion.displace(errors_[k]);
+  }
 }
 
 void Futures::draw(std::size_t actor) {
-  std::uint64_t state = seed_[actor];
-  const std::size_t count = strata_.size();
-  std::iota(strata_.begin(), strata_.end(), 0U);
-  for (std::size_t k = count; k > 1; --k) {
-    std::swap(strata_[k - 1], strata_[next_word(state) % k]);
-  }
-  for (std::size_t f = 0; f < count; ++f) {
-    const double share =
-        (static_cast<double>(strata_[f]) + next_share(state)) / static_cast<double>(count);
+  const std::vector<double>& shares = strata_.draw(seed_[actor]);
+  for (std::size_t f = 0; f < shares.size(); ++f) {
     double reached = 0.0;
     std::size_t choice = 0;
     for (; choice + 1 < choices(actor); ++choice) {
       reached += choice_probability(actor, choice);
-      if (share < reached) break;
+      if (shares[f] < reached) break;
     }
     plan_of_[f * actors_ + actor] = plan_of_choice(actor, choice);
   }
+}
+
+void Futures::draw_joint() {
+  const auto follow = [&](std::size_t future, std::size_t joint) {
+    std::copy_n(joint_plans_.begin() + static_cast<std::ptrdiff_t>(joint * actors_), actors_,
+                plan_of_.begin() + static_cast<std::ptrdiff_t>(future * actors_));
+  };
+  const std::vector<double>& shares = strata_.draw(reserved_seed("futures"));
+  for (std::size_t f = 0; f < shares.size(); ++f) {
+    double reached = 0.0;
+    std::size_t joint = 0;
+    for (; joint + 1 < joint_.size(); ++joint) {
+      reached += joint_[joint];
+      if (shares[f] < reached) break;
+    }
+    follow(f, joint);
+  }
+  follow(likeliest_,
+         static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin()));
 }
 
 void Futures::split(std::size_t future, const std::vector<char>& felt,
@@ -241,13 +302,12 @@ void Futures::split(std::size_t future, const std::vector<char>& felt,
 }
 
 void Futures::weigh(View<const double> probabilities) {
-  for (std::size_t p = 0; p < plans.size(); ++p) plans[p].probability = probabilities[p];
+  for (std::size_t p = 0; p < own_plans_; ++p) plans[p].probability = probabilities[p];
   if (summary.method == FutureMethod::sampled) {
     add_sample();
-  } else if (summary.method != FutureMethod::joint) {
+  } else {
     add_combinations();
   }
-  note_followed();
 }
 
 }  // namespace crashrank::detail

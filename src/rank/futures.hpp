@@ -5,7 +5,9 @@
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
+#include "rank/strata.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,8 +21,20 @@ struct Plan {
   double probability = 1.0;  ///< that the actor follows it, if it exists; not of joint futures
 };
 
+/// Futures [begin, end) in which the ego follows its candidate in the same way.
+struct FutureGroup {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+
+  std::size_t size() const noexcept { return end - begin; }
+};
+
 /// The futures that candidates are evaluated in, the same for all of them. A future says of every
-/// actor which plan it follows, or that it does not exist.
+/// actor which plan it follows, or that it does not exist, and how far the ego is off its
+/// candidate.
+///
+/// Behind the scenario's own plans there is one for each drawn future and each actor whose
+/// perceived state has errors: the plan that it follows in that future, displaced.
 class Futures {
 public:
   static constexpr std::uint32_t absent = static_cast<std::uint32_t>(-1);
@@ -43,10 +57,23 @@ public:
   }
   /// Whether the plan's actor follows it in a future whose probability is above 0.
   bool is_followed(std::size_t plan) const { return followed_[plan] != 0; }
-  /// Each actor follows its likeliest plan; of joint futures the likeliest, of equal ones the
-  /// first.
+  /// How many of the plans are the scenario's own; those behind them are displaced.
+  std::size_t own_plans() const noexcept { return own_plans_; }
+  bool is_joint() const noexcept { return !joint_.empty(); }
+  /// Whether the ego is displaced, otherwise in each drawn future.
+  bool displaces_ego() const noexcept { return ego_uncertainty_.any(); }
+  /// How far the ego is off its candidate. Only where it is displaced.
+  const StateError& ego_error(std::size_t future) const { return ego_errors_[future]; }
+  /// The futures in which the ego follows its candidate as it does in this one: all, or it alone.
+  FutureGroup group(std::size_t future) const {
+    return displaces_ego() ? FutureGroup{future, future + 1} : FutureGroup{0, size()};
+  }
+  /// The least and the greatest error of the ego's speed, m/s.
+  const std::array<double, 2>& ego_speed_errors() const noexcept { return ego_speed_errors_; }
+  /// Each actor follows its likeliest plan without errors; of joint futures the likeliest, of equal
+  /// ones the first.
   std::size_t likeliest() const noexcept { return likeliest_; }
-  /// Whether an actor exists in every future and follows one plan.
+  /// Whether an actor exists in every future and follows one plan without errors.
   bool is_certain(std::size_t actor) const;
 
   /// Removes from `futures`, sorted, those that differ from `future`, which stays, in a plan that
@@ -58,15 +85,23 @@ public:
   /// Not of joint futures. Allocates nothing.
   void weigh(View<const double> probabilities);
 
-  std::vector<Plan> plans;  ///< by actor, in their order
+  /// Derives the displaced plans from the scenario's own. Allocates only for timed motions.
+  void displace_plans();
+
+  std::vector<Plan> plans;  ///< the scenario's own by actor, in their order; then displaced ones
   FutureSummary summary;
 
 private:
-  void add_joint(const Scenario& scenario);
+  static constexpr std::uint32_t exact = static_cast<std::uint32_t>(-1);
+
+  void read_joint(const Scenario& scenario);
+  void add_joint();
+  void read_errors(const Scenario& scenario);
   void note_followed();
   void add_combinations();
   void add_sample();
   void draw(std::size_t actor);
+  void draw_joint();
   /// Of the choice of that index: plans, then not to exist.
   double choice_probability(std::size_t actor, std::size_t choice) const;
   std::size_t choices(std::size_t actor) const;
@@ -80,7 +115,17 @@ private:
   std::vector<double> probability_;        ///< by future
   std::vector<std::uint32_t> plan_of_;     ///< by future and actor
   std::vector<char> followed_;             ///< by plan
-  std::vector<std::uint32_t> strata_;      ///< while a sample is drawn
+  std::size_t own_plans_ = 0;
+  std::vector<double> joint_;               ///< probability of each joint future
+  std::vector<std::uint32_t> joint_plans_;  ///< by joint future and actor
+  Strata strata_;
+  // Of states with errors.
+  StateUncertainty ego_uncertainty_;
+  std::vector<StateError> ego_errors_;  ///< by future
+  std::array<double, 2> ego_speed_errors_{};
+  std::vector<std::uint32_t> displaced_;  ///< by actor: its first displaced plan, or `exact`
+  std::vector<StateError> errors_;        ///< by displaced plan
+  std::vector<std::uint32_t> bases_;      ///< by displaced plan: the scenario's own, or `absent`
   std::size_t likeliest_ = 0;
 };
 

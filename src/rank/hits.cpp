@@ -41,11 +41,12 @@ Impact find_impact(const Scene& scene, const Motion& ego, const Plan& plan, doub
 
 }  // namespace
 
-bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work) {
+bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, Scratch& scratch,
+               RankWork& work) {
   constexpr double never_s = std::numeric_limits<double>::infinity();
   const Futures& futures = scene.futures;
   scratch.hits.clear();
-  find_near(scene, ego, 0.0, scene.slice_s.back(), scratch, work);
+  find_near(scene, ego, group, 0.0, scene.slice_s.back(), scratch, work);
   const bool same_start = starts_as_the_ego(scene, ego);
   bool decided = true;
   // First contacts so far, by future.
@@ -61,7 +62,7 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
     }
     // In each of its futures contacts after the first one are not searched.
     double until = 0.0;
-    for (std::size_t f = 0; f < futures.size(); ++f) {
+    for (std::size_t f = group.begin; f < group.end; ++f) {
       if (futures.has(f, near.plan)) until = std::max(until, scratch.until_s[f]);
     }
     const double from = scene.slice_s[near.first_slice];
@@ -90,7 +91,7 @@ bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork
     if (impact.state == ImpactState::none) continue;
     scratch.hits.push_back({near.plan, plan.actor, impact});
     if (!impact.hit()) continue;
-    for (std::size_t f = 0; f < futures.size(); ++f) {
+    for (std::size_t f = group.begin; f < group.end; ++f) {
       if (!futures.has(f, near.plan)) continue;
       scratch.first_s[f] = std::min(scratch.first_s[f], impact.time_s);
     }

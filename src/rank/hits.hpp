@@ -4,12 +4,14 @@
 
 namespace crashrank::detail {
 
-/// Fills `scratch.hits` with the impacts between the ego on its planned motion and the actors on
-/// each of their plans, in time order, everything but clean misses; no plan is searched beyond the
-/// first contacts of all of its futures. Returns false when some question stayed undecided.
-bool find_hits(const Scene& scene, const Motion& ego, Scratch& scratch, RankWork& work);
+/// Fills `scratch.hits` with the impacts between the ego on its motion in a group of futures
+/// and the actors on each of their plans in those, in time order, everything but clean misses; no
+/// plan is searched beyond the first contacts of all of its futures. Returns false when some
+/// question stayed undecided.
+bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, Scratch& scratch,
+               RankWork& work);
 
-/// The first contact of those in a future; null without one.
+/// The first contact of those in a future of the group that was searched; null without one.
 const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::size_t future);
 
 /// Marks the plans whose contact comes before the first contact of a future, and that contact's:

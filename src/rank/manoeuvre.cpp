@@ -21,6 +21,12 @@ double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leavi
   return counts && leaving->time_s <= first_s ? scene.road.harm_per_leaving : 0.0;
 }
 
+double most_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept {
+  // Where the ego is displaced, it may leave the road in a future though its plan does not.
+  const bool may_leave = leaving || (scene.futures.displaces_ego() && scene.road.ends());
+  return may_leave ? leaving_score(scene, RoadLeaving{}, 0.0) : 0.0;
+}
+
 ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate,
                                   const Followed& followed,
                                   const std::optional<RoadLeaving>& leaving, Scratch& scratch) {

@@ -39,4 +39,7 @@ ManoeuvreDemand demand_until(const Scene& scene, const Candidate& candidate, dou
 double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving,
                      double first_s) noexcept;
 
+/// What leaving the road adds to the score of any future at most; `leaving` is that of the plan.
+double most_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept;
+
 }  // namespace crashrank::detail

@@ -6,8 +6,9 @@
 
 namespace crashrank::detail {
 
-void find_near(const Scene& scene, const Motion& ego, double from_s, double until_s,
-               Scratch& scratch, RankWork& work) {
+void find_near(const Scene& scene, const Motion& ego, const FutureGroup& group, double from_s,
+               double until_s, Scratch& scratch, RankWork& work) {
+  const bool is_lone = scene.futures.displaces_ego();
   constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
   scratch.near.clear();
   scratch.place.assign(scene.futures.plans.size(), nowhere);
@@ -16,6 +17,7 @@ void find_near(const Scene& scene, const Motion& ego, double from_s, double unti
     const Box box = swept_box(scene.ego, ego, std::max(scene.slice_s[s], from_s),
                               std::min(scene.slice_s[s + 1], until_s), scene.impact.tolerance_m);
     work.box_tests += scene.slices[s].query(box, [&](std::size_t plan) {
+      if (is_lone && !scene.futures.has(group.begin, plan)) return;
       std::size_t& place = scratch.place[plan];
       if (place == nowhere) {
         place = scratch.near.size();

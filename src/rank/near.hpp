@@ -7,10 +7,10 @@
 
 namespace crashrank::detail {
 
-/// Fills `scratch.near` with the plans on which an actor may come near the ego in [from, until], by
-/// slices of time, the soonest first.
-void find_near(const Scene& scene, const Motion& ego, double from_s, double until_s,
-               Scratch& scratch, RankWork& work);
+/// Fills `scratch.near` with the plans on which an actor may come near the ego in [from, until] in
+/// a future of the group, by slices of time, the soonest first.
+void find_near(const Scene& scene, const Motion& ego, const FutureGroup& group, double from_s,
+               double until_s, Scratch& scratch, RankWork& work);
 
 /// Whether the swept boxes of all candidates overlap no plan's in any time slice. False when time
 /// is up.

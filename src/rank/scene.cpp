@@ -86,6 +86,15 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
 
 /// A body that nothing moves has one place.
 Status check_fixed(const Scene& scene, const Scenario& scenario) {
+  for (std::size_t i = 0; i < scene.actors.size(); ++i) {
+    const ScenarioActor& actor = scenario.actors[i];
+    if (scene.actors[i].vehicle.movable() || !actor.perception.any()) continue;
+    return Error{ErrorCode::bad_input,
+                 {},
+                 "actors." + actor.name + ".perception",
+                 "is of a body that nothing moves",
+                 "state ego.uncertainty in its place, or give its model a mass"};
+  }
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t i = 1; i < plans.size(); ++i) {
     const std::size_t actor = plans[i].actor;

@@ -36,6 +36,16 @@ std::string method_words(const FutureSummary& summary) {
     case FutureMethod::all:
       return fmt::format("All {} combinations of predictions are evaluated.", summary.futures);
     case FutureMethod::sampled:
+      if (summary.has_state_errors) {
+        return fmt::format(
+            "{} futures are drawn{}, with the stated errors of positions, headings and speeds of "
+            "the ego and of perceived actors; they are the same for all candidates and in every "
+            "run.",
+            summary.sampled,
+            summary.combinations > 1.0
+                ? fmt::format(" of {:.3g} combinations of predictions", summary.combinations)
+                : std::string());
+      }
       return fmt::format(
           "Of {:.3g} combinations of predictions {} are drawn, the same for all candidates and in "
           "every run.",

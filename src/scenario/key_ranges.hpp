@@ -22,6 +22,10 @@ inline constexpr NumberRange steering{-scenario_limits::steering_deg,
                                       scenario_limits::steering_deg};
 inline constexpr NumberRange steering_rate{scenario_limits::min_steering_rate_dps,
                                            scenario_limits::max_steering_rate_dps};
+// Standard deviations.
+inline constexpr NumberRange position_error{0.0, scenario_limits::position_error_m};
+inline constexpr NumberRange heading_error{0.0, scenario_limits::heading_error_deg};
+inline constexpr NumberRange speed_error{0.0, scenario_limits::speed_error_mps};
 inline constexpr NumberRange occupants{0.0, harm_limits::people};
 inline constexpr NumberRange honeycomb_pressure{0.0, scenario_limits::honeycomb_pa, true};
 inline constexpr NumberRange honeycomb_depth{0.0, scenario_limits::honeycomb_m, true};

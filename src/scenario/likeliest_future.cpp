@@ -5,11 +5,12 @@
 namespace crashrank {
 
 bool is_uncertain(const Scenario& scenario) noexcept {
-  return !scenario.futures.empty() || std::any_of(scenario.actors.begin(), scenario.actors.end(),
-                                                  [](const ScenarioActor& actor) {
-                                                    return !actor.predictions.empty() ||
-                                                           actor.existence_probability != 1.0;
-                                                  });
+  return !scenario.futures.empty() || scenario.ego.uncertainty.any() ||
+         std::any_of(scenario.actors.begin(), scenario.actors.end(),
+                     [](const ScenarioActor& actor) {
+                       return !actor.predictions.empty() || actor.existence_probability != 1.0 ||
+                              actor.perception.any();
+                     });
 }
 
 Scenario likeliest_future(const Scenario& scenario) {
@@ -18,7 +19,9 @@ Scenario likeliest_future(const Scenario& scenario) {
   };
   Scenario single = scenario;
   single.futures.clear();
+  single.ego.uncertainty = {};
   for (ScenarioActor& actor : single.actors) {
+    actor.perception = {};
     double most = 1.0;
     if (!actor.predictions.empty()) {
       const Prediction& likeliest =

@@ -64,8 +64,8 @@ ScenarioActor read_actor(const JsonObject& root, const json& value, const std::s
   const JsonObject object(
       value, path, root.status(),
       {"name", "model", "pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses",
-       "occupants", "predictions", "existence_probability"});
-  require_version_2(root, object, {"predictions", "existence_probability"});
+       "occupants", "predictions", "existence_probability", "perception"});
+  require_version_2(root, object, {"predictions", "existence_probability", "perception"});
   ScenarioActor actor;
   object.require("name");
   actor.name = object.name("name", limits::name_characters);
@@ -74,6 +74,7 @@ ScenarioActor read_actor(const JsonObject& root, const json& value, const std::s
   actor.occupants = object.optional_number("occupants", occupants);
   read_predictions(object, actor);
   actor.existence_probability = object.number("existence_probability", existence, 1.0);
+  actor.perception = read_uncertainty(object, "perception");
   return actor;
 }
 
@@ -144,6 +145,15 @@ std::size_t read_model_name(const JsonObject& object, const std::vector<Scenario
   }
   object.refuse("model", "'" + name + "' is not among the models", "the models are " + known);
   return 0;
+}
+
+StateUncertainty read_uncertainty(const JsonObject& parent, const char* key) {
+  if (!parent.has(key)) return {};
+  const JsonObject object(parent.at(key), parent.path_of(key), parent.status(),
+                          {"position_m", "heading_deg", "speed_mps"});
+  return {object.number("position_m", position_error, 0.0),
+          rad_per_deg * object.number("heading_deg", heading_error, 0.0),
+          object.number("speed_mps", speed_error, 0.0)};
 }
 
 void require_version_2(const JsonObject& root, const JsonObject& object,

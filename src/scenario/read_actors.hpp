@@ -17,6 +17,9 @@ std::vector<TimedPose> read_poses(const JsonObject& parent);
 /// Reads the required key "model"; the index of the model of that name.
 std::size_t read_model_name(const JsonObject& object, const std::vector<ScenarioModel>& models);
 
+/// Reads an object of standard deviations; without errors where the key is absent.
+StateUncertainty read_uncertainty(const JsonObject& parent, const char* key);
+
 /// Refuses the keys of version 2 of the format in version 1, as `root` states it.
 void require_version_2(const JsonObject& root, const JsonObject& object,
                        std::initializer_list<const char*> keys);

@@ -58,6 +58,12 @@ public:
     }
   }
 
+  void uncertainty(const std::string& path, const StateUncertainty& errors) {
+    within(path + ".position_m", errors.position_m, ranges::position_error);
+    within(path + ".heading_deg", errors.heading_rad, ranges::heading_error, rad_per_deg);
+    within(path + ".speed_mps", errors.speed_mps, ranges::speed_error);
+  }
+
   void poses(const std::string& path, const std::vector<TimedPose>& poses) {
     for (std::size_t i = 0; i < poses.size() && status.ok(); ++i) {
       const std::string at = path + "[" + std::to_string(i) + "]";
@@ -137,6 +143,7 @@ void check_ego(const Scenario& scenario, Check& check) {
                  {limits::min_wheelbase_m, limits::max_wheelbase_m});
   }
   check.not_negative("ego.occupants", ego.occupants.value_or(0.0), harm_limits::people);
+  check.uncertainty("ego.uncertainty", ego.uncertainty);
 }
 
 void check_candidates(const Scenario& scenario, Check& check) {
@@ -191,6 +198,7 @@ void check_actors(const Scenario& scenario, Check& check) {
     check_motion(path, actor, check);
     check.not_negative(path + ".occupants", actor.occupants.value_or(0.0), harm_limits::people);
     check.within(path + ".existence_probability", actor.existence_probability, ranges::existence);
+    check.uncertainty(path + ".perception", actor.perception);
     for (std::size_t k = 0; k < actor.predictions.size() && check.status.ok(); ++k) {
       check_motion(path + "." + ranges::indexed("predictions", k), actor.predictions[k], check);
     }

@@ -125,11 +125,12 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
 }
 
 ScenarioEgo read_ego(const JsonObject& root, const std::vector<ScenarioModel>& models) {
-  const JsonObject object(
-      root.at("ego"), "ego", root.status(),
-      {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m", "max_acceleration_mps2",
-       "max_deceleration_mps2", "max_steering_deg", "max_steering_rate_dps", "occupants"});
-  detail::require_version_2(root, object, {"max_deceleration_mps2", "max_steering_rate_dps"});
+  const JsonObject object(root.at("ego"), "ego", root.status(),
+                          {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m",
+                           "max_acceleration_mps2", "max_deceleration_mps2", "max_steering_deg",
+                           "max_steering_rate_dps", "occupants", "uncertainty"});
+  detail::require_version_2(root, object,
+                            {"max_deceleration_mps2", "max_steering_rate_dps", "uncertainty"});
   ScenarioEgo ego;
   ego.model = detail::read_model_name(object, models);
   ego.pose = detail::read_pose(object);
@@ -148,6 +149,7 @@ ScenarioEgo read_ego(const JsonObject& root, const std::vector<ScenarioModel>& m
   ego.max_steering_rad =
       rad_per_deg * object.number("max_steering_deg", {0.0, limits::steering_deg}, 35.0);
   ego.occupants = object.optional_number("occupants", occupants);
+  ego.uncertainty = detail::read_uncertainty(object, "uncertainty");
   return ego;
 }
 

@@ -128,6 +128,59 @@ TEST(CApi, ARankerWeighsPredictionsAnew) {
             CRASHRANK_USAGE);
 }
 
+TEST(CApi, ErrorsOfStatesScoreAsInCpp) {
+  const Loaded loaded = load(crossing_file);
+  crashrank_scenario* const in_c = loaded.scenario.get();
+  ASSERT_EQ(crashrank_scenario_set_ego_uncertainty(in_c, 0.2, 0.01, 0.5, nullptr), CRASHRANK_OK);
+  ASSERT_EQ(crashrank_scenario_set_perception(in_c, 0, 0.3, 0.1, 0.0, nullptr), CRASHRANK_OK);
+  auto scenario = *crashrank::load_scenario_file(crossing_file);
+  scenario.ego.uncertainty = {0.2, 0.01, 0.5};
+  scenario.actors.front().perception = {0.3, 0.1, 0.0};
+  const auto models = *crashrank::load_scenario_models(scenario);
+  const auto ranked = *crashrank::rank(scenario, models);
+  EXPECT_EQ(ranked.futures.method, crashrank::FutureMethod::sampled);
+  NamedScores expected;
+  for (const auto& each : ranked.ranking) {
+    expected[ranked.candidates[each.candidate].name] = *each.score;
+  }
+  EXPECT_EQ(named_scores_in_c(loaded), expected);
+
+  // A ranker takes neither away nor adds any.
+  crashrank_error error{};
+  crashrank_ranker* made = nullptr;
+  ASSERT_EQ(crashrank_ranker_create(in_c, loaded.models.get(), nullptr, &made, &error),
+            CRASHRANK_OK)
+      << error.message;
+  const Ranker ranker(made);
+  ASSERT_EQ(crashrank_ranker_update(made, in_c, &error), CRASHRANK_OK) << error.message;
+  EXPECT_EQ(crashrank_ranker_update(made, load(crossing_file).scenario.get(), &error),
+            CRASHRANK_USAGE);
+}
+
+TEST(CApi, BadErrorsOfStatesAreRefused) {
+  const Loaded loaded = load(crossing_file);
+  crashrank_scenario* const scenario = loaded.scenario.get();
+  crashrank_error error{};
+  const auto says = [&error](const char* words) {
+    return std::strstr(error.message, words) != nullptr;
+  };
+  EXPECT_EQ(crashrank_scenario_set_ego_uncertainty(nullptr, 0, 0, 0, &error), CRASHRANK_USAGE);
+  EXPECT_EQ(crashrank_scenario_set_perception(nullptr, 0, 0, 0, 0, &error), CRASHRANK_USAGE);
+  EXPECT_EQ(crashrank_scenario_set_perception(scenario, 99, 0, 0, 0, &error), CRASHRANK_USAGE);
+  EXPECT_TRUE(says("no such actor")) << error.message;
+  crashrank_ranking* ranking = nullptr;
+  const auto rank = [&] {
+    return crashrank_rank(scenario, loaded.models.get(), nullptr, &ranking, &error);
+  };
+  ASSERT_EQ(crashrank_scenario_set_ego_uncertainty(scenario, 11, 0, 0, &error), CRASHRANK_OK);
+  EXPECT_EQ(rank(), CRASHRANK_BAD_INPUT);
+  EXPECT_TRUE(says("ego.uncertainty.position_m")) << error.message;
+  ASSERT_EQ(crashrank_scenario_set_ego_uncertainty(scenario, 0, 0, 0, &error), CRASHRANK_OK);
+  ASSERT_EQ(crashrank_scenario_set_perception(scenario, 0, 0, -1, 0, &error), CRASHRANK_OK);
+  EXPECT_EQ(rank(), CRASHRANK_BAD_INPUT);
+  EXPECT_TRUE(says("actors[0].perception.heading_deg")) << error.message;
+}
+
 TEST(CApi, WhatIsNoPredictionIsRefused) {
   const Loaded loaded = load(crossing_file);
   crashrank_scenario* const scenario = loaded.scenario.get();

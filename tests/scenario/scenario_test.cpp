@@ -134,6 +134,9 @@ TEST(Scenario, TheSchemaStatesTheParsersLimits) {
   EXPECT_EQ(at("/$defs/speed_mps/maximum"), limits::speed_mps);
   EXPECT_EQ(at("/$defs/acceleration_mps2/maximum"), limits::acceleration_mps2);
   EXPECT_EQ(at("/$defs/yaw_rate_dps/maximum"), limits::yaw_rate_dps);
+  EXPECT_EQ(at("/$defs/state_errors/properties/position_m/maximum"), limits::position_error_m);
+  EXPECT_EQ(at("/$defs/state_errors/properties/heading_deg/maximum"), limits::heading_error_deg);
+  EXPECT_EQ(at("/$defs/state_errors/properties/speed_mps/maximum"), limits::speed_error_mps);
   EXPECT_EQ(at("/$defs/ego/properties/max_steering_deg/maximum"), limits::steering_deg);
   EXPECT_EQ(at("/$defs/ego/properties/max_deceleration_mps2/minimum"),
             limits::min_deceleration_mps2);
@@ -185,12 +188,34 @@ TEST(Scenario, DefaultsAreThoseOfTheSchema) {
               s->ego.max_steering_rate_radps * 180.0 / M_PI, 1e-12);
   EXPECT_FALSE(s->ego.max_deceleration_mps2 || s->road.ends() || s->road.off_road_grip);
   EXPECT_EQ(s->road.harm_per_leaving, 0.0);
+  for (const char* const key : {"position_m", "heading_deg", "speed_mps"}) {
+    const std::string errors = "/$defs/state_errors/properties/";
+    EXPECT_EQ(at((errors + key + "/default").c_str()), 0.0);
+  }
+  EXPECT_FALSE(s->ego.uncertainty.any() || is_uncertain(*s));
   ASSERT_TRUE(s->grid.has_value());
   EXPECT_EQ(s->grid->accelerations, 15U);
   EXPECT_EQ(s->grid->steerings, 15U);
   EXPECT_TRUE(s->add_straight_braking);
   EXPECT_EQ(at("/$defs/model/properties/stiffness/default"), s->models[0].stiffness);
   EXPECT_FALSE(s->models[0].surface || s->ego.occupants);
+}
+
+TEST(Scenario, ErrorsOfStatesAreReadInTheirUnits) {
+  json document = sample();
+  document["scenario_version"] = 2;
+  document["ego"]["uncertainty"] = {{"position_m", 0.25}, {"heading_deg", 18}, {"speed_mps", 1.5}};
+  document["actors"][0]["perception"] = {{"heading_deg", 9}};
+  const Result<Scenario> s = parse_scenario(document.dump(), "f");
+  ASSERT_TRUE(s.ok()) << s.error().message();
+  EXPECT_EQ(s->ego.uncertainty.position_m, 0.25);
+  EXPECT_NEAR(s->ego.uncertainty.heading_rad, 0.1 * M_PI, 1e-15);
+  EXPECT_EQ(s->ego.uncertainty.speed_mps, 1.5);
+  EXPECT_EQ(s->actors[0].perception.position_m, 0.0);
+  EXPECT_NEAR(s->actors[0].perception.heading_rad, 0.05 * M_PI, 1e-15);
+  EXPECT_FALSE(s->actors[1].perception.any());
+  EXPECT_TRUE(is_uncertain(*s));
+  EXPECT_FALSE(is_uncertain(likeliest_future(*s)));
 }
 
 TEST(Scenario, KeysWithoutEffectAreListed) {

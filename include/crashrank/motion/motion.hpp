@@ -66,6 +66,14 @@ struct TimedPose {
   Pose pose;            ///< body to world
 };
 
+/// How far the true state of a body is from the one that its motion assumes. Plane of the road.
+struct StateError {
+  double x_m = 0.0;          ///< world, m
+  double y_m = 0.0;          ///< world, m
+  double heading_rad = 0.0;  ///< about the body's origin, left positive, rad
+  double speed_mps = 0.0;    ///< along the body's forward axis, m/s
+};
+
 /// Upper bounds that hold at every instant of a stretch of time, kinks excluded: of the origin's
 /// speed and acceleration, and of the body's angular speed and acceleration.
 struct MotionBound {
@@ -111,6 +119,14 @@ public:
   /// such a body would be nowhere.
   bool is_finite() const noexcept;
 
+  /// Changes it to the motion of a body whose state is off by that much; an error of 0 changes no
+  /// bit. The start, or all poses about the first one, is moved and turned. A body that moves is
+  /// faster by the error of its speed, and its acceleration, steering or yaw rate stays: a negative
+  /// error of more than its speed stops it, none reverses it, and what stands stays. Timed poses
+  /// shift along their headings, stretch by stretch. Errors: none; numbers that are not finite make
+  /// a motion that is not. Linear in the poses; allocates nothing.
+  void displace(const StateError& error);
+
   /// Body to world at time t. About 50 ns.
   Pose pose_at(double t_s) const;
 
@@ -140,6 +156,7 @@ private:
     double acceleration = 0.0;
     double end = 0.0;        ///< time at which the acceleration ends
     double end_speed = 0.0;  ///< speed from then on
+    double top_speed = std::numeric_limits<double>::infinity();
     bool stops = false;
   };
   struct Planar {

@@ -53,8 +53,8 @@ struct RankOptions {
   std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
   std::optional<HarmOptions> harm;     ///< absent: the scenario's
   std::optional<RiskMeasure> risk;     ///< absent: the scenario's
-  /// Futures that are drawn where combinations of predictions are too many, 1 to
-  /// `max_sampled_futures`.
+  /// Futures that are drawn where combinations of predictions are too many or states have errors, 1
+  /// to `max_sampled_futures`.
   std::size_t sampled_futures = 64;
   Infeasible infeasible = Infeasible::demote;  ///< what becomes of what the ego cannot follow
   ImpactOptions impact;                        ///< `start_is_apart` is decided inside
@@ -191,10 +191,11 @@ enum class FutureMethod {
 /// The futures of a ranking.
 struct FutureSummary {
   FutureMethod method = FutureMethod::certain;  ///< where they come from
-  std::size_t futures = 1;    ///< evaluated; with `sampled`, the likeliest is one more
-  std::size_t sampled = 0;    ///< of these drawn, each with the same probability
-  double combinations = 1.0;  ///< that the scenario allows
-  RiskMeasure risk;           ///< how their scores become one
+  std::size_t futures = 1;        ///< evaluated; with `sampled`, the likeliest is one more
+  std::size_t sampled = 0;        ///< of these drawn, each with the same probability
+  double combinations = 1.0;      ///< that the scenario allows
+  RiskMeasure risk;               ///< how their scores become one
+  bool has_state_errors = false;  ///< drawn with errors of positions, headings and speeds
 };
 
 /// What a candidate leads to in futures that do not differ for it: no body that its crash comes

@@ -51,6 +51,18 @@ inline void add_stated_mass(const StatedMass& stated, ScenarioModel& model) {
   if (!model.yaw_inertia_kgm2) model.yaw_inertia_kgm2 = stated.yaw_inertia_kgm2;
 }
 
+/// Standard deviations of the errors of a body's state at time 0: independent of each other and
+/// normally distributed about what is stated. Each 0 or more.
+struct StateUncertainty {
+  double position_m = 0.0;   ///< of x and of y, world axes, m
+  double heading_rad = 0.0;  ///< about the body's origin, rad
+  double speed_mps = 0.0;    ///< along the forward axis of a body that moves, m/s
+
+  /// Whether there is an error at all.
+  bool any() const noexcept { return position_m > 0.0 || heading_rad > 0.0 || speed_mps > 0.0; }
+  bool operator==(const StateUncertainty&) const = default;
+};
+
 /// The ego vehicle at time 0.
 struct ScenarioEgo {
   std::size_t model = 0;               ///< index into Scenario::models
@@ -67,6 +79,9 @@ struct ScenarioEgo {
   double max_steering_rate_radps = 0.4;
   /// Persons in it, 0 allowed; absent: HarmWeights::people_in_ego.
   std::optional<double> occupants;
+  /// Where it is and how fast, against what its candidates assume: all of them are off by the same
+  /// errors.
+  StateUncertainty uncertainty;
 };
 
 /// A motion as scenarios write it: from its pose with speed, acceleration and yaw rate, or through
@@ -94,6 +109,8 @@ struct ScenarioActor : ActorMotion {
   /// the actor's own motion is not used.
   std::vector<Prediction> predictions;
   double existence_probability = 1.0;  ///< that it is there at all, [0, 1]
+  /// Errors of perception, whatever it does. Of a body that something moves.
+  StateUncertainty perception;
 };
 
 /// The motion of an actor in a joint future.
@@ -125,7 +142,8 @@ struct CandidateGrid {
 };
 
 /// One moment of decision, all in SI units and radians. The format is data/scenario.schema.json;
-/// predictions, existence, futures, risk, road, braking and steering rate belong to its version 2.
+/// predictions, existence, futures, risk, errors of states, road, braking and steering rate belong
+/// to its version 2.
 struct Scenario {
   std::string name;                                     ///< unique
   std::string description;                              ///< for people
@@ -148,13 +166,14 @@ struct Scenario {
   std::vector<std::string> keys_without_effect;
 };
 
-/// Whether an actor has predictions or may not exist, or joint futures are listed.
+/// Whether an actor has predictions or may not exist, joint futures are listed, or the state of the
+/// ego or an actor has errors.
 CRASHRANK_API bool is_uncertain(const Scenario& scenario) noexcept;
 
-/// The scenario in its likeliest future, without uncertainty: every actor follows its likeliest
-/// prediction, or its motion in the likeliest joint future; of equal ones the first. An actor that
-/// is rather not there than on any of its motions stays in the list with an existence probability
-/// of 0.
+/// The scenario in its likeliest future, without uncertainty or errors of states: every actor
+/// follows its likeliest prediction, or its motion in the likeliest joint future; of equal ones the
+/// first. An actor that is rather not there than on any of its motions stays in the list with an
+/// existence probability of 0.
 CRASHRANK_API Scenario likeliest_future(const Scenario& scenario);
 
 /// Bounds on what a scenario may ask for; the published schema states the same numbers.
@@ -174,6 +193,9 @@ inline constexpr double horizon_s = 60.0;                         ///< most, s
 inline constexpr double position_m = 1e5;                         ///< most, each way, m
 inline constexpr double angle_deg = 360.0;                        ///< most, each way
 inline constexpr double speed_mps = 150.0;                        ///< most, each way, m/s
+inline constexpr double position_error_m = 10.0;                  ///< most standard deviation, m
+inline constexpr double heading_error_deg = 45.0;                 ///< most standard deviation
+inline constexpr double speed_error_mps = 20.0;                   ///< most standard deviation, m/s
 inline constexpr double fastest_mps = 300.0;       ///< most, of any motion within the horizon, m/s
 inline constexpr double acceleration_mps2 = 50.0;  ///< most, each way, m/s²
 inline constexpr double yaw_rate_dps = 720.0;      ///< most, each way

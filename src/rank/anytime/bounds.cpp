@@ -53,6 +53,7 @@ void ScoreBounds::prepare(const Scene& scene) {
   most_ratio_ = 1.0;
   add(scene, ego_body);
   for (std::size_t i = 0; i < scene.actors.size(); ++i) add(scene, i);
+  energy_j_.resize(scene.actors.size());
   update(scene);
 }
 
@@ -70,18 +71,13 @@ void ScoreBounds::add(const Scene& scene, std::size_t index) {
 }
 
 void ScoreBounds::update(const Scene& scene) {
-  energy_sum_j_ = 0.0;
-  std::size_t last = Scene::alone;
-  double most_j = 0.0;
+  std::fill(energy_j_.begin(), energy_j_.end(), 0.0);
   for (const Plan& plan : scene.futures.plans) {
-    if (plan.actor != last) {
-      energy_sum_j_ += most_j;
-      most_j = 0.0;
-      last = plan.actor;
-    }
+    double& most_j = energy_j_[plan.actor];
     most_j = std::max(most_j, most_energy(scene, scene.actors[plan.actor], plan.motion));
   }
-  energy_sum_j_ += most_j;
+  energy_sum_j_ = 0.0;
+  for (const double most_j : energy_j_) energy_sum_j_ += most_j;
 }
 
 double ScoreBounds::most(const Scene& scene, const Motion& ego) const {
@@ -90,6 +86,18 @@ double ScoreBounds::most(const Scene& scene, const Motion& ego) const {
   // A contact's energy, with its share of turning, is no larger than twice all there is.
   utmost.closing_energy_j = 2.0 * most_ratio_ * utmost.energy_j;
   return slack * measure_row(scene.measure).most(utmost, scene.harm.weights);
+}
+
+double ScoreBounds::most_displaced(const Scene& scene, const Motion& ego, Motion& room) const {
+  double most_score = most(scene, ego);
+  if (!scene.futures.displaces_ego()) return most_score;
+  // Energy does not depend on place and heading, and no speed between the two is further from 0.
+  for (const double error : scene.futures.ego_speed_errors()) {
+    room = ego;
+    room.displace({0.0, 0.0, 0.0, error});
+    most_score = std::max(most_score, most(scene, room));
+  }
+  return most_score;
 }
 
 }  // namespace crashrank::detail

@@ -19,13 +19,17 @@ public:
 
   /// No crash of a candidate that moves so can score more, whatever it meets.
   double most(const Scene& scene, const Motion& ego) const;
+  /// The same in all futures, whatever the ego is displaced by. `room` is for a motion; allocates
+  /// only for timed motions.
+  double most_displaced(const Scene& scene, const Motion& ego, Motion& room) const;
 
 private:
   void add(const Scene& scene, std::size_t index);
 
-  Utmost utmost_;              ///< but for energies, which change with motions
-  double most_ratio_ = 1.0;    ///< of a body's energy about any of its points to that it has
-  double energy_sum_j_ = 0.0;  ///< of all actors' motions
+  Utmost utmost_;                 ///< but for energies, which change with motions
+  double most_ratio_ = 1.0;       ///< of a body's energy about any of its points to that it has
+  double energy_sum_j_ = 0.0;     ///< of all actors' motions
+  std::vector<double> energy_j_;  ///< by actor, the most on any of its plans
 };
 
 }  // namespace crashrank::detail

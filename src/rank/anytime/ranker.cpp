@@ -75,6 +75,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
   Race race;
   std::array<std::uint32_t, StepRounds::most_steps> chosen{};
   std::vector<Motion> coming;  ///< of the actors, while they are copied
+  Motion room;                 ///< of a displaced candidate
 
   /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
   /// of work or time.
@@ -100,7 +101,9 @@ struct CRASHRANK_HIDDEN Ranker::State {
     bool going = budget.work > 0;
     std::uint32_t begin = 0;
     if (going && all > 1) {
-      if (detail::all_are_clear(scene, rounds.candidates(), rounds.watch(), effort.work)) {
+      // Where the ego may be elsewhere, too, its plans do not tell.
+      if (!scene.futures.displaces_ego() &&
+          detail::all_are_clear(scene, rounds.candidates(), rounds.watch(), effort.work)) {
         for (std::uint32_t i = 0; i < all; ++i) detail::bound_as_clear(scene, states[i]);
       }
       going = effort.work < budget.work && !rounds.expired();
@@ -133,7 +136,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
   /// Nothing is known of any candidate but what none can exceed. Touches nothing that workers do.
   void begin(View<const Candidate> asked) noexcept {
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      detail::begin_refining(scene, bounds, asked[i], i, states[i]);
+      detail::begin_refining(scene, bounds, asked[i], i, room, states[i]);
     }
     race.begin(asked.size());
   }
@@ -259,7 +262,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->ranking.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
-    state->coming.resize(state->scene.futures.plans.size());
+    state->coming.resize(state->scene.futures.own_plans());
     state->prepare_s = seconds_between(start, Watch::Clock::now());
     return Ranker(std::move(state));
   });
@@ -272,7 +275,7 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
     detail::Scene& scene = state_->scene;
     std::vector<Motion>& coming = state_->coming;
     std::vector<detail::Plan>& plans = scene.futures.plans;
-    if (actors.size() != plans.size()) {
+    if (actors.size() != coming.size()) {
       return make_error(ErrorCode::usage, "there is not one motion for each actor's plan",
                         "give them in the order of Ranker::plans");
     }
@@ -291,6 +294,7 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
     }
     // From here on nothing can fail.
     for (std::size_t i = 0; i < actors.size(); ++i) std::swap(plans[i].motion, coming[i]);
+    scene.futures.displace_plans();
     scene.ego_start = ego_start;
     scene.limits.speed_mps = ego ? ego->speed_mps : std::numeric_limits<double>::quiet_NaN();
     scene.limits.yaw_rate_radps = ego ? ego->yaw_rate_radps : 0.0;
@@ -305,15 +309,18 @@ Result<std::vector<Motion>> plan_motions(const Scenario& scenario) {
     Result<detail::Futures> futures = detail::Futures::make(scenario, 1);
     if (!futures) return futures.error();
     std::vector<Motion> motions;
-    for (detail::Plan& plan : futures->plans) motions.push_back(std::move(plan.motion));
+    for (std::size_t i = 0; i < futures->own_plans(); ++i) {
+      motions.push_back(std::move(futures->plans[i].motion));
+    }
     return motions;
   });
 }
 
 std::vector<Ranker::Plan> Ranker::plans() const {
   std::vector<Plan> plans;
-  for (const detail::Plan& plan : state_->scene.futures.plans) {
-    plans.push_back({plan.actor, plan.probability});
+  const detail::Futures& futures = state_->scene.futures;
+  for (std::size_t i = 0; i < futures.own_plans(); ++i) {
+    plans.push_back({futures.plans[i].actor, futures.plans[i].probability});
   }
   return plans;
 }
@@ -322,8 +329,7 @@ Status Ranker::weigh_plans(View<const double> probabilities) noexcept {
   state_->rounds.await();
   return detail::guarded([&]() -> Status {
     detail::Futures& futures = state_->scene.futures;
-    if (futures.summary.method == FutureMethod::joint ||
-        probabilities.size() != futures.plans.size()) {
+    if (futures.is_joint() || probabilities.size() != futures.own_plans()) {
       return make_error(ErrorCode::usage, "there is not one probability for each actor's plan",
                         "give them in the order of Ranker::plans; joint futures have none");
     }
@@ -343,6 +349,10 @@ Status Ranker::weigh_plans(View<const double> probabilities) noexcept {
       if (is_last) sum = 0.0;
     }
     futures.weigh(probabilities);
+    if (futures.own_plans() < futures.plans.size()) {
+      detail::place_actors(state_->scene, state_->rounds.own().impact);
+      state_->bounds.update(state_->scene);
+    }
     return Success{};
   });
 }

@@ -1,6 +1,7 @@
 #include "rank/anytime/refine.hpp"
 
 #include "rank/combine_futures.hpp"
+#include "rank/ego_motion.hpp"
 #include "rank/hits.hpp"
 #include "rank/manoeuvre.hpp"
 #include "rank/measure_table.hpp"
@@ -47,22 +48,6 @@ void describe(const RefineQuery& q, const Followed& followed, Refined& state, Sc
   state.demand_known = true;
 }
 
-void look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
-  const double horizon_s = q.scene.slice_s.back();
-  state.leaving = find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s);
-  find_near(q.scene, q.candidate.motion, 0.0, horizon_s, scratch, work);
-  state.told.stage = RankStage::near;
-  if (scratch.near.empty()) {
-    describe(q, {horizon_s, never_s, false}, state, scratch);
-    settle(state, leaving_score(q.scene, state.leaving, never_s));
-    return;
-  }
-  // What can be followed to the horizon can be followed to any contact.
-  state.demand_known =
-      q.scene.infeasible == Infeasible::keep ||
-      is_feasible(q.candidate, demand_until(q.scene, q.candidate, horizon_s, state.leaving));
-}
-
 constexpr double unknown = -1.0;
 
 /// Narrows the interval to what is known of the futures, of the one that is simulated that its
@@ -107,40 +92,106 @@ void choose_future(const Scene& scene, Refined& state) {
   }
 }
 
-Contact first_contact_of(const RefineQuery& q, const Scratch::Hit& hit) {
-  return first_contact(q.scene, q.candidate.motion, hit.actor,
-                       q.scene.futures.plans[hit.plan].motion, hit.impact);
+/// Leaving of the road by the ego on its motion in a future.
+std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const Refined& state,
+                                      const Motion& ego) {
+  if (&ego == &q.candidate.motion) return state.leaving;
+  return find_leaving(q.scene.road, q.scene.ego, ego, q.scene.slice_s.back());
 }
 
-/// Finds the first contacts of the planned motion. False when time was up.
-bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
-  const bool decided = find_hits(q.scene, q.candidate.motion, scratch, work);
-  if (!decided && q.watch.expired()) return false;
+/// Whether an actor may come near the ego in any future.
+bool comes_near(const RefineQuery& q, Scratch& scratch, RankWork& work) {
   const Futures& futures = q.scene.futures;
-  RankedCandidate& told = state.told;
-  told.stage = RankStage::searched;
-  const Scratch::Hit* const first = first_hit(q.scene, scratch, futures.likeliest());
-  told.collides = first != nullptr;
-  told.collision_probability = collision_probability(q.scene, scratch);
-  const double until_s = first != nullptr ? first->impact.time_s : never_s;
-  told.grazes = grazes_before(q.scene, scratch, futures.likeliest(), until_s);
-  if (first != nullptr) {
-    state.first = first_contact_of(q, *first);
+  for (std::size_t f = 0; f < futures.size(); f = futures.group(f).end) {
+    const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
+    find_near(q.scene, ego, futures.group(f), 0.0, q.scene.slice_s.back(), scratch, work);
+    // Where time is up, nothing is settled: what was not looked at may come near.
+    if (!scratch.near.empty() || (f > 0 && q.watch.expired())) return true;
+  }
+  return false;
+}
+
+/// No future has a contact: all scores are known.
+void settle_without_contact(const RefineQuery& q, Refined& state, Scratch& scratch) {
+  const Futures& futures = q.scene.futures;
+  if (!futures.displaces_ego()) {
+    settle(state, leaving_score(q.scene, state.leaving, never_s));
+    return;
+  }
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
+    state.scores[f] = leaving_score(q.scene, leaving_of(q, state, ego), never_s);
+  }
+  combine(q, 0.0, state, scratch);
+}
+
+void look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+  const double horizon_s = q.scene.slice_s.back();
+  state.leaving = find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s);
+  state.told.stage = RankStage::near;
+  if (!comes_near(q, scratch, work)) {
+    describe(q, {horizon_s, never_s, false}, state, scratch);
+    settle_without_contact(q, state, scratch);
+    return;
+  }
+  // What can be followed to the horizon can be followed to any contact.
+  state.demand_known =
+      q.scene.infeasible == Infeasible::keep ||
+      is_feasible(q.candidate, demand_until(q.scene, q.candidate, horizon_s, state.leaving));
+}
+
+Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit) {
+  return first_contact(q.scene, ego, hit.actor, q.scene.futures.plans[hit.plan].motion, hit.impact);
+}
+
+/// Notes what the search of a group of futures found.
+void note_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego, Refined& state,
+               Followed& followed, const Scratch& scratch) {
+  const std::size_t likeliest = q.scene.futures.likeliest();
+  const auto leaving = leaving_of(q, state, ego);
+  for (std::size_t f = group.begin; f < group.end; ++f) {
+    const Scratch::Hit* const hit = first_hit(q.scene, scratch, f);
+    const double until_s = hit != nullptr ? hit->impact.time_s : never_s;
+    followed.touches = followed.touches || hit != nullptr;
+    followed.longest_s =
+        std::max(followed.longest_s, hit != nullptr ? until_s : q.scene.slice_s.back());
+    if (hit == nullptr) state.scores[f] = leaving_score(q.scene, leaving, never_s);
+    if (f != likeliest) continue;
+    followed.first_s = until_s;
+    RankedCandidate& told = state.told;
+    told.collides = hit != nullptr;
+    told.grazes = grazes_before(q.scene, scratch, f, until_s);
+    if (hit == nullptr) continue;
+    state.first = first_contact_of(q, ego, *hit);
     told.actor = state.first.actor;
     told.time_of_impact_s = state.first.time_of_impact_s;
     told.closing_speed_mps = state.first.closing_speed_mps;
   }
+}
+
+/// Finds the first contacts of the ego in all futures. False when time was up.
+bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+  const Futures& futures = q.scene.futures;
+  const RankedCandidate before = state.told;
+  bool decided = true;
+  double probability = 0.0;
+  Followed followed;
+  for (std::size_t f = 0; f < futures.size(); f = futures.group(f).end) {
+    const FutureGroup group = futures.group(f);
+    const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
+    const bool known = find_hits(q.scene, ego, group, scratch, work);
+    if ((!known || group.size() < futures.size()) && q.watch.expired()) {
+      state.told = before;
+      return false;
+    }
+    decided = decided && known;
+    probability = collision_probability(q.scene, group, scratch, probability);
+    note_hits(q, group, ego, state, followed, scratch);
+  }
+  state.told.stage = RankStage::searched;
+  state.told.collision_probability = probability;
   state.stuck = !decided;
   if (!decided) return true;
-  Followed followed;
-  for (std::size_t f = 0; f < futures.size(); ++f) {
-    const Scratch::Hit* const hit = first_hit(q.scene, scratch, f);
-    followed.touches = followed.touches || hit != nullptr;
-    followed.longest_s =
-        std::max(followed.longest_s, hit != nullptr ? hit->impact.time_s : q.scene.slice_s.back());
-    if (hit == nullptr) state.scores[f] = leaving_score(q.scene, state.leaving, never_s);
-  }
-  followed.first_s = until_s;
   describe(q, followed, state, scratch);
   choose_future(q.scene, state);
   combine(q, 0.0, state, scratch);
@@ -149,14 +200,15 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
 
 /// What the first contact of the future that is simulated is, where it is another than that of the
 /// search. False when time was up.
-bool search_future(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+bool search_future(const RefineQuery& q, const Motion& ego, Refined& state, Scratch& scratch,
+                   RankWork& work) {
   if (state.scores.size() == 1) return true;
-  find_hits(q.scene, q.candidate.motion, scratch, work);
+  find_hits(q.scene, ego, q.scene.futures.group(state.future), scratch, work);
   if (q.watch.expired()) return false;
   const Scratch::Hit* const hit = first_hit(q.scene, scratch, state.future);
   std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
   feel_hits(scratch, hit, scratch.felt);
-  state.first = first_contact_of(q, *hit);
+  state.first = first_contact_of(q, ego, *hit);
   return true;
 }
 
@@ -166,10 +218,11 @@ void spread(const RefineQuery& q, double score, Refined& state, Scratch& scratch
     state.scores.front() = score;
     return;
   }
+  const FutureGroup group = q.scene.futures.group(state.future);
   scratch.chain.feel(q.scene, scratch.felt);
   scratch.same.clear();
   scratch.others.clear();
-  for (std::size_t f = 0; f < state.scores.size(); ++f) {
+  for (std::size_t f = group.begin; f < group.end; ++f) {
     if (state.scores[f] < 0.0) scratch.same.push_back(static_cast<std::uint32_t>(f));
   }
   q.scene.futures.split(state.future, scratch.felt, scratch.same, scratch.others);
@@ -190,13 +243,15 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   const std::uint64_t turn = std::max(first_turn, more * state.simulated);
   const HarmSample& plain = q.scene.plain;
   CrashChain& chain = scratch.chain;
-  if (!search_future(q, state, scratch, work)) return false;
-  chain.begin(q.scene, q.candidate, state.future, state.first, plain);
+  const Motion& ego = ego_motion(q.scene, q.candidate, state.future, scratch.ego);
+  if (!search_future(q, ego, state, scratch, work)) return false;
+  chain.begin(q.scene, q.candidate, ego, state.future, state.first, plain);
   std::size_t over = 0;
   scratch.tally.begin();
   bool going = true;
   bool in_time = true;
-  const double left = leaving_score(q.scene, state.leaving, state.first.time_of_impact_s);
+  const double left =
+      leaving_score(q.scene, leaving_of(q, state, ego), state.first.time_of_impact_s);
   while (going) {
     going = chain.advance(steps_at_a_time);
     if (!going) break;
@@ -224,14 +279,14 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
 }  // namespace
 
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
-                    std::size_t index, Refined& state) {
+                    std::size_t index, Motion& room, Refined& state) {
   std::vector<double> scores = std::move(state.scores);  // keeps its memory
   state = {};
   state.scores = std::move(scores);
   state.scores.assign(scene.futures.size(), unknown);
   state.told.candidate = index;
   // Whether it leaves the road is looked for later.
-  state.most = bounds.most(scene, candidate.motion);
+  state.most = bounds.most_displaced(scene, candidate.motion, room);
   if (scene.road.ends()) state.most += leaving_score(scene, RoadLeaving{}, never_s);
   state.told.interval = {0.0, state.most};
 }

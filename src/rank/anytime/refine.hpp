@@ -47,9 +47,9 @@ struct StepEnd {
   bool finished = true;  ///< false: time was up first; the interval may be narrower all the same
 };
 
-/// Begins with a candidate of which nothing is known yet.
+/// Begins with a candidate of which nothing is known yet. `room` is for a motion.
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
-                    std::size_t index, Refined& state);
+                    std::size_t index, Motion& room, Refined& state);
 
 /// The candidate is known to come near nobody: what it scores is that of leaving the road at most.
 void bound_as_clear(const Scene& scene, Refined& state);

@@ -80,6 +80,30 @@ TEST(RankerCalls, NothingIsAllocatedFromTheFirstCallOn) {
   }
 }
 
+TEST(RankerCalls, ErrorsOfStatesAllocateNothing) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Ready ready(seed);
+    ready.scene.scenario.ego.uncertainty = {0.3, 0.02, 1.0};
+    for (ScenarioActor& actor : ready.scene.scenario.actors) {
+      if (actor.model < scenes::pole_model) actor.perception = {0.2, 0.05, 0.5};
+    }
+    RankerOptions options;
+    options.rank.measure = Measure::harm;
+    options.rank.sampled_futures = 8;
+    Result<Ranker> ranker = Ranker::prepare(ready.scene.scenario, ready.scene.models, options);
+    ASSERT_TRUE(ranker.ok());
+    const std::vector<double> probabilities(ready.motions.size(), 1.0);
+    const long before = test::allocations.load();
+    const RankerAnswer answer = ranker->rank(ready.candidates);
+    const Status moved = ranker->move_actors(ready.scene.scenario.ego.pose, ready.motions);
+    const Status weighed = ranker->weigh_plans(probabilities);
+    EXPECT_EQ(test::allocations.load(), before) << "seed " << seed;
+    EXPECT_TRUE(answer.complete);
+    EXPECT_TRUE(moved);
+    EXPECT_TRUE(weighed);
+  }
+}
+
 #if defined(__linux__) && defined(__x86_64__)
 
 /// Kills the process, all threads of it, at any system call but those by which threads wake and

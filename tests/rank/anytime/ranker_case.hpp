@@ -29,10 +29,14 @@ struct Case {
   RankResult plain;
   std::vector<Candidate> candidates;
   std::vector<double> scores;  ///< by candidate
+  std::size_t sampled = 64;    ///< futures, where they are drawn
 
   Case(std::uint64_t seed, Measure measure) : Case(scenes::traffic(seed), measure) {}
-  Case(scenes::Scene ranked_scene, Measure measure) : scene(std::move(ranked_scene)) {
-    plain = scene.ranked(options_of(measure));
+  Case(scenes::Scene ranked_scene, Measure measure, std::size_t sampled_futures = 64)
+      : scene(std::move(ranked_scene)), sampled(sampled_futures) {
+    RankOptions options = options_of(measure);
+    options.sampled_futures = sampled;
+    plain = scene.ranked(options);
     candidates = plain.candidates;
     scores.assign(candidates.size(), -1.0);
     for (const CandidateResult& c : plain.ranking) {
@@ -50,6 +54,7 @@ struct Case {
   Ranker ranker(Measure measure, unsigned workers = 1) const {
     RankerOptions options;
     options.rank = options_of(measure, workers);
+    options.rank.sampled_futures = sampled;
     options.limits.candidates = 64;
     Result<Ranker> made = Ranker::prepare(scene.scenario, scene.models, options);
     EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().message());

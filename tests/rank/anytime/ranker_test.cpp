@@ -215,6 +215,78 @@ TEST(RankerProperty, IntervalsHoldOverFuturesThatAreNotEvaluatedYet) {
               static_cast<unsigned long long>(seed), outcomes);
 }
 
+TEST(RankerProperty, IntervalsHoldOverErrorsOfStates) {
+  const std::uint64_t seed = first_seed(1800);
+  const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 6);
+  const std::uint64_t scenes = scenes_to_try(4);
+  constexpr std::array<const char*, 4> risks{"expected", "cvar:0.8", "worst", "quantile:0.6"};
+  constexpr std::array<Measure, 4> tried{Measure::harm, Measure::delta_v, Measure::energy,
+                                         Measure::polygons};
+  Widths widths;
+  for (std::uint64_t i = 0; i < scenes; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed + i));
+    oracle::Random random(seed + i);
+    Scene scene = i % 2 == 0 ? traffic(seed + i) : scenes::congestion(seed + i);
+    if (i % 2 == 0) scenes::add_predictions(random, scene, 2);
+    // The ego's alone, those of the others alone, then both.
+    if (i % 3 != 1) scene.scenario.ego.uncertainty = {0.3, 0.02, 1.0};
+    for (ScenarioActor& actor : scene.scenario.actors) {
+      if (i % 3 != 0 && actor.model < scenes::pole_model) actor.perception = {0.2, 0.05, 0.5};
+    }
+    scene.scenario.risk = *risk_from_name(risks[i % risks.size()]);
+    const Measure measure = tried[i % tried.size()];
+    const Case c(std::move(scene), measure, 6);
+    cut_everywhere(c, measure, cuts, widths);
+    if (HasFatalFailure()) return;
+    for (const unsigned workers : {1U, 3U}) {
+      Ranker ranker = c.ranker(measure, workers);
+      const RankerAnswer answer = ranker.rank(c.candidates);
+      ASSERT_TRUE(answer.complete);
+      for (std::size_t k = 0; k < answer.ranking.size(); ++k) {
+        const CandidateResult& plain = c.plain.ranking[k];
+        ASSERT_EQ(answer.ranking[k].candidate, plain.candidate);
+        ASSERT_EQ(answer.ranking[k].score, *plain.score);
+        ASSERT_EQ(answer.ranking[k].collision_probability, plain.collision_probability);
+      }
+    }
+  }
+}
+
+TEST(Ranker, MovedAndWeighedPlansKeepTheirErrors) {
+  oracle::Random random(1850);
+  Scene scene = traffic(1850);
+  scenes::add_predictions(random, scene, 2);
+  scene.scenario.ego.uncertainty = {0.3, 0.02, 1.0};
+  for (ScenarioActor& actor : scene.scenario.actors) {
+    if (actor.model < scenes::pole_model) actor.perception = {0.2, 0.05, 0.5};
+  }
+  const Case before(scene, Measure::harm, 6);
+  Ranker ranker = before.ranker(Measure::harm);
+  std::vector<double> probabilities;
+  for (ScenarioActor& actor : scene.scenario.actors) {
+    actor.speed_mps *= 0.9;
+    if (actor.predictions.empty()) probabilities.push_back(1.0);
+    for (std::size_t k = 0; k < actor.predictions.size(); ++k) {
+      Prediction& prediction = actor.predictions[k];
+      prediction.speed_mps *= 0.9;
+      prediction.probability = 1.0 / static_cast<double>(actor.predictions.size());
+      probabilities.push_back(prediction.probability);
+    }
+  }
+  const Case after(scene, Measure::harm, 6);
+  const Result<std::vector<Motion>> motions = plan_motions(scene.scenario);
+  ASSERT_TRUE(motions.ok());
+  ASSERT_EQ(ranker.plans().size(), probabilities.size());
+  ASSERT_EQ(motions->size(), probabilities.size());
+  ASSERT_TRUE(ranker.move_actors(scene.scenario.ego.pose, *motions));
+  ASSERT_TRUE(ranker.weigh_plans(probabilities));
+  const RankerAnswer answer = ranker.rank(after.candidates);
+  ASSERT_TRUE(answer.complete);
+  for (const RankedCandidate& told : answer.ranking) {
+    EXPECT_EQ(told.score, after.scores[told.candidate]);
+  }
+}
+
 TEST(RankerProperty, IntervalsHoldWhereTwoBodiesMeetAgain) {
   // Two bodies meet with 14.3 m/s, then with 5.8 m/s: the first alone counts.
   Widths widths;

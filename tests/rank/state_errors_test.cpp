@@ -1,0 +1,406 @@
+#include "crashrank/rank/rank.hpp"
+#include "rank/random_scene.hpp"
+#include "rank/scenes.hpp"
+#include "rank/strata.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crashrank {
+namespace {
+
+using scenes::Scene;
+
+constexpr std::size_t sampled = 12;
+
+/// Phi: by the complementary error function of the standard library.
+double normal_share(double deviate) { return 0.5 * std::erfc(-deviate / std::numbers::sqrt2); }
+
+RankOptions harm_of(std::size_t futures) {
+  RankOptions options;
+  options.measure = Measure::harm;
+  options.harm.emplace();
+  options.harm->intervals = false;
+  options.sampled_futures = futures;
+  return options;
+}
+
+std::vector<double> scores_of(const RankResult& result) {
+  std::vector<double> scores(result.ranking.size());
+  for (const CandidateResult& c : result.ranking) scores[c.candidate] = c.score.value_or(-1.0);
+  return scores;
+}
+
+std::vector<StateError> drawn(std::uint64_t seed, const StateUncertainty& uncertainty,
+                              std::size_t count) {
+  detail::Strata strata;
+  strata.prepare(count);
+  std::vector<StateError> errors(count);
+  strata.draw(seed, uncertainty, errors.data());
+  return errors;
+}
+
+std::vector<StateError> drawn_of_ego(const Scenario& scenario, std::size_t count) {
+  return drawn(detail::reserved_seed("ego"), scenario.ego.uncertainty, count);
+}
+
+TEST(StateErrors, TheDeviateIsTheInverseOfTheNormalDistribution) {
+  for (double p = 1e-16; p < 0.5; p *= 1.07) {
+    const double z = detail::normal_deviate(p);
+    EXPECT_NEAR(normal_share(z) / p, 1.0, 1e-13 * (1.0 + z * z)) << p;
+    if (p > 1e-9) {
+      EXPECT_NEAR(detail::normal_deviate(1.0 - p), -z, 1e-6) << p;
+    }
+  }
+  EXPECT_EQ(detail::normal_deviate(0.5), 0.0);
+  EXPECT_NEAR(detail::normal_deviate(0.975), 1.959963984540054, 1e-14);
+}
+
+TEST(StateErrors, SamplesAreStratifiedWithTheStatedMeanAndDeviation) {
+  const StateUncertainty uncertainty{0.3, 0.05, 2.0};
+  for (const std::size_t count : {64U, 1000U}) {
+    const std::vector<StateError> errors = drawn(detail::seed_of("name"), uncertainty, count);
+    std::vector<std::vector<double>> units(4);
+    for (const StateError& e : errors) {
+      units[0].push_back(e.x_m / 0.3);
+      units[1].push_back(e.y_m / 0.3);
+      units[2].push_back(e.heading_rad / 0.05);
+      units[3].push_back(e.speed_mps / 2.0);
+    }
+    const auto mean_of = [count](const std::vector<double>& p, const std::vector<double>& q) {
+      double sum = 0.0;
+      for (std::size_t f = 0; f < count; ++f) sum += p[f] * q[f];
+      return sum / static_cast<double>(count);
+    };
+    const std::vector<double> ones(count, 1.0);
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      std::vector<bool> hit(count, false);
+      for (const double z : units[i]) {
+        const auto stratum = static_cast<std::size_t>(normal_share(z) * static_cast<double>(count));
+        EXPECT_FALSE(hit.at(stratum));
+        hit.at(stratum) = true;
+      }
+      // Stratified: far below 1/sqrt(count).
+      EXPECT_NEAR(mean_of(units[i], ones), 0.0, 1.0 / static_cast<double>(count));
+      EXPECT_NEAR(std::sqrt(mean_of(units[i], units[i])), 1.0, 4.0 / static_cast<double>(count));
+      for (std::size_t k = 0; k < i; ++k) {
+        EXPECT_LT(std::abs(mean_of(units[i], units[k])), 4.0 / std::sqrt(count)) << i << k;
+      }
+    }
+  }
+  EXPECT_NE(detail::seed_of("ego"), detail::reserved_seed("ego"));
+}
+
+Pose displaced(const Pose& pose, const StateError& error) {
+  Pose moved = pose;
+  const Eigen::AngleAxisd turn(error.heading_rad, Eigen::Vector3d::UnitZ());
+  moved.rotation = turn.toRotationMatrix() * pose.rotation;
+  moved.translation += Eigen::Vector3d(error.x_m, error.y_m, 0.0);
+  return moved;
+}
+
+double changed(double speed, double error) {
+  return speed == 0.0 ? 0.0 : std::max(speed + error, 0.0);
+}
+
+void displace(ActorMotion& motion, const StateError& error) {
+  motion.pose = displaced(motion.pose, error);
+  const double speed = changed(motion.speed_mps, error.speed_mps);
+  if (speed == 0.0 && motion.acceleration_mps2 <= 0.0) motion.yaw_rate_radps = 0.0;
+  motion.speed_mps = speed;
+}
+
+/// Index of the choice that a share of 1 falls into.
+template <class Weighted>
+std::size_t chosen(double share, const std::vector<Weighted>& choices, double scale = 1.0) {
+  double reached = 0.0;
+  for (std::size_t k = 0; k + 1 < choices.size(); ++k) {
+    reached += scale * choices[k].probability;
+    if (share < reached) return k;
+  }
+  return choices.size() - 1;
+}
+
+/// Traffic whose candidates do not change with the ego's speed.
+Scene uncertain_traffic(std::uint64_t seed) {
+  Scene scene = seed % 2 == 0 ? scenes::traffic(seed) : scenes::congestion(seed);
+  scene.scenario.grid.reset();
+  scene.add_candidate("coast", 0.0, 0.0);
+  scene.add_candidate("brake", -6.0, 0.0);
+  scene.add_candidate("left", -2.0, 0.03);
+  scene.add_candidate("right", 1.0, -0.03);
+  scene.scenario.ego.uncertainty = {0.4, 0.03, 1.5};
+  for (std::size_t i = 0; i < scene.scenario.actors.size(); ++i) {
+    ScenarioActor& actor = scene.scenario.actors[i];
+    if (actor.model < scenes::pole_model && i % 3 != 2) actor.perception = {0.3, 0.05, 1.0};
+  }
+  return scene;
+}
+
+/// The scenario of each drawn future, written out.
+std::vector<Scenario> single_scenarios(const Scenario& scenario) {
+  std::vector<Scenario> singles(sampled, likeliest_future(scenario));
+  const std::vector<StateError> ego = drawn_of_ego(scenario, sampled);
+  detail::Strata strata;
+  strata.prepare(sampled);
+  for (std::size_t f = 0; f < sampled; ++f) {
+    ScenarioEgo& own = singles[f].ego;
+    own.pose = displaced(own.pose, ego[f]);
+    own.speed_mps = changed(own.speed_mps, ego[f].speed_mps);
+    if (scenario.futures.empty()) continue;
+    const double share = strata.draw(detail::reserved_seed("futures"))[f];
+    for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+      static_cast<ActorMotion&>(singles[f].actors[i]) = scenario.actors[i];
+    }
+    for (const FutureMotion& moved : scenario.futures[chosen(share, scenario.futures)].motions) {
+      static_cast<ActorMotion&>(singles[f].actors[moved.actor]) = moved.motion;
+    }
+  }
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    const ScenarioActor& actor = scenario.actors[i];
+    const std::uint64_t seed = detail::seed_of(actor.name);
+    const std::vector<StateError> errors = drawn(seed, actor.perception, sampled);
+    for (std::size_t f = 0; f < sampled; ++f) {
+      ScenarioActor& single = singles[f].actors[i];
+      const double share = strata.draw(seed)[f];
+      single.existence_probability = share < actor.existence_probability ? 1.0 : 0.0;
+      if (!actor.predictions.empty()) {
+        static_cast<ActorMotion&>(single) =
+            actor.predictions[chosen(share, actor.predictions, actor.existence_probability)];
+      }
+      displace(single, errors[f]);
+    }
+  }
+  return singles;
+}
+
+void expect_mean_of_singles(const Scene& scene, double tolerance) {
+  const RankResult whole = scene.ranked(harm_of(sampled));
+  ASSERT_EQ(whole.futures.method, FutureMethod::sampled);
+  EXPECT_TRUE(whole.futures.has_state_errors);
+  EXPECT_EQ(whole.futures.sampled, sampled);
+  EXPECT_EQ(whole.futures.futures, sampled + 1);
+  std::vector<double> mean(whole.ranking.size(), 0.0);
+  std::vector<double> collides(whole.ranking.size(), 0.0);
+  for (const Scenario& single : single_scenarios(scene.scenario)) {
+    const Result<RankResult> part = rank(single, scene.models, harm_of(1));
+    ASSERT_TRUE(part.ok()) << part.error().message();
+    for (const CandidateResult& c : part->ranking) {
+      mean[c.candidate] += c.score.value_or(-1e9) / double{sampled};
+      if (c.collides) collides[c.candidate] += 1.0 / double{sampled};
+    }
+  }
+  const RankResult likeliest = [&] {
+    Scene exact = scene;
+    exact.scenario = likeliest_future(scene.scenario);
+    return exact.ranked(harm_of(1));
+  }();
+  for (const CandidateResult& c : whole.ranking) {
+    EXPECT_NEAR(c.score.value_or(-1.0), mean[c.candidate],
+                tolerance * std::max(1.0, mean[c.candidate]));
+    EXPECT_NEAR(c.collision_probability, collides[c.candidate], 1e-12);
+    ASSERT_FALSE(c.futures.empty());
+    EXPECT_TRUE(c.futures.front().is_likeliest);
+    EXPECT_EQ(c.futures.front().score, scores_of(likeliest)[c.candidate]);
+    double sum = 0.0;
+    std::size_t futures = 0;
+    for (const FutureOutcome& outcome : c.futures) {
+      sum += outcome.probability;
+      futures += outcome.futures;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-12);
+    EXPECT_EQ(futures, sampled + 1);
+  }
+}
+
+TEST(StateErrors, ScoresAreTheMeanOfTheScenariosWrittenOut) {
+  for (std::uint64_t seed = 8100; seed < 8108; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    oracle::Random random(seed);
+    Scene scene = uncertain_traffic(seed);
+    if (seed % 4 > 1) scenes::add_predictions(random, scene, 2);
+    expect_mean_of_singles(scene, 1e-9);
+    // Without rotation the poses have the same bits.
+    scene.scenario.ego.uncertainty.heading_rad = 0.0;
+    for (ScenarioActor& actor : scene.scenario.actors) actor.perception.heading_rad = 0.0;
+    expect_mean_of_singles(scene, 1e-12);
+    // Of the others alone: futures may share a simulation.
+    scene.scenario.ego.uncertainty = {};
+    if (is_uncertain(scene.scenario) && !scene.scenario.actors.front().perception.any()) continue;
+    expect_mean_of_singles(scene, 1e-12);
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST(StateErrors, JointFuturesAreDrawnByTheirProbability) {
+  Scene scene = uncertain_traffic(8201);
+  Scenario& scenario = scene.scenario;
+  for (const double probability : {0.25, 0.75}) {
+    JointFuture future;
+    future.probability = probability;
+    for (std::size_t i = 0; i < scenario.actors.size(); i += 2) {
+      if (scenario.actors[i].model >= scenes::pole_model) continue;
+      FutureMotion moved{i, scenario.actors[i]};
+      moved.motion.speed_mps += 4.0 * probability;
+      future.motions.push_back(moved);
+    }
+    scenario.futures.push_back(future);
+  }
+  expect_mean_of_singles(scene, 1e-9);
+}
+
+TEST(StateErrors, NoOrderOfActorsAndNoNumberOfWorkersChangesABit) {
+  const Scene scene = uncertain_traffic(8301);
+  const RankResult one = scene.ranked(harm_of(sampled));
+  Scene turned = scene;
+  std::reverse(turned.scenario.actors.begin(), turned.scenario.actors.end());
+  EXPECT_EQ(scores_of(turned.ranked(harm_of(sampled))), scores_of(one));
+  for (const unsigned workers : {2U, 3U, 5U}) {
+    RankOptions options = harm_of(sampled);
+    options.workers = workers;
+    EXPECT_EQ(scores_of(scene.ranked(options)), scores_of(one));
+  }
+}
+
+/// A gap 10 cm wider than the ego between two bodies ahead, straight through at 20 m/s or braking
+/// before it. What follows closely hits the ego gently where it brakes.
+Scene gap_scene(bool of_cars) {
+  Scene scene = scenes::car_and_wall();
+  scene.scenario.actors.clear();
+  scene.scenario.measure = Measure::delta_v;
+  scene.scenario.harm.intervals = false;
+  constexpr double free_m = 0.05;
+  const double aside = 1.0 + free_m + (of_cars ? 1.0 : 10.0);
+  const std::size_t model = of_cars ? 0 : 1;
+  scene.add_actor("left", model, 35.0, aside);
+  scene.add_actor("right", model, 35.0, -aside);
+  scene.add_actor("follower", 0, -10.0, 0.0, 0.0, 20.0).acceleration_mps2 = -5.5;
+  scene.add_candidate("through", 0.0, 0.0);
+  scene.add_candidate("brake", -7.0, 0.0);
+  return scene;
+}
+
+TEST(StateErrors, AGapOfCentimetresLosesItsFirstPlace) {
+  Scene scene = gap_scene(false);
+  const RankResult exact = scene.ranked();
+  ASSERT_EQ(exact.candidates[exact.ranking.front().candidate].name, "through");
+  EXPECT_EQ(*exact.ranking.front().score, 0.0);
+  EXPECT_EQ(exact.futures.method, FutureMethod::certain);
+
+  scene.scenario.ego.uncertainty.position_m = 0.2;
+  const RankResult result = scene.ranked();
+  EXPECT_EQ(result.candidates[result.ranking.front().candidate].name, "brake");
+  const CandidateResult& through = scenes::of(result, "through");
+  // |y| > 5 cm. A stratum at each of both borders is open.
+  const double expected = 2.0 * normal_share(-0.25);
+  EXPECT_NEAR(through.collision_probability, expected, 2.0 / 64.0);
+  EXPECT_FALSE(through.collides);
+  std::size_t outside = 0;
+  for (const StateError& error : drawn_of_ego(scene.scenario, 64)) {
+    outside += std::abs(error.y_m) > 0.05 ? 1U : 0U;
+  }
+  EXPECT_NEAR(through.collision_probability, static_cast<double>(outside) / 64.0, 1e-12);
+  ASSERT_TRUE(through.sampling_error.has_value());
+
+  RankOptions many;
+  many.sampled_futures = 1000;
+  EXPECT_NEAR(scenes::of(scene.ranked(many), "through").collision_probability, expected,
+              2.0 / 1000.0);
+}
+
+TEST(StateErrors, APerceivedBodyThatMayStandInTheWayIsAvoided) {
+  Scene scene = gap_scene(true);
+  ASSERT_EQ(scene.ranked().ranking.front().candidate, 0U);
+  scene.scenario.actors.front().perception.position_m = 0.2;
+  const RankResult result = scene.ranked();
+  EXPECT_EQ(result.candidates[result.ranking.front().candidate].name, "brake");
+  EXPECT_NEAR(scenes::of(result, "through").collision_probability, normal_share(-0.25), 1.0 / 64.0);
+}
+
+TEST(StateErrors, ErrorsOfZeroChangeNothing) {
+  Scene scene = uncertain_traffic(8400);
+  const Scenario exact = likeliest_future(scene.scenario);
+  EXPECT_TRUE(is_uncertain(scene.scenario));
+  EXPECT_FALSE(is_uncertain(exact));
+  scene.scenario.ego.uncertainty = {0.0, 0.0, 0.0};
+  for (ScenarioActor& actor : scene.scenario.actors) actor.perception = {0.0, 0.0, 0.0};
+  const RankResult result = scene.ranked(harm_of(sampled));
+  EXPECT_EQ(result.futures.method, FutureMethod::certain);
+  EXPECT_FALSE(result.futures.has_state_errors);
+  scene.scenario = exact;
+  EXPECT_EQ(scores_of(scene.ranked(harm_of(sampled))), scores_of(result));
+}
+
+TEST(StateErrors, LeavingTheRoadIsThatOfTheDisplacedEgo) {
+  // The right wheels run 0.1 m from the border.
+  Scene scene = gap_scene(false);
+  scene.scenario.actors.clear();
+  scene.scenario.measure = Measure::harm;
+  scene.scenario.ego.uncertainty.position_m = 0.2;
+  Area road;
+  road.outer = {{-50, -3}, {500, -3}, {500, 3}, {-50, 3}};
+  scene.scenario.road.drivable = {road};
+  scene.scenario.road.harm_per_leaving = 2.0;
+  const auto least_y = [&](double y) {
+    scene.scenario.ego.pose.translation.y() = y;
+    Scene exact = scene;
+    exact.scenario.ego.uncertainty = {};
+    return exact.ranked(harm_of(64)).ranking.front().leaves_road.has_value();
+  };
+  double off = -3.0;
+  double on = 0.0;
+  ASSERT_TRUE(least_y(off));
+  ASSERT_FALSE(least_y(on));
+  for (int i = 0; i < 40; ++i) (least_y(0.5 * (off + on)) ? off : on) = 0.5 * (off + on);
+  scene.scenario.ego.pose.translation.y() = on + 0.1;
+  const RankResult result = scene.ranked(harm_of(64));
+  EXPECT_NEAR(scenes::of(result, "through").score.value_or(-1.0), 2.0 * normal_share(-0.5),
+              2.0 / 64.0);
+}
+
+TEST(StateErrors, BadDeviationsAreRefusedByKey) {
+  const Scene good = gap_scene(true);
+  const auto place = [&](auto change) {
+    Scenario scenario = good.scenario;
+    change(scenario);
+    const Result<RankResult> result = rank(scenario, good.models);
+    EXPECT_FALSE(result.ok());
+    if (result.ok()) return std::string();
+    EXPECT_EQ(result.error().code, ErrorCode::bad_input);
+    EXPECT_FALSE(result.error().remedy.empty());
+    return result.error().place;
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {-0.1, 10.5, nan, std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(place([&](Scenario& s) { s.ego.uncertainty.position_m = bad; }),
+              "ego.uncertainty.position_m");
+    EXPECT_EQ(place([&](Scenario& s) { s.actors[1].perception.position_m = bad; }),
+              "actors[1].perception.position_m");
+  }
+  for (const double bad : {-0.1, 0.79, nan}) {
+    EXPECT_EQ(place([&](Scenario& s) { s.ego.uncertainty.heading_rad = bad; }),
+              "ego.uncertainty.heading_deg");
+  }
+  for (const double bad : {-0.1, 20.1, nan}) {
+    EXPECT_EQ(place([&](Scenario& s) { s.actors[0].perception.speed_mps = bad; }),
+              "actors[0].perception.speed_mps");
+  }
+  Scene walls = gap_scene(false);
+  walls.scenario.actors.front().perception.position_m = 0.1;
+  const Result<RankResult> result = rank(walls.scenario, walls.models);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().place, "actors.left.perception");
+  EXPECT_NE(result.error().remedy.find("ego.uncertainty"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace crashrank
