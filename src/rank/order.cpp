@@ -1,6 +1,7 @@
 #include "rank/order.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace crashrank {
@@ -16,8 +17,7 @@ detail::OrderKey key_of(const CandidateResult& c, Infeasible infeasible) {
   key.collides = c.collides;
   key.grazes = !c.grazes.empty();
   key.leaves_road = c.leaves_road.has_value();
-  key.distance_m = c.least_distance_m.value_or(infinity);
-  key.time_gap_s = c.least_time_gap_s.value_or(infinity);
+  key.set_clearance(c.least_distance_m.value_or(infinity), c.least_time_gap_s.value_or(infinity));
   if (!c.contacts.empty()) {
     key.first_s = c.contacts.front().time_of_impact_s;
     key.closing_mps = c.contacts.front().closing_speed_mps;
@@ -66,10 +66,15 @@ Result<Infeasible> infeasible_from_name(const std::string& name) {
 
 namespace detail {
 
+void OrderKey::set_clearance(double least_m, double least_s) noexcept {
+  distance_cm = std::round(100.0 * std::min(least_m, enough_distance_m));
+  time_gap_cs = std::round(100.0 * std::min(least_s, enough_time_gap_s));
+}
+
 bool OrderKey::is_best_of_its_score() const noexcept {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   return !(collision_probability > 0.0) && !collides && !grazes && !leaves_road &&
-         distance_m == infinity && time_gap_s == infinity && end_speed_mps == 0.0;
+         distance_cm == std::round(100.0 * enough_distance_m) &&
+         time_gap_cs == std::round(100.0 * enough_time_gap_s) && end_speed_mps == 0.0;
 }
 
 int compare(const OrderKey& a, const OrderKey& b) noexcept {
@@ -83,8 +88,8 @@ int compare(const OrderKey& a, const OrderKey& b) noexcept {
   if (a.collides != b.collides) return before(!a.collides);
   if (a.grazes != b.grazes) return before(!a.grazes);
   if (a.leaves_road != b.leaves_road) return before(!a.leaves_road);
-  if (a.distance_m != b.distance_m) return before(a.distance_m > b.distance_m);
-  if (a.time_gap_s != b.time_gap_s) return before(a.time_gap_s > b.time_gap_s);
+  if (a.distance_cm != b.distance_cm) return before(a.distance_cm > b.distance_cm);
+  if (a.time_gap_cs != b.time_gap_cs) return before(a.time_gap_cs > b.time_gap_cs);
   if (!a.collides) {
     if (a.end_speed_mps == b.end_speed_mps) return 0;
     return before(a.end_speed_mps < b.end_speed_mps);
@@ -112,7 +117,8 @@ void assign_places(RankResult& result) {
 }
 
 void drop_infeasible(RankResult& result) {
-  if (result.infeasible != Infeasible::drop) return;
+  // Of what is not evaluated to its end nobody knows whether it can be followed.
+  if (result.infeasible != Infeasible::drop || !result.complete) return;
   const auto first = std::find_if(result.ranking.begin(), result.ranking.end(),
                                   [](const CandidateResult& c) { return !c.feasible; });
   if (first == result.ranking.begin()) return;
@@ -127,9 +133,9 @@ void put_in_order(RankResult& result) {
     const int compared = compare(key_of(a, result.infeasible), key_of(b, result.infeasible));
     return compared != 0 ? compared < 0 : a.candidate < b.candidate;
   });
-  drop_infeasible(result);
   result.complete = std::all_of(ranking.begin(), ranking.end(),
                                 [](const CandidateResult& c) { return c.score.has_value(); });
+  drop_infeasible(result);
   // Known scores have one winner, the first of them in the order. It and those not yet known stay
   // in the race unless somebody's highest score is below their lowest.
   double lowest_high = std::numeric_limits<double>::infinity();

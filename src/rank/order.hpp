@@ -15,12 +15,14 @@ struct OrderKey {
   bool collides = false;  ///< this and the next in the likeliest future
   bool grazes = false;
   bool leaves_road = false;
-  double distance_m = 0.0;  ///< infinity: nobody is near
-  double time_gap_s = 0.0;
-  double first_s = 0.0;  ///< of the first contact; of candidates that collide
+  double distance_cm = 0.0;  ///< whole ones, at most `enough_distance_m`
+  double time_gap_cs = 0.0;  ///< whole hundredths of a second, at most `enough_time_gap_s`
+  double first_s = 0.0;      ///< of the first contact; of candidates that collide
   double closing_mps = 0.0;
   double end_speed_mps = 0.0;  ///< at the horizon; of candidates that do not
 
+  /// To what both are exact: less must not decide.
+  void set_clearance(double least_m, double least_s) noexcept;
   /// No other stands before it at the same score.
   bool is_best_of_its_score() const noexcept;
 };

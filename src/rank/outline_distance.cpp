@@ -1,8 +1,11 @@
 #include "rank/outline_distance.hpp"
 
+#include "base/convex_hull.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -101,9 +104,51 @@ std::vector<OutlineSegment> straightened(const std::vector<OutlinePiece>& all, s
   return segments;
 }
 
+using Ring = std::vector<Eigen::Vector2d>;
+
+/// Points of a mesh by height band, those where edges pass from one band to another included.
+std::array<Ring, profile_bands> points_by_band(const TriangleMesh& mesh, double ground_m) {
+  std::array<Ring, profile_bands> points;
+  const auto height = [ground_m](const Eigen::Vector3f& vertex) {
+    return static_cast<double>(vertex.z()) - ground_m;
+  };
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    for (std::size_t band = 0; band < profile_bands; ++band) {
+      const double z = height(vertex);
+      if (z < profile_edges_m[band] || z > profile_edges_m[band + 1]) continue;
+      points[band].emplace_back(vertex.head<2>().cast<double>());
+    }
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3f& a = mesh.vertices[triangle[k]];
+      const Eigen::Vector3f& b = mesh.vertices[triangle[(k + 1) % 3]];
+      for (std::size_t edge = 0; edge < profile_edges_m.size(); ++edge) {
+        const double from = height(a) - profile_edges_m[edge];
+        const double to = height(b) - profile_edges_m[edge];
+        if (!(from * to < 0.0)) continue;
+        const Eigen::Vector3d at = a.cast<double>() + from / (from - to) * (b - a).cast<double>();
+        if (edge > 0) points[edge - 1].emplace_back(at.head<2>());
+        if (edge < profile_bands) points[edge].emplace_back(at.head<2>());
+      }
+    }
+  }
+  return points;
+}
+
+/// The hull of a band as segments.
+std::vector<OutlineSegment> hull_of(Ring points) {
+  std::vector<OutlineSegment> segments;
+  const Ring hull = convex_hull(std::move(points));
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    segments.push_back({hull[i], hull[(i + 1) % hull.size()]});
+  }
+  return segments;
+}
+
 }  // namespace
 
-BodyOutline::BodyOutline(const Profile& profile) {
+BodyOutline::BodyOutline(const Profile& profile, const TriangleMesh* convex_mesh) {
   double low_x = nowhere_m;
   double low_y = nowhere_m;
   double high_x = -nowhere_m;
@@ -115,11 +160,15 @@ BodyOutline::BodyOutline(const Profile& profile) {
     high_y = std::max(high_y, y);
     radius_m_ = std::max(radius_m_, std::hypot(x, y));
   };
+  std::array<Ring, profile_bands> points;
+  if (convex_mesh != nullptr) points = points_by_band(*convex_mesh, profile.ground_m);
   for (std::size_t band = 0; band < profile_bands; ++band) {
     first_chain_[band] = static_cast<std::uint32_t>(chains_.size());
     const auto first_of_band = static_cast<std::uint32_t>(pieces_.size());
     for (const OutlineSegment& segment :
-         straightened(profile.pieces, profile.first[band], profile.first[band + 1])) {
+         convex_mesh != nullptr
+             ? hull_of(std::move(points[band]))
+             : straightened(profile.pieces, profile.first[band], profile.first[band + 1])) {
       const Eigen::Vector2d along = segment.to - segment.from;
       if (!(along.squaredNorm() > 0.0)) continue;
       pieces_.push_back({segment.from.x(), segment.from.y(), along.x(), along.y()});

@@ -2,6 +2,7 @@
 
 #include "crashrank/base/pose.hpp"
 #include "crashrank/mesh/profile.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <array>
 #include <cstddef>
@@ -25,7 +26,9 @@ PlanarPose planar_pose(const Pose& pose) noexcept;
 class BodyOutline {
 public:
   BodyOutline() = default;
-  explicit BodyOutline(const Profile& profile);
+  /// As the profile cuts it. With a mesh: its convex hull in each height band, which leaves out no
+  /// mirror, handlebar or arm; of a body without deep bays.
+  explicit BodyOutline(const Profile& profile, const TriangleMesh* convex_mesh = nullptr);
 
   /// Middle of the rectangle around all outlines, body coordinates, m.
   double middle_x() const noexcept { return middle_x_; }

@@ -12,6 +12,9 @@ using Eigen::Vector2d;
 /// Wheels that are nearer to a border than this are looked at every so often, m.
 constexpr double least_step_m = 0.05;
 
+/// Gaps between areas that are no wider than this each side are seams of a map, m.
+constexpr double seam_m = 0.05;
+
 std::array<Vector2d, 4> wheels_of(const Body& body, const Pose& pose) {
   const Footing& footing = body.footing;
   const Eigen::Vector3d& center = body.vehicle.center_m;
@@ -34,7 +37,7 @@ std::optional<RoadLeaving> find_leaving(const Road& road, const Body& body, cons
   const View<const Area> areas(road.drivable);
   const auto wheel_off = [&](double time_s) -> std::optional<Vector2d> {
     for (const Vector2d& wheel : wheels_of(body, plan.pose_at(time_s))) {
-      if (!holds(areas, wheel)) return wheel;
+      if (!holds(areas, wheel) && distance_to_border_m(areas, wheel) > seam_m) return wheel;
     }
     return std::nullopt;
   };

@@ -180,7 +180,8 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
       Result<Vehicle> made = vehicle_of(scenario.models[model], models[model]);
       if (!made) return made.error();
       described[model] = std::move(*made);
-      outlines[model] = std::make_shared<const BodyOutline>(*described[model]->profile);
+      outlines[model] = std::make_shared<const BodyOutline>(
+          *described[model]->profile, described[model]->movable() ? &models[model].mesh : nullptr);
     }
     body.vehicle = *described[model];
     body.outline = outlines[model];
@@ -190,7 +191,9 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   scene.ego.footing = footing_of(scene.ego.vehicle);
   scene.limits =
       ego_limits(scenario, static_cast<double>(models[ego->model].mesh.bounds().extent().x()),
-                 scene.ego.vehicle.center_m);
+                 scene.ego.vehicle.center_m,
+                 scene.ego.vehicle.wheelbase_m > 0.0 ? scene.ego.vehicle.rear_axle_x_m
+                                                     : std::numeric_limits<double>::quiet_NaN());
   scene.infeasible = options.infeasible;
   scene.road = scenario.road;
   scene.grip = scenario.grip;

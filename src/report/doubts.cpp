@@ -134,14 +134,35 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
         result.dropped.size() == 1 ? " is" : "s are", result.dropped.size() == 1 ? "it" : "them"));
   }
   if (ends.count > 0) {
-    doubts.push_back(fmt::format(
-        "{} before the horizon ({:g} s) while moving, and stands still from then on: {}",
-        ends.many("listed plan ends", "listed plans end"), scenario.horizon_s, ends.examples()));
+    doubts.push_back(
+        fmt::format("{} still from then on, which is more than the vehicle can do: {}",
+                    ends.many("listed plan ends before the horizon while moving, and stands",
+                              "listed plans end before the horizon while moving, and stand"),
+                    ends.examples()));
   }
   if (jumps.count > 0) {
     doubts.push_back(fmt::format("{} at another speed than the ego's {:.1f} m/s: {}",
                                  jumps.many("listed plan begins", "listed plans begin"), speed,
                                  jumps.examples()));
+  }
+}
+
+void doubt_road(const Scenario& scenario, const RankResult& result,
+                std::vector<std::string>& doubts) {
+  if (!scenario.road.ends() || result.ranking.empty()) return;
+  const auto leaves_at_once = [](const CandidateResult& ranked) {
+    return ranked.leaves_road && ranked.leaves_road->time_s == 0.0;
+  };
+  if (std::any_of(result.ranking.begin(), result.ranking.end(), leaves_at_once)) {
+    doubts.push_back(
+        "the ego begins beside the road, so that every plan leaves it at once; are road.drivable "
+        "and "
+        "the ego's pose in the same frame?");
+  } else if (result.ranking.front().leaves_road && result.measure == Measure::harm &&
+             scenario.road.harm_per_leaving == 0.0) {
+    doubts.push_back(
+        "the first place leaves the road, and what lies beside it counts as harmless; state "
+        "road.off_road.harm_per_leaving");
   }
 }
 
@@ -199,6 +220,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_crowds(result, doubts);
   doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
+  doubt_road(scenario, result, doubts);
   doubt_actors(scenario, doubts);
   doubt_fixed(scenario, result, doubts);
   detail::doubt_bodies(scenario, models, result, doubts);

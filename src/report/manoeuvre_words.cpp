@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 namespace crashrank::detail {
@@ -85,12 +87,17 @@ std::string tie_words(const CandidateResult& first, const CandidateResult& secon
   if (first.leaves_road.has_value() != second.leaves_road.has_value()) {
     return "it stays on the road";
   }
-  if (first.least_distance_m != second.least_distance_m) {
+  const auto differ = [](const std::optional<double>& p, const std::optional<double>& q,
+                         double enough) {
+    return std::round(100.0 * std::min(p.value_or(enough), enough)) !=
+           std::round(100.0 * std::min(q.value_or(enough), enough));
+  };
+  if (differ(first.least_distance_m, second.least_distance_m, enough_distance_m)) {
     return fmt::format("it stays further from all others, {} against {}",
                        distance_words(first.least_distance_m),
                        distance_words(second.least_distance_m));
   }
-  if (first.least_time_gap_s != second.least_time_gap_s) {
+  if (differ(first.least_time_gap_s, second.least_time_gap_s, enough_time_gap_s)) {
     return fmt::format("it leaves more time between it and others at one place, {} against {}",
                        gap_words(first.least_time_gap_s), gap_words(second.least_time_gap_s));
   }

@@ -17,12 +17,6 @@ constexpr double half_width_m = 16.0;
 constexpr double half_height_m = 10.0;
 constexpr double pixels_per_m = 20.0;
 
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  const Eigen::Vector2d u = b - a;
-  const Eigen::Vector2d v = c - a;
-  return u.x() * v.y() - u.y() * v.x();
-}
-
 Outline outline_of(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector2d> points;
   points.reserve(mesh.vertices.size());
@@ -145,28 +139,6 @@ std::string way(const Canvas& canvas, const Motion& motion, double until_s) {
 }
 
 }  // namespace
-
-Outline convex_hull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
-    return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
-  });
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  Outline hull;
-  const auto add_all = [&](auto begin, auto end) {
-    const std::size_t first = hull.size();
-    for (auto point = begin; point != end; ++point) {
-      while (hull.size() >= first + 2 && turn(hull.end()[-2], hull.back(), *point) <= 0.0) {
-        hull.pop_back();
-      }
-      hull.push_back(*point);
-    }
-    hull.pop_back();  // the other half begins with it
-  };
-  add_all(points.begin(), points.end());
-  add_all(points.rbegin(), points.rend());
-  return hull;
-}
 
 PlanView::PlanView(const Scenario& scenario, View<const Model> models, const RankResult& result)
     : scenario_(scenario), models_(models), result_(result) {

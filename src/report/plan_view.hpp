@@ -1,5 +1,6 @@
 #pragma once
 
+#include "base/convex_hull.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
@@ -14,10 +15,6 @@
 namespace crashrank::detail {
 
 using Outline = std::vector<Eigen::Vector2d>;
-
-/// Convex hull of points, counter-clockwise from the leftmost; points on its edges are left out.
-/// O(n log n).
-Outline convex_hull(std::vector<Eigen::Vector2d> points);
 
 /// Draws candidates from above at the moment of their first contact: outlines of all bodies near
 /// it, the ego's way there, what is damaged, the closing velocity, and where two others

@@ -176,7 +176,8 @@ std::string free_name(std::set<std::string>& taken, const std::string& wish) {
 
 Result<std::vector<Candidate>> make_all(const Scenario& scenario, double ego_length_m) {
   if (Status sound = detail::check_scenario(scenario); !sound) return sound.error();
-  const double wheelbase = detail::ego_limits(scenario, ego_length_m, {}).wheelbase_m;
+  const double wheelbase =
+      detail::ego_limits(scenario, ego_length_m, Eigen::Vector3d::Zero(), 0.0).wheelbase_m;
   std::vector<Candidate> candidates;
   std::set<std::string> names;
   for (std::size_t i = 0; i < scenario.listed.size(); ++i) {

@@ -62,91 +62,147 @@ double way_m(const Placed& from, const Placed& to) {
   return stretch * (to.at_m - from.at_m).norm();
 }
 
-/// Mean of the acceleration between three times, weighted towards the middle one.
-Vector2d mean_acceleration(const Placed& last, const Placed& middle, const Placed& next) {
-  const Vector2d before = (middle.at_m - last.at_m) / (middle.time_s - last.time_s);
-  const Vector2d after = (next.at_m - middle.at_m) / (next.time_s - middle.time_s);
-  return (after - before) / (0.5 * (next.time_s - last.time_s));
-}
+/// Three poses of a plan, the middle one listed, the others as far before and after it as those
+/// that are listed are apart, or several times as far.
+struct Window {
+  Placed last;
+  Placed middle;
+  Placed next;
 
-/// Steering of timed poses as it follows from three of them each time.
+  double before_s() const { return middle.time_s - last.time_s; }
+  double after_s() const { return next.time_s - middle.time_s; }
+  double half_s() const { return 0.5 * (next.time_s - last.time_s); }
+  double center_s() const { return 0.5 * (next.time_s + last.time_s); }
+
+  /// Mean of the acceleration, weighted towards the middle.
+  Vector2d acceleration() const {
+    return ((next.at_m - middle.at_m) / after_s() - (middle.at_m - last.at_m) / before_s()) /
+           half_s();
+  }
+  /// The same along its way.
+  double gain_mps2() const {
+    return (way_m(middle, next) / after_s() - way_m(last, middle) / before_s()) / half_s();
+  }
+  /// What coordinates that are rounded to a centimetre leave open of an acceleration.
+  double open_mps2() const {
+    constexpr double rounded_m = 0.01;
+    return rounded_m * (1.0 / after_s() + 1.0 / before_s()) / half_s();
+  }
+  double speed_mps() const {
+    return (way_m(last, middle) + way_m(middle, next)) / (2.0 * half_s());
+  }
+  double yaw_rate_radps() const {
+    return angle_between(last.heading_rad, next.heading_rad) / (2.0 * half_s());
+  }
+};
+
+/// Steering of timed poses as it follows from windows in their order.
 class Steering {
 public:
-  Steering(const EgoLimits& limits, double begin_s)
-      : limits_(limits), time_s_(begin_s - least_apart_s) {
-    if (std::isnan(limits.speed_mps)) time_s_ = begin_s;
-    if (!(std::abs(limits.speed_mps) >= least_steered_mps)) return;
-    angle_rad_ = std::atan(limits.wheelbase_m * limits.yaw_rate_radps / limits.speed_mps);
+  Steering(const EgoLimits& limits, double begin_s) : limits_(limits), time_s_(begin_s) {
+    known_ = std::abs(limits.speed_mps) >= least_steered_mps;
+    if (known_) angle_rad_ = angle_of(limits.yaw_rate_radps / limits.speed_mps);
   }
 
-  void follow(const Placed& last, const Placed& next, double time_s, double speed_mps,
-              ManoeuvreDemand& demand) {
-    if (std::abs(speed_mps) < least_steered_mps) return;
-    const double yaw_rate =
-        angle_between(last.heading_rad, next.heading_rad) / (next.time_s - last.time_s);
-    const double angle = std::atan(limits_.wheelbase_m * yaw_rate / speed_mps);
-    demand.steering = std::max(demand.steering, share(std::abs(angle), limits_.max_steering_rad));
-    const double apart_s = time_s - time_s_;
-    const bool is_first = !known_ && std::isnan(limits_.speed_mps);
-    if (!is_first && apart_s < least_apart_s - rounding_s) return;
-    known_ = true;
-    if (!is_first)
+  void follow(const Window& window, bool reverses, ManoeuvreDemand& demand) {
+    const double speed = window.speed_mps();
+    if (speed < least_steered_mps) return;
+    const double angle = angle_of(window.yaw_rate_radps() / (reverses ? -speed : speed));
+    demand.steering = std::max({demand.steering, share(std::abs(angle), limits_.max_steering_rad),
+                                slip_rad(window, reverses) / most_slip_rad});
+    const double apart_s = window.center_s() - time_s_;
+    if (known_ && apart_s < least_apart_s - rounding_s) return;
+    if (known_) {
       demand.steering_rate =
           std::max(demand.steering_rate,
                    share(std::abs(angle - angle_rad_) / apart_s, limits_.max_steering_rate_radps));
+    }
+    known_ = true;
     angle_rad_ = angle;
-    time_s_ = time_s;
+    time_s_ = window.center_s();
   }
 
 private:
+  /// A vehicle that steers its front wheels follows its rear axle but for a few degrees of slip.
+  static constexpr double most_slip_rad = 0.26;
+
+  double angle_of(double curvature_per_m) const {
+    return std::atan(limits_.wheelbase_m * curvature_per_m);
+  }
+  /// Between the way of the rear axle and the heading.
+  double slip_rad(const Window& window, bool reverses) const {
+    if (std::isnan(limits_.rear_axle_x_m)) return 0.0;
+    const double behind = limits_.center_m.x() - limits_.rear_axle_x_m;
+    const auto axle = [behind](const Placed& at) -> Vector2d {
+      return at.at_m - behind * Vector2d(std::cos(at.heading_rad), std::sin(at.heading_rad));
+    };
+    const Vector2d way = (reverses ? -1.0 : 1.0) * (axle(window.next) - axle(window.last));
+    const double heading = window.last.heading_rad +
+                           0.5 * angle_between(window.last.heading_rad, window.next.heading_rad);
+    return std::abs(angle_between(heading, std::atan2(way.y(), way.x())));
+  }
+
   const EgoLimits& limits_;
   double time_s_;
   double angle_rad_ = 0.0;
-  bool known_ = false;  ///< from poses
+  bool known_ = false;
 };
+
+void add_window(const Window& window, const EgoLimits& limits, double grip_mps2, Steering& steering,
+                ManoeuvreDemand& demand) {
+  const auto beyond = [&](double acceleration) {
+    return std::max(acceleration - window.open_mps2(), 0.0);
+  };
+  demand.grip = std::max(demand.grip, share(beyond(window.acceleration().norm()), grip_mps2));
+  const double gain = window.gain_mps2();
+  if (gain > 0.0) {
+    demand.engine = std::max(demand.engine, share(beyond(gain), limits.max_acceleration_mps2));
+  } else {
+    demand.brakes = std::max(
+        demand.brakes, share(beyond(-gain), std::min(grip_mps2, limits.max_deceleration_mps2)));
+  }
+  const Vector2d way = window.next.at_m - window.last.at_m;
+  const double heading = window.middle.heading_rad;
+  const bool reverses = way.dot(Vector2d(std::cos(heading), std::sin(heading))) < 0.0;
+  steering.follow(window, reverses, demand);
+}
+
+/// The last time at which a pose is listed.
+double last_pose_s(const Motion& motion) { return std::max(motion.rest_time(), 0.0); }
 
 ManoeuvreDemand demand_of_poses(const Motion& motion, const EgoLimits& limits,
                                 const FollowedWay& way) {
   ManoeuvreDemand demand;
+  // Shorter looks at the end of a plan would show nothing but its rounding.
+  constexpr double shortest_s = 0.1;
+  const double end_s = last_pose_s(motion);
+  const bool ends_early = end_s < way.until_s - rounding_s;
   const Placed first = placed_at(motion, 0.0, limits.center_m);
+  const bool speed_known = !std::isnan(limits.speed_mps);
   Steering steering(limits, first.time_s);
-  Placed middle = first;
-  double last_s = first.time_s;
-  double next_s = first.time_s;
-  for (; middle.time_s < way.until_s;
-       middle = placed_at(motion, motion.next_kink(middle.time_s), limits.center_m)) {
-    while (next_s - middle.time_s < least_apart_s - rounding_s) next_s = motion.next_kink(next_s);
-    if (!(next_s <= way.until_s)) break;
-    const bool begins = middle.time_s - first.time_s < least_apart_s - rounding_s;
-    if (begins && std::isnan(limits.speed_mps)) continue;
-    Placed last;
-    if (begins) {
-      last = placed_before(first, limits, least_apart_s - (middle.time_s - first.time_s));
-    } else {
-      for (double later_s = motion.next_kink(last_s);
-           middle.time_s - later_s >= least_apart_s - rounding_s;
-           later_s = motion.next_kink(last_s)) {
-        last_s = later_s;
-      }
-      last = placed_at(motion, last_s, limits.center_m);
-    }
-    const Placed next = placed_at(motion, next_s, limits.center_m);
-    const Vector2d acceleration = mean_acceleration(last, middle, next);
-    const Vector2d heading(std::cos(middle.heading_rad), std::sin(middle.heading_rad));
-    const double direction = (next.at_m - last.at_m).dot(heading) < 0.0 ? -1.0 : 1.0;
-    const double speed =
-        direction * (way_m(last, middle) + way_m(middle, next)) / (next.time_s - last.time_s);
+  double before_s = 0.0;  // since the pose before
+  double next_pose_s = 0.0;
+  for (double time_s = 0.0; time_s < way.until_s && time_s <= end_s; time_s = next_pose_s) {
+    next_pose_s = motion.next_kink(time_s);
+    const double to_next_s = next_pose_s <= end_s ? next_pose_s - time_s : 0.0;
+    const double spacing_s = std::max({before_s, to_next_s, shortest_s});
+    const double half_s =
+        spacing_s * std::max(std::ceil(least_apart_s / spacing_s - rounding_s), 1.0);
+    before_s = to_next_s;
+    double after_s = half_s;
+    if (time_s + half_s > end_s && !ends_early) after_s = std::min(half_s, end_s - time_s);
+    if (after_s < shortest_s - rounding_s) break;
+    if (time_s < half_s - rounding_s && !speed_known) continue;
+    Window window;
+    window.middle = placed_at(motion, time_s, limits.center_m);
+    window.next = placed_at(motion, time_s + after_s, limits.center_m);
+    window.next.time_s = time_s + after_s;
+    window.last = time_s < half_s - rounding_s
+                      ? placed_before(first, limits, half_s - time_s)
+                      : placed_at(motion, time_s - half_s, limits.center_m);
     const double grip =
-        middle.time_s >= way.off_road_from_s ? limits.off_road_grip_mps2 : limits.grip_mps2;
-    demand.grip = std::max(demand.grip, share(acceleration.norm(), grip));
-    const double gain = acceleration.dot(heading) * (speed < 0.0 ? -1.0 : 1.0);
-    if (gain > 0.0) {
-      demand.engine = std::max(demand.engine, share(gain, limits.max_acceleration_mps2));
-    } else {
-      demand.brakes =
-          std::max(demand.brakes, share(-gain, std::min(grip, limits.max_deceleration_mps2)));
-    }
-    steering.follow(last, next, middle.time_s, speed, demand);
+        time_s >= way.off_road_from_s ? limits.off_road_grip_mps2 : limits.grip_mps2;
+    add_window(window, limits, grip, steering, demand);
   }
   return demand;
 }
@@ -184,8 +240,8 @@ ManoeuvreDemand demand_of_path(const Candidate& candidate, const EgoLimits& limi
 
 }  // namespace
 
-EgoLimits ego_limits(const Scenario& scenario, double ego_length_m,
-                     const Eigen::Vector3d& center_m) {
+EgoLimits ego_limits(const Scenario& scenario, double ego_length_m, const Eigen::Vector3d& center_m,
+                     double rear_axle_x_m) {
   const ScenarioEgo& ego = scenario.ego;
   EgoLimits limits;
   limits.grip_mps2 = scenario.grip * standard_gravity_mps2;
@@ -201,6 +257,7 @@ EgoLimits ego_limits(const Scenario& scenario, double ego_length_m,
   limits.speed_mps = ego.speed_mps;
   limits.yaw_rate_radps = ego.yaw_rate_radps;
   limits.center_m = center_m;
+  limits.rear_axle_x_m = rear_axle_x_m;
   return limits;
 }
 

@@ -23,11 +23,12 @@ struct EgoLimits {
   double yaw_rate_radps = 0.0;
   /// Of the mass, body coordinates, m.
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+  double rear_axle_x_m = 0.0;  ///< body coordinates, m; NaN: not known
 };
 
 /// `ego_length_m` stands in for an absent wheelbase.
-EgoLimits ego_limits(const Scenario& scenario, double ego_length_m,
-                     const Eigen::Vector3d& center_m);
+EgoLimits ego_limits(const Scenario& scenario, double ego_length_m, const Eigen::Vector3d& center_m,
+                     double rear_axle_x_m);
 
 /// Over what part of its way a manoeuvre is followed.
 struct FollowedWay {
@@ -40,11 +41,13 @@ struct FollowedWay {
 /// Constant accelerations: exact, but that the front wheels are taken to be turned at once; with a
 /// yaw rate, the steering of its begin.
 ///
-/// Timed poses: second differences over poses at least 0.3 s apart each way, the ego's own motion
-/// before the first where it is known. A second difference is a weighted mean of the acceleration
-/// between the three times, so no demand is overstated but by what is wrong in the poses; peaks
-/// shorter than that are understated. Steering follows from the yaw rate over the speed, from 1 m/s
-/// on. O(poses), no allocation.
+/// Timed poses: differences of three poses as far apart as those that are listed, at least 0.3 s,
+/// the ego's own motion before the first where it is known, and standing after the last where that
+/// comes before the end. A second difference is a weighted mean of the acceleration between the
+/// three times, less what coordinates rounded to a centimetre leave open: no demand is overstated
+/// but by what else is wrong in the poses; peaks shorter than that are understated. Steering
+/// follows from the yaw rate over the speed, from 1 m/s on, and from the angle between heading and
+/// the rear axle's way. O(poses · log poses), no allocation.
 ManoeuvreDemand demand_of(const Candidate& candidate, const EgoLimits& limits,
                           const FollowedWay& way) noexcept;
 

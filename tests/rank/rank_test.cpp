@@ -200,7 +200,7 @@ TEST(Rank, WhatHitsNothingSaysSoAndRanksFirst) {
   scene.add_candidate("stop gently", -5.0);
   const RankResult result = scene.ranked();
   ASSERT_EQ(result.ranking.size(), 3U);
-  // Who stops further from the wall stands first.
+  // Equal in every respect, more than 5 m from the wall: the order of the candidates decides.
   EXPECT_EQ(result.candidates[result.ranking[0].candidate].name, "stop");
   EXPECT_EQ(result.candidates[result.ranking[1].candidate].name, "stop gently");
   EXPECT_EQ(result.candidates[result.ranking[2].candidate].name, "hit");

@@ -33,8 +33,9 @@ inline constexpr std::size_t max_sampled_futures = 10'000;
 /// What becomes of candidates that the vehicle cannot follow.
 enum class Infeasible {
   demote,  ///< they stand behind all feasible ones
-  drop,    ///< they are left out of the ranking, unless there is no feasible one
-  keep,    ///< they are ranked like all others
+  /// They are left out of a complete ranking, unless there is no feasible one; else as `demote`.
+  drop,
+  keep,  ///< they are ranked like all others
 };
 
 /// The name on the command line: "demote", "drop", "keep".
@@ -238,6 +239,10 @@ struct HorizonState {
 /// Nobody further away is looked for, m.
 inline constexpr double farthest_clearance_m = 50.0;
 
+/// Distances and time gaps beyond these are no safer: in the order they count alike. A choice.
+inline constexpr double enough_distance_m = 5.0;
+inline constexpr double enough_time_gap_s = 3.0;  ///< s
+
 /// What choosing a candidate leads to. Contacts, damage and grazes are those of the likeliest
 /// future; scores, samples and places are of all futures.
 struct CandidateResult {
@@ -418,7 +423,8 @@ struct RankResult {
 ///
 /// Order: what the ego can follow before what it cannot (RankOptions::infeasible); lower score;
 /// lower probability of a collision; in the likeliest future a clean miss before a graze, and
-/// staying on the road; the larger least distance and least time gap; in the likeliest future the
+/// staying on the road; the larger least distance, to a centimetre and up to `enough_distance_m`,
+/// and least time gap, to 10 ms and up to `enough_time_gap_s`; in the likeliest future the
 /// later first contact, the lower closing speed, or the lower speed at the horizon. Candidates that
 /// agree in all of these are tied: they share a place and are listed in the order of the
 /// candidates.

@@ -21,8 +21,7 @@ struct ManoeuvreDemand {
   }
 };
 
-/// A demand up to this still counts as feasible for a manoeuvre of timed poses: poses 0.1 s apart
-/// that are rounded to a centimetre leave so much open.
+/// A demand up to this still counts as feasible for a manoeuvre of timed poses.
 inline constexpr double feasible_posed_demand = 1.1;
 /// And for all others: rounding.
 inline constexpr double feasible_demand = 1.001;

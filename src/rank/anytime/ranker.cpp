@@ -419,11 +419,11 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
       if (told.in_race) result.in_race.push_back(told.candidate);
     }
     result.complete = answer.complete;
+    result.infeasible = s.scene.infeasible;
+    detail::drop_infeasible(result);
     result.proved = answer.proved;
     result.elapsed_s = answer.elapsed_s;
     result.effort = answer.effort;
-    result.infeasible = s.scene.infeasible;
-    detail::drop_infeasible(result);
     detail::tell_stability(result);
     return result;
   });
