@@ -348,8 +348,9 @@ void add_rank(CLI::App& app, Action& action) {
                    "expected]")
       ->type_name("RISK");
   add_count(*command, "--futures", options->futures,
-            "Futures that are drawn where combinations of predictions are more than 1024", 1,
-            max_sampled_futures);
+            "Futures that are drawn where combinations of predictions are more than 1024 or "
+            "positions, headings or speeds have errors",
+            1, max_sampled_futures);
   add_choice(
       *command, "--infeasible", options->infeasible,
       "What becomes of manoeuvres beyond grip, engine, brakes or steering: behind all others, "

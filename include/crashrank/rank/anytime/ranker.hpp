@@ -143,6 +143,7 @@ public:
 
   /// What moves on its own: the actors' plans by actor, of each its predictions in their order, or
   /// the motions that joint futures give it, then its own where a future does not replace it.
+  /// Errors of states are added to each of them inside, those that were drawn for the scenario.
   /// Stands until the next call.
   struct Plan {
     std::size_t actor = 0;     ///< index into Scenario::actors
@@ -153,11 +154,12 @@ public:
 
   /// The situation has changed: where the ego starts, and how each actor moves from now on, on each
   /// of its plans, in the order of `plans`: one for each actor where nothing is uncertain. Begins
-  /// by waiting for workers that an answer at its deadline left behind, then costs some µs an actor
-  /// and allocates nothing but for timed motions. Errors, and nothing changes: usage where their
-  /// number is another; bad_input for a pose or motion that is not finite or beyond
-  /// `scenario_limits` within the horizon; out_of_memory. `ego` tells how the ego moves now:
-  /// without it the demand of timed poses is told of their later part alone.
+  /// by waiting for workers that an answer at its deadline left behind, then costs some µs an
+  /// actor, of one whose state has errors so much for each future, and allocates nothing but for
+  /// timed motions. Errors, and nothing changes: usage where their number is another; bad_input for
+  /// a pose or motion that is not finite or beyond `scenario_limits` within the horizon;
+  /// out_of_memory. `ego` tells how the ego moves now: without it the demand of timed poses is told
+  /// of their later part alone.
   Status move_actors(const Pose& ego_start, View<const Motion> actors,
                      std::optional<EgoMotion> ego = std::nullopt) noexcept;
 
