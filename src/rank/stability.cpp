@@ -46,12 +46,17 @@ bool scores_differ(const CandidateResult& a, const CandidateResult& b) {
 void tell_stability(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   assign_places(result);
+  // What the vehicle cannot follow stands behind in every sample.
+  const auto demoted = [&](const CandidateResult& c) {
+    return !c.feasible && result.infeasible != Infeasible::keep;
+  };
   for (CandidateResult& c : ranking) {
     c.best_place = c.place - 1;
     c.worst_place = c.place - 1;
   }
   for (std::size_t i = 0; i + 1 < ranking.size(); ++i) {
-    ranking[i].separable = scores_differ(ranking[i], ranking[i + 1]);
+    ranking[i].separable =
+        demoted(ranking[i]) != demoted(ranking[i + 1]) || scores_differ(ranking[i], ranking[i + 1]);
   }
   if (!result.complete) {
     places_by_intervals(ranking);
@@ -70,6 +75,7 @@ void tell_stability(RankResult& result) {
     std::iota(order.begin(), order.end(), std::size_t{0});
     // Where a sample tells no difference, the ranking's own order stands.
     std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
+      if (demoted(ranking[p]) != demoted(ranking[q])) return demoted(ranking[q]);
       return ranking[p].sample_scores[sample] < ranking[q].sample_scores[sample];
     });
     std::size_t place = 0;
@@ -85,6 +91,7 @@ void tell_stability(RankResult& result) {
   }
   const std::size_t counted = range_sample_count(result);
   for (std::size_t place = 0; place + 1 < known; ++place) {
+    if (demoted(ranking[place]) != demoted(ranking[place + 1])) continue;
     std::size_t turned = 0;
     for (std::size_t sample = 0; sample < samples; ++sample) {
       if (is_numerical(result.samples[sample])) continue;

@@ -115,7 +115,7 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     }
   }
   if (slips.count > 0) {
-    const bool kept = result.infeasible == Infeasible::keep;
+    const bool kept = result.infeasible == Infeasible::keep || slips.count == result.ranking.size();
     doubts.push_back(fmt::format(
         "{}: {}",
         kept ? slips.many("manoeuvre asks for more than the vehicle can do and is ranked like all "

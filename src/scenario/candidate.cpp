@@ -74,10 +74,12 @@ Result<Candidate> listed_candidate(const Scenario& scenario, std::size_t index, 
                        curvature);
 }
 
-// Straight ahead, with at least half of the deceleration that can be had.
+// Straight ahead, with at least half of the deceleration that can be had, and no more than that.
 bool brakes_straight(const Candidate& candidate, const Scenario& scenario) {
   const double deceleration = -candidate.acceleration_mps2 * direction_of(scenario.ego.speed_mps);
-  return candidate.curvature_per_m == 0.0 && deceleration >= 0.5 * full_braking_mps2(scenario);
+  const double full = full_braking_mps2(scenario);
+  return candidate.curvature_per_m == 0.0 && deceleration >= 0.5 * full &&
+         deceleration <= feasible_demand * full;
 }
 
 double level(std::size_t index, std::size_t count) {

@@ -23,7 +23,7 @@ struct ManoeuvreDemand {
 
 /// A demand up to this still counts as feasible for a manoeuvre of timed poses.
 inline constexpr double feasible_posed_demand = 1.1;
-/// And for all others: rounding.
-inline constexpr double feasible_demand = 1.001;
+/// And for all others: stated numbers are rounded, as 8 m/s² for a grip of 0.8.
+inline constexpr double feasible_demand = 1.05;
 
 }  // namespace crashrank
