@@ -129,14 +129,20 @@ private:
   double angle_of(double curvature_per_m) const {
     return std::atan(limits_.wheelbase_m * curvature_per_m);
   }
-  /// Between the way of the rear axle and the heading.
+  /// Between the heading and the way of the origin or of the rear axle, whichever slips less: poses
+  /// are those of one or of the other.
   double slip_rad(const Window& window, bool reverses) const {
-    if (std::isnan(limits_.rear_axle_x_m)) return 0.0;
-    const double behind = limits_.center_m.x() - limits_.rear_axle_x_m;
-    const auto axle = [behind](const Placed& at) -> Vector2d {
-      return at.at_m - behind * Vector2d(std::cos(at.heading_rad), std::sin(at.heading_rad));
+    const double of_origin = slip_rad(window, reverses, limits_.center_m.x());
+    if (std::isnan(limits_.rear_axle_x_m)) return of_origin;
+    return std::min(of_origin,
+                    slip_rad(window, reverses, limits_.center_m.x() - limits_.rear_axle_x_m));
+  }
+  /// Of the point so far behind the centre of mass.
+  static double slip_rad(const Window& window, bool reverses, double behind_m) {
+    const auto point = [behind_m](const Placed& at) -> Vector2d {
+      return at.at_m - behind_m * Vector2d(std::cos(at.heading_rad), std::sin(at.heading_rad));
     };
-    const Vector2d way = (reverses ? -1.0 : 1.0) * (axle(window.next) - axle(window.last));
+    const Vector2d way = (reverses ? -1.0 : 1.0) * (point(window.next) - point(window.last));
     const double heading = window.last.heading_rad +
                            0.5 * angle_between(window.last.heading_rad, window.next.heading_rad);
     return std::abs(angle_between(heading, std::atan2(way.y(), way.x())));
@@ -170,11 +176,27 @@ void add_window(const Window& window, const EgoLimits& limits, double grip_mps2,
 /// The last time at which a pose is listed.
 double last_pose_s(const Motion& motion) { return std::max(motion.rest_time(), 0.0); }
 
+/// Shorter looks at a plan would show nothing but its rounding.
+constexpr double shortest_s = 0.1;
+
+/// How far apart poses are around one of them, from those to its neighbours, 0 without one. A far
+/// neighbour counts little: over a long time a sudden stop would look gentle.
+double spacing_of(double before_s, double after_s) {
+  const double larger = std::max(before_s, after_s);
+  const double smaller = std::min(before_s, after_s);
+  return std::max(smaller > 0.0 ? std::min(larger, 2.0 * smaller) : larger, shortest_s);
+}
+
+/// Chords of so wide a turn tell nothing of it.
+bool is_too_wide(const Window& window) {
+  constexpr double widest_rad = 0.8;
+  return std::abs(angle_between(window.last.heading_rad, window.middle.heading_rad)) > widest_rad ||
+         std::abs(angle_between(window.middle.heading_rad, window.next.heading_rad)) > widest_rad;
+}
+
 ManoeuvreDemand demand_of_poses(const Motion& motion, const EgoLimits& limits,
                                 const FollowedWay& way) {
   ManoeuvreDemand demand;
-  // Shorter looks at the end of a plan would show nothing but its rounding.
-  constexpr double shortest_s = 0.1;
   const double end_s = last_pose_s(motion);
   const bool ends_early = end_s < way.until_s - rounding_s;
   const Placed first = placed_at(motion, 0.0, limits.center_m);
@@ -185,7 +207,7 @@ ManoeuvreDemand demand_of_poses(const Motion& motion, const EgoLimits& limits,
   for (double time_s = 0.0; time_s < way.until_s && time_s <= end_s; time_s = next_pose_s) {
     next_pose_s = motion.next_kink(time_s);
     const double to_next_s = next_pose_s <= end_s ? next_pose_s - time_s : 0.0;
-    const double spacing_s = std::max({before_s, to_next_s, shortest_s});
+    const double spacing_s = spacing_of(before_s, to_next_s);
     const double half_s =
         spacing_s * std::max(std::ceil(least_apart_s / spacing_s - rounding_s), 1.0);
     before_s = to_next_s;
@@ -202,7 +224,7 @@ ManoeuvreDemand demand_of_poses(const Motion& motion, const EgoLimits& limits,
                       : placed_at(motion, time_s - half_s, limits.center_m);
     const double grip =
         time_s >= way.off_road_from_s ? limits.off_road_grip_mps2 : limits.grip_mps2;
-    add_window(window, limits, grip, steering, demand);
+    if (!is_too_wide(window)) add_window(window, limits, grip, steering, demand);
   }
   return demand;
 }

@@ -111,10 +111,13 @@ TEST(Demand, OfPosesIsThatOfTheirPathAndNeverMore) {
     EXPECT_LE(ranked.demand.grip, hardest * 1.001 + 1e-9);
     // Where it brakes to standstill, or curves more and more, the last and the first part of a
     // second are in the mean.
-    EXPECT_GE(ranked.demand.grip, 0.6 * hardest);
+    // What a centimetre may change is taken off.
+    constexpr double open_mps2 = 0.25;
+    EXPECT_GE(ranked.demand.grip, 0.6 * hardest - open_mps2 / whole);
     if (along > 0.0) {
       EXPECT_LE(ranked.demand.engine, 1.001 * along / scenario.ego.max_acceleration_mps2);
-      EXPECT_GE(ranked.demand.engine, 0.85 * along / scenario.ego.max_acceleration_mps2);
+      EXPECT_GE(ranked.demand.engine,
+                (0.85 * along - open_mps2) / scenario.ego.max_acceleration_mps2);
     }
     const double angle = std::atan(0.6 * 4.0 * arc.curvature_per_m);
     EXPECT_NEAR(ranked.demand.steering, std::abs(angle) / scenario.ego.max_steering_rad,
