@@ -59,10 +59,10 @@ struct SceneContact {
   /// It goes on where the contact law ended an earlier contact of the two, which is validated as
   /// far as that end: no part of that one's event.
   bool goes_on = false;
-  /// With the body that the chain's first body meets first. Where other fixed bodies press more, the
-  /// contact is theirs.
+  /// With the body that the chain's first body meets first. Where other fixed bodies press more,
+  /// the contact is theirs.
   bool is_first = false;
-  ContactBody given_a;    ///< as it began
+  ContactBody given_a;  ///< as it began
   ContactBody given_b;
   ContactOutcome outcome;
   /// Bodies that nothing moves and that pressed on the other body: the first few.

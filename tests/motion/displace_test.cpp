@@ -58,10 +58,8 @@ TEST(Displace, TimedPosesMoveAsOneBody) {
 TEST(Displace, TimedPosesGainTheSpeedWhileTheyMove) {
   // 4 m/s along y for two seconds, one second of rest, then 1 m/s backwards.
   const double left = 0.5 * std::numbers::pi;
-  const std::vector<TimedPose> poses{{0, at(0, 0, left)},
-                                     {2, at(0, 8, left)},
-                                     {3, at(0, 8, left)},
-                                     {5, at(0, 6, left)}};
+  const std::vector<TimedPose> poses{
+      {0, at(0, 0, left)}, {2, at(0, 8, left)}, {3, at(0, 8, left)}, {5, at(0, 6, left)}};
   const Motion faster = displaced(*Motion::timed(poses), {0, 0, 0, 1.5});
   EXPECT_NEAR(faster.pose_at(2).translation.y(), 11.0, 1e-12);
   EXPECT_NEAR(faster.pose_at(3).translation.y(), 11.0, 1e-12);
@@ -79,8 +77,8 @@ TEST(Displace, NothingReversesAndWhatStandsStays) {
     const Motion braked = displaced(TurnMotion{at(1, 1), 5.0, 0.3, acceleration}, slower);
     EXPECT_EQ(braked.pose_at(4).translation, at(1, 1).translation);
     EXPECT_EQ(braked.rest_time(), 0.0);
-    const Motion reversing = displaced(TurnMotion{at(1, 1), -5.0, 0.3, -acceleration},
-                                       {0.0, 0.0, 0.0, 20.0});
+    const Motion reversing =
+        displaced(TurnMotion{at(1, 1), -5.0, 0.3, -acceleration}, {0.0, 0.0, 0.0, 20.0});
     EXPECT_EQ(reversing.pose_at(4).translation, at(1, 1).translation);
   }
   const Motion standing = displaced(TurnMotion{at(1, 1), 0.0, 0.0, 0.0}, {0.5, 0.0, 0.0, 3.0});
@@ -91,9 +89,10 @@ TEST(Displace, NothingReversesAndWhatStandsStays) {
 }
 
 TEST(Displace, NoErrorChangesNoBit) {
-  for (const Motion& motion : {Motion(ArcMotion{at(4, -2, 0.3), 9.0, 0.05, -3.0}),
-                               Motion(FreeMotion{at(1, 1, 2), {{1, 2, 0}, {0, 0, 1}}}),
-                               *Motion::timed(std::vector<TimedPose>{{0, at(0, 0)}, {1, at(1, 2)}})}) {
+  for (const Motion& motion :
+       {Motion(ArcMotion{at(4, -2, 0.3), 9.0, 0.05, -3.0}),
+        Motion(FreeMotion{at(1, 1, 2), {{1, 2, 0}, {0, 0, 1}}}),
+        *Motion::timed(std::vector<TimedPose>{{0, at(0, 0)}, {1, at(1, 2)}})}) {
     const Motion same = displaced(motion, {});
     for (const double t : {0.0, 0.7, 5.0}) {
       EXPECT_EQ(same.pose_at(t).translation, motion.pose_at(t).translation);
