@@ -60,7 +60,11 @@ struct StateUncertainty {
 
   /// Whether there is an error at all.
   bool any() const noexcept { return position_m > 0.0 || heading_rad > 0.0 || speed_mps > 0.0; }
-  bool operator==(const StateUncertainty&) const = default;
+  /// Whether all are the same.
+  bool operator==(const StateUncertainty& other) const noexcept {
+    return position_m == other.position_m && heading_rad == other.heading_rad &&
+           speed_mps == other.speed_mps;
+  }
 };
 
 /// The ego vehicle at time 0.
