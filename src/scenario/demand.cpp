@@ -22,7 +22,7 @@ constexpr double rounding_s = 1e-9;
 // 0.64.
 constexpr double wheelbase_per_length = 0.6;
 
-double share(double demand, double limit) { return demand / std::max(limit, least_limit); }
+double demanded(double demand, double limit) { return demand / std::max(limit, least_limit); }
 
 double angle_between(double from_rad, double to_rad) {
   return std::remainder(to_rad - from_rad, 6.283185307179586);
@@ -108,14 +108,15 @@ public:
     const double speed = window.speed_mps();
     if (speed < least_steered_mps) return;
     const double angle = angle_of(window.yaw_rate_radps() / (reverses ? -speed : speed));
-    demand.steering = std::max({demand.steering, share(std::abs(angle), limits_.max_steering_rad),
-                                slip_rad(window, reverses) / most_slip_rad});
+    demand.steering =
+        std::max({demand.steering, demanded(std::abs(angle), limits_.max_steering_rad),
+                  slip_rad(window, reverses) / most_slip_rad});
     const double apart_s = window.center_s() - time_s_;
     if (known_ && apart_s < least_apart_s - rounding_s) return;
     if (known_) {
-      demand.steering_rate =
-          std::max(demand.steering_rate,
-                   share(std::abs(angle - angle_rad_) / apart_s, limits_.max_steering_rate_radps));
+      demand.steering_rate = std::max(
+          demand.steering_rate,
+          demanded(std::abs(angle - angle_rad_) / apart_s, limits_.max_steering_rate_radps));
     }
     known_ = true;
     angle_rad_ = angle;
@@ -159,13 +160,13 @@ void add_window(const Window& window, const EgoLimits& limits, double grip_mps2,
   const auto beyond = [&](double acceleration) {
     return std::max(acceleration - window.open_mps2(), 0.0);
   };
-  demand.grip = std::max(demand.grip, share(beyond(window.acceleration().norm()), grip_mps2));
+  demand.grip = std::max(demand.grip, demanded(beyond(window.acceleration().norm()), grip_mps2));
   const double gain = window.gain_mps2();
   if (gain > 0.0) {
-    demand.engine = std::max(demand.engine, share(beyond(gain), limits.max_acceleration_mps2));
+    demand.engine = std::max(demand.engine, demanded(beyond(gain), limits.max_acceleration_mps2));
   } else {
     demand.brakes = std::max(
-        demand.brakes, share(beyond(-gain), std::min(grip_mps2, limits.max_deceleration_mps2)));
+        demand.brakes, demanded(beyond(-gain), std::min(grip_mps2, limits.max_deceleration_mps2)));
   }
   const Vector2d way = window.next.at_m - window.last.at_m;
   const double heading = window.middle.heading_rad;
@@ -235,13 +236,13 @@ ManoeuvreDemand demand_of_path(const Candidate& candidate, const EgoLimits& limi
   ManoeuvreDemand demand;
   const Motion& motion = candidate.motion;
   const double road_s = std::min(way.until_s, way.off_road_from_s);
-  demand.grip = share(motion.bound(0.0, road_s).acceleration_mps2, limits.grip_mps2);
+  demand.grip = demanded(motion.bound(0.0, road_s).acceleration_mps2, limits.grip_mps2);
   double grip = limits.grip_mps2;
   if (way.off_road_from_s < way.until_s) {
     grip = std::min(grip, limits.off_road_grip_mps2);
-    demand.grip = std::max(demand.grip,
-                           share(motion.bound(way.off_road_from_s, way.until_s).acceleration_mps2,
-                                 limits.off_road_grip_mps2));
+    demand.grip = std::max(
+        demand.grip, demanded(motion.bound(way.off_road_from_s, way.until_s).acceleration_mps2,
+                              limits.off_road_grip_mps2));
   }
   Pose pose;
   Velocity velocity;
@@ -249,14 +250,14 @@ ManoeuvreDemand demand_of_path(const Candidate& candidate, const EgoLimits& limi
   const double speed = velocity.linear_mps.dot(pose.rotation.col(0));
   const double gain = candidate.acceleration_mps2 * (speed < 0.0 ? -1.0 : 1.0);
   if (gain > 0.0) {
-    demand.engine = share(gain, limits.max_acceleration_mps2);
+    demand.engine = demanded(gain, limits.max_acceleration_mps2);
   } else if (speed != 0.0) {
     const bool brakes_off_road = motion.rest_time() > way.off_road_from_s;
-    demand.brakes = share(
+    demand.brakes = demanded(
         -gain, std::min(brakes_off_road ? grip : limits.grip_mps2, limits.max_deceleration_mps2));
   }
   const double angle = std::atan(limits.wheelbase_m * candidate.curvature_per_m);
-  demand.steering = share(std::abs(angle), limits.max_steering_rad);
+  demand.steering = demanded(std::abs(angle), limits.max_steering_rad);
   return demand;
 }
 
