@@ -1,3 +1,4 @@
+#include "oracle/measured_acceleration.hpp"
 #include "oracle/random.hpp"
 #include "rank/scenes.hpp"
 
@@ -41,13 +42,6 @@ void add_planned(Scene& scene, const std::string& name, std::vector<TimedPose> p
   scene.add_candidate(name, 0.0).poses = std::move(poses);
 }
 
-double measured_acceleration(const Motion& motion, double t) {
-  constexpr double h = 1e-5;
-  const Eigen::Vector3d change =
-      motion.velocity_at(t + h).linear_mps - motion.velocity_at(t - h).linear_mps;
-  return change.norm() / (2.0 * h);
-}
-
 TEST(Demand, OfPathsIsTheHardestAcceleration) {
   double hardest_of_grids = 0.0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -69,7 +63,7 @@ TEST(Demand, OfPathsIsTheHardestAcceleration) {
       for (int k = 0; k <= 4000; ++k) {
         const double t = 1e-4 + (until - 2e-4) * k / 4000.0;
         if (std::abs(t - candidate.motion.rest_time()) < 1e-3) continue;
-        hardest = std::max(hardest, measured_acceleration(candidate.motion, t) / whole);
+        hardest = std::max(hardest, oracle::measured_acceleration(candidate.motion, t) / whole);
       }
       EXPECT_NEAR(ranked.demand.grip, hardest, 2e-3 * (1.0 + hardest)) << candidate.name;
       if (candidate.origin != CandidateOrigin::grid) continue;
@@ -106,7 +100,7 @@ TEST(Demand, OfPosesIsThatOfTheirPathAndNeverMore) {
     const Motion motion = arc;
     for (double t = 0.0; t < 3.0; t += 0.01) {
       if (t > motion.rest_time()) break;
-      hardest = std::max(hardest, measured_acceleration(motion, t) / whole);
+      hardest = std::max(hardest, oracle::measured_acceleration(motion, t) / whole);
     }
     EXPECT_LE(ranked.demand.grip, hardest * 1.001 + 1e-9);
     // Where it brakes to standstill, or curves more and more, the last and the first part of a

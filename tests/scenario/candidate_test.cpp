@@ -1,5 +1,6 @@
 #include "crashrank/scenario/candidate.hpp"
 
+#include "oracle/measured_acceleration.hpp"
 #include "oracle/random.hpp"
 
 #include <gtest/gtest.h>
@@ -36,14 +37,6 @@ ListedCandidate listed(const std::string& name, double acceleration_mps2) {
   return candidate;
 }
 
-// The acceleration of the body's origin, from differences of its velocity.
-double measured_acceleration(const Motion& motion, double t) {
-  constexpr double h = 1e-5;
-  const Eigen::Vector3d change =
-      motion.velocity_at(t + h).linear_mps - motion.velocity_at(t - h).linear_mps;
-  return change.norm() / (2.0 * h);
-}
-
 TEST(CandidateGrid, StaysInsideTheGripCircleUntilTheHorizon) {
   double hardest = 0.0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -61,7 +54,7 @@ TEST(CandidateGrid, StaysInsideTheGripCircleUntilTheHorizon) {
         const double t = scenario.horizon_s * k / 40.0;
         // Standing still begins with a jump of the acceleration, which differences blur.
         if (std::abs(t - candidate.motion.rest_time()) < 1e-3) continue;
-        const double asked = measured_acceleration(candidate.motion, t);
+        const double asked = oracle::measured_acceleration(candidate.motion, t);
         ASSERT_LE(asked, limit * (1.0 + 1e-6) + 1e-6) << candidate.name << " at " << t;
         hardest = std::max(hardest, asked / limit);
       }
