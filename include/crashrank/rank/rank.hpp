@@ -129,8 +129,8 @@ struct Contact {
   /// contact, in the other body's frame, m. Both bodies' crush together in a square hit; more where
   /// they slide past each other.
   double crush_m = 0.0;
-  /// What it damages of the ego, by further bodies that nothing moves and that the ego presses on
-  /// in the same contact included.
+  /// What it damages of the ego, by fixed bodies that adjoin `actor` and that the ego presses on in
+  /// the same contact included.
   BodyDamage ego;
   BodyDamage other;          ///< and of `actor`
   ContactSeverity severity;  ///< the crash that begins with it
@@ -214,7 +214,7 @@ struct CandidateResult {
   /// Those between others that follow from it, in the order of their begins.
   std::vector<FurtherContact> further;
   /// The scene had more bodies close together, or more contacts, than it follows or reports: 64
-  /// contacts in all, 64 pairs of bodies, 24 contacts at once, of a body the 32 nearest within 5 m.
+  /// contacts in all, 64 pairs of bodies, 40 contacts at once, of a body the 32 nearest within 5 m.
   bool crowded = false;
   std::vector<Graze> grazes;  ///< before the first contact, in time order
   /// The ego's damage from all contacts together; a triangle hit twice counts once.
