@@ -175,6 +175,18 @@ TEST(FixedBodies, PartsOfAWallActAsOneBesideAPole) {
   }
 }
 
+// The car's front reaches the middle one of five parts alone.
+TEST(FixedBodies, AWallIsNamedAfterThePartThatIsTouchedFirst) {
+  Scene scene = ice();
+  add_pole(scene);
+  add_wall(scene, 5);
+  const RankResult result = scene.ranked();
+  const auto wall = contacts_with(result, 1, 5);
+  ASSERT_FALSE(wall.empty());
+  for (const Contact* contact : wall) EXPECT_EQ(contact->actor, 3U);
+  EXPECT_FALSE(wall.front()->other.triangles.empty());
+}
+
 // A pole in the corner of an L lies inside its bounding rectangle and touches neither arm.
 TEST(FixedBodies, AnAngleOfWallsDoesNotAdjoinWhatStandsBetweenItsArms) {
   TriangleMesh angle = box_mesh({0.5F, 4.0F, 1.5F}, 2, {0.0F, 0.0F, 1.5F});

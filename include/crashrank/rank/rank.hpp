@@ -107,7 +107,8 @@ struct ContactSeverity {
 /// after the first, which the simulation finds, `gap_m` is 0, `point_m` the mean point of the force
 /// and `normal` the direction of `closing`.
 struct Contact {
-  std::size_t actor = 0;                     ///< index into Scenario::actors
+  /// Index into Scenario::actors; of adjoining fixed bodies the one that was touched first.
+  std::size_t actor = 0;
   ImpactState state = ImpactState::contact;  ///< how the bodies meet
   double time_of_impact_s = 0.0;             ///< from the decision, s
   double gap_m = 0.0;                        ///< between the surfaces then, at most the tolerance
