@@ -85,6 +85,18 @@ bool SceneRun::lists(std::size_t i, std::size_t j) const {
   return std::find(begin, end, j) != end;
 }
 
+/// Whether a fixed body adjoins one of those that press in a contact. What stands apart has its own
+/// rebound, end, time and damage.
+bool SceneRun::adjoins_any(std::size_t i, const ContactRun& run) const {
+  const View<const std::uint32_t> adjoins = bodies_[i].adjoins;
+  if (adjoins.empty()) return false;
+  for (const std::uint32_t pair : run.pairs()) {
+    const std::uint32_t number = bodies_[memory_.pairs[pair].second].number;
+    if (std::find(adjoins.begin(), adjoins.end(), number) != adjoins.end()) return true;
+  }
+  return false;
+}
+
 /// The nearest bodies within `listed_m`.
 void SceneRun::list_near(std::size_t i) {
   Member& m = members_[i];

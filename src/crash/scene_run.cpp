@@ -225,13 +225,11 @@ void SceneRun::open(std::size_t i, std::size_t j) {
   if (in_memory) pair.meet_again(steps_);
   const std::size_t first = pair.first;
   const std::size_t second = pair.second;
-  if (members_[second].state == State::fixed) {
-    for (const std::uint32_t k : live_) {
-      ContactRun& run = runs_[k];
-      if (run.first() != first || members_[run.second()].state != State::fixed) continue;
-      if (!run.add(index)) crowded_ = true;
-      return;
-    }
+  for (const std::uint32_t k : live_) {
+    ContactRun& run = runs_[k];
+    if (run.first() != first || !adjoins_any(second, run)) continue;
+    if (!run.add(index)) crowded_ = true;
+    return;
   }
   const std::uint32_t k = spare_.back();
   spare_.pop_back();

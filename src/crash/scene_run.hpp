@@ -25,6 +25,10 @@ struct SceneBody {
   double brake = 0.02;               ///< share of grip with which it brakes then, [0, 1]
   /// Added to the plan's positions, m.
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+  std::uint32_t number = 0;  ///< by which `adjoins` refers to it
+  /// Numbers of the fixed bodies that this fixed body adjoins; symmetric. Those that press on a
+  /// body at the same time are one contact, all other fixed bodies are contacts of their own.
+  View<const std::uint32_t> adjoins;
 };
 
 struct SceneOptions {
@@ -54,7 +58,7 @@ struct SceneContact {
   static constexpr double faded_s = 0.1;
 
   std::uint32_t a = 0;   ///< index of the body that moves, of two the lower
-  std::uint32_t b = 0;   ///< and of the other; of several that nothing moves the one pressed most
+  std::uint32_t b = 0;   ///< and of the other; of several that adjoin the one pressed most
   double begin_s = 0.0;  ///< on the plans' clock: of its first force
   /// It goes on where the contact law ended an earlier contact of the two, which is validated as
   /// far as that end: no part of that one's event.
@@ -65,7 +69,7 @@ struct SceneContact {
   ContactBody given_a;  ///< as it began
   ContactBody given_b;
   ContactOutcome outcome;
-  /// Bodies that nothing moves and that pressed on the other body: the first few.
+  /// Fixed bodies that adjoin each other and pressed on the other body: the first few.
   static constexpr std::size_t most_pressed = 8;
   std::array<std::uint32_t, most_pressed> pressed{};
   std::size_t pressed_count = 0;
@@ -83,7 +87,7 @@ class SceneRun {
 public:
   static constexpr std::size_t most_contacts = 64;  ///< told; further ones act untold
   static constexpr std::size_t most_pairs = 64;     ///< of bodies; further ones do not act
-  static constexpr std::size_t most_at_once = 24;   ///< contacts; further ones wait
+  static constexpr std::size_t most_at_once = 40;   ///< contacts; further ones wait
   static constexpr std::size_t most_near = 32;      ///< bodies within a few metres of one
 
   /// Room for scenes of so many bodies with so many pieces of outline each.
@@ -176,6 +180,7 @@ private:
   void open_contacts();
   void open(std::size_t i, std::size_t j);
   ContactRun* live_with(std::size_t i, std::size_t j);
+  bool adjoins_any(std::size_t i, const ContactRun& run) const;
   std::uint32_t pair_of(std::size_t i, std::size_t j, bool& in_memory);
   void close(ContactRun& run);
   void tell(const ContactRun& run, const ContactOutcome& outcome, bool swapped);

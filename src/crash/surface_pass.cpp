@@ -41,7 +41,8 @@ Carrier carrier(const PressedBody& from, const PressedBody& to) {
   return carrier;
 }
 
-/// Whether a point (body axes) lies inside an outline of the band: crossings of a ray along x.
+}  // namespace
+
 bool inside_outline(const Vehicle& vehicle, std::size_t band, float x, float y) {
   const Silhouettes& s = vehicle.silhouettes;
   if (x < s.min_x || x > s.max_x || y < s.min_y || y > s.max_y) return false;
@@ -60,8 +61,6 @@ bool inside_outline(const Vehicle& vehicle, std::size_t band, float x, float y) 
   }
   return inside;
 }
-
-}  // namespace
 
 bool is_hidden(const PressedBody& owner, const OutlinePiece& piece, std::size_t band,
                const PassSettings& settings) {

@@ -56,6 +56,9 @@ struct PassSettings {
   std::size_t self = 0;  ///< the pressing body's place among them
 };
 
+/// Whether a point (body axes, m) lies inside an outline of the band: O(pieces of the band).
+bool inside_outline(const Vehicle& vehicle, std::size_t band, float x, float y);
+
 /// Forces of the pieces of `pusher` on the material of `pressed`, which yields. `moved_m` is how
 /// far points of the two have moved against each other since the last pass.
 void press_pieces(const PressedBody& pusher, const PressedBody& pressed,

@@ -78,16 +78,19 @@ void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Mot
   first_ = &first;
   bodies_.clear();
   actors_.clear();
-  const auto add = [&](std::size_t index, const Vehicle& vehicle, const Motion& motion) {
+  const auto add = [&](std::size_t index, std::size_t number, const Vehicle& vehicle,
+                       const Motion& motion) {
     SceneBody body;
     body.vehicle = &vehicle;
     body.plan = &motion;
     body.brake = brake_after_contact;
     body.footing = vehicle.movable() ? &body_of(scene, index).footing : nullptr;
+    body.number = static_cast<std::uint32_t>(number);
+    if (index != ego_body) body.adjoins = scene.adjoining[number];
     bodies_.push_back(body);
     actors_.push_back(index);
   };
-  add(ego_body, scene.ego.vehicle, plan);
+  add(ego_body, scene.actors.size(), scene.ego.vehicle, plan);
   std::size_t partner = 0;
   SceneBody& ego = bodies_.front();
   const double braking = -candidate.acceleration_mps2 / (scene.grip * standard_gravity_mps2);
@@ -102,10 +105,10 @@ void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Mot
     const Motion& motion = scene.futures.plans[followed].motion;
     const std::size_t joined = scene.joined_of[i];
     if (joined == Scene::alone) {
-      add(i, scene.actors[i].vehicle, motion);
+      add(i, i, scene.actors[i].vehicle, motion);
     } else if (scene.joined[joined].members.front() == i) {
       const bool hit = scene.joined_of[first.actor] == joined;
-      add(hit ? first.actor : i, scene.joined[joined].vehicle, motion);
+      add(hit ? first.actor : i, i, scene.joined[joined].vehicle, motion);
     }
   }
   sort_actors(first.time_of_impact_s);

@@ -30,8 +30,8 @@ public:
 
   /// Contacts with a force that are over.
   View<const SceneContact> contacts() const { return run_.contacts(); }
-  /// The bodies of those: an actor, or the ego; of joined bodies the first, or the one that was hit
-  /// first.
+  /// The bodies of those: an actor, or the ego; of joined bodies the first contact's, or the first
+  /// member.
   std::size_t body(std::size_t index) const { return actors_[index]; }
   /// Effect of the contact of that index in `contacts`, whatever follows it.
   ContactEffect effect(std::size_t index) const;

@@ -1,51 +1,13 @@
 #include "rank/join_fixed.hpp"
 
+#include "rank/adjoin.hpp"
+
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace crashrank::detail {
 namespace {
-
-using Eigen::Vector2d;
-
-constexpr double adjoining_m = 0.05;
-
-/// A body's box seen from above, world axes.
-struct Rectangle {
-  Vector2d center;
-  std::array<Vector2d, 2> axis;  ///< unit
-  std::array<double, 2> half;    ///< m
-};
-
-Rectangle rectangle_of(const Body& body) {
-  const Box box = body.model->mesh.bounds();
-  const Pose pose = body.standing;
-  const Eigen::Vector3d center = pose.rotation * box.center().cast<double>() + pose.translation;
-  const Eigen::Vector3d size = box.extent().cast<double>();
-  return {
-      center.head<2>(),
-      {pose.rotation.col(0).head<2>().normalized(), pose.rotation.col(1).head<2>().normalized()},
-      {0.5 * size.x(), 0.5 * size.y()}};
-}
-
-double reach_along(const Rectangle& r, const Vector2d& direction) {
-  return r.half[0] * std::abs(r.axis[0].dot(direction)) +
-         r.half[1] * std::abs(r.axis[1].dot(direction));
-}
-
-/// Separating axes of two rectangles.
-bool adjoin(const Rectangle& p, const Rectangle& q) {
-  for (const Rectangle* r : {&p, &q}) {
-    for (const Vector2d& axis : r->axis) {
-      const double gap =
-          std::abs((q.center - p.center).dot(axis)) - reach_along(p, axis) - reach_along(q, axis);
-      if (gap > adjoining_m) return false;
-    }
-  }
-  return true;
-}
 
 /// All triangles of the members, in the body coordinates of the first.
 TriangleMesh common_mesh(const Scene& scene, const std::vector<std::size_t>& members) {
@@ -70,32 +32,69 @@ std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
   return i;
 }
 
+/// Sets of certain fixed bodies that adjoin each other, directly or through others.
+std::vector<std::vector<std::size_t>> adjoining_sets(const Scene& scene,
+                                                     const std::vector<Rectangle>& boxes,
+                                                     const std::vector<std::size_t>& certain) {
+  std::vector<std::size_t> parent(certain.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  for (std::size_t i = 0; i < certain.size(); ++i) {
+    for (std::size_t j = i + 1; j < certain.size(); ++j) {
+      const std::size_t p = root_of(parent, i);
+      const std::size_t q = root_of(parent, j);
+      if (p == q || !adjoin(scene.actors[certain[i]], boxes[certain[i]], scene.actors[certain[j]],
+                            boxes[certain[j]])) {
+        continue;
+      }
+      parent[std::max(p, q)] = std::min(p, q);
+    }
+  }
+  std::vector<std::vector<std::size_t>> sets(certain.size());
+  for (std::size_t i = 0; i < certain.size(); ++i) sets[root_of(parent, i)].push_back(certain[i]);
+  return sets;
+}
+
+/// Fills `Scene::adjoining`. `fixed`: all bodies that nothing moves.
+void list_adjoining(Scene& scene, const std::vector<Rectangle>& boxes,
+                    const std::vector<std::size_t>& fixed) {
+  const auto contact_body = [&scene](std::size_t actor) {
+    const std::size_t joined = scene.joined_of[actor];
+    return joined == Scene::alone ? actor : scene.joined[joined].members.front();
+  };
+  const auto add = [&scene](std::size_t to, std::size_t other) {
+    std::vector<std::uint32_t>& list = scene.adjoining[to];
+    const auto number = static_cast<std::uint32_t>(other);
+    if (std::find(list.begin(), list.end(), number) == list.end()) list.push_back(number);
+  };
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    for (std::size_t j = i + 1; j < fixed.size(); ++j) {
+      const std::size_t p = fixed[i];
+      const std::size_t q = fixed[j];
+      if (scene.futures.is_certain(p) && scene.futures.is_certain(q)) continue;
+      if (!adjoin(scene.actors[p], boxes[p], scene.actors[q], boxes[q])) continue;
+      add(contact_body(p), contact_body(q));
+      add(contact_body(q), contact_body(p));
+    }
+  }
+}
+
 }  // namespace
 
 Status join_fixed(Scene& scene) {
   const std::size_t count = scene.actors.size();
   scene.joined.clear();
   scene.joined_of.assign(count, Scene::alone);
+  scene.adjoining.assign(count, {});
   std::vector<std::size_t> fixed;
-  std::vector<Rectangle> rectangles;
+  std::vector<std::size_t> certain;
+  std::vector<Rectangle> boxes(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (scene.actors[i].vehicle.movable() || !scene.futures.is_certain(i)) continue;
+    if (scene.actors[i].vehicle.movable()) continue;
     fixed.push_back(i);
-    rectangles.push_back(rectangle_of(scene.actors[i]));
+    if (scene.futures.is_certain(i)) certain.push_back(i);
+    boxes[i] = rectangle_of(scene.actors[i]);
   }
-  std::vector<std::size_t> parent(fixed.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  for (std::size_t i = 0; i < fixed.size(); ++i) {
-    for (std::size_t j = i + 1; j < fixed.size(); ++j) {
-      if (!adjoin(rectangles[i], rectangles[j])) continue;
-      const std::size_t p = root_of(parent, i);
-      const std::size_t q = root_of(parent, j);
-      parent[std::max(p, q)] = std::min(p, q);
-    }
-  }
-  std::vector<std::vector<std::size_t>> sets(fixed.size());
-  for (std::size_t i = 0; i < fixed.size(); ++i) sets[root_of(parent, i)].push_back(fixed[i]);
-  for (std::vector<std::size_t>& members : sets) {
+  for (std::vector<std::size_t>& members : adjoining_sets(scene, boxes, certain)) {
     if (members.size() < 2) continue;
     const Vehicle& first = scene.actors[members.front()].vehicle;
     VehicleFacts facts;
@@ -106,6 +105,7 @@ Status join_fixed(Scene& scene) {
     for (const std::size_t i : members) scene.joined_of[i] = scene.joined.size();
     scene.joined.push_back({std::move(members), std::move(*vehicle)});
   }
+  list_adjoining(scene, boxes, fixed);
   return Success{};
 }
 

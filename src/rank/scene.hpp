@@ -57,6 +57,9 @@ struct Scene {
   std::vector<JoinedBodies> joined;
   std::vector<std::size_t> joined_of;  ///< by actor: its place in `joined`, or `alone`
   static constexpr std::size_t alone = static_cast<std::size_t>(-1);
+  /// By actor: fixed bodies that it adjoins but is not joined with, since one of the two may not
+  /// exist. The first member of joined bodies stands for all of them.
+  std::vector<std::vector<std::uint32_t>> adjoining;
   /// Time is cut into slices; in each the swept boxes of the actors' plans are ready to be asked.
   std::vector<double> slice_s;  ///< ends of the slices, from 0 to the horizon
   Futures futures;

@@ -122,7 +122,8 @@ struct ContactSeverity {
 /// after the first, which the simulation finds, `gap_m` is 0, `point_m` the mean point of the force
 /// and `normal` the direction of `closing`.
 struct Contact {
-  std::size_t actor = 0;                     ///< index into Scenario::actors
+  /// Index into Scenario::actors; of adjoining fixed bodies the one that was touched first.
+  std::size_t actor = 0;
   ImpactState state = ImpactState::contact;  ///< how the bodies meet
   double time_of_impact_s = 0.0;             ///< from the decision, s
   double gap_m = 0.0;                        ///< between the surfaces then, at most the tolerance
@@ -144,8 +145,8 @@ struct Contact {
   /// contact, in the other body's frame, m. Both bodies' crush together in a square hit; more where
   /// they slide past each other.
   double crush_m = 0.0;
-  /// What it damages of the ego, by further bodies that nothing moves and that the ego presses on
-  /// in the same contact included.
+  /// What it damages of the ego, by fixed bodies that adjoin `actor` and that the ego presses on in
+  /// the same contact included.
   BodyDamage ego;
   BodyDamage other;          ///< and of `actor`
   ContactSeverity severity;  ///< the crash that begins with it
@@ -260,7 +261,7 @@ struct CandidateResult {
   /// Those between others that follow from it, in the order of their begins.
   std::vector<FurtherContact> further;
   /// The scene had more bodies close together, or more contacts, than it follows or reports: 64
-  /// contacts in all, 64 pairs of bodies, 24 contacts at once, of a body the 32 nearest within 5 m.
+  /// contacts in all, 64 pairs of bodies, 40 contacts at once, of a body the 32 nearest within 5 m.
   bool crowded = false;
   std::vector<Graze> grazes;  ///< before the first contact, in time order
   /// The ego's damage from all contacts together; a triangle hit twice counts once.
