@@ -91,28 +91,31 @@ ImpactSearch::ImpactSearch(const AabbTree& a, const Motion& motion_a, const Aabb
 
 /// Between knots a pair of boxes is carried on along its tangent; the knots are so close that this
 /// gives away no more than a few millimetres of clearance, which is less than the smallest boxes of
-/// a vehicle. Kinks are knots too, as far as there is room.
+/// a vehicle. Kinks are knots too, up to the very end: no pair of boxes is carried over a kink, and
+/// where one is left out, for want of room, all that is left of the work falls to pairs of
+/// triangles.
 void ImpactSearch::place_knots(double from) {
   constexpr double clearance = 0.004;
   constexpr double fewest = 16;
-  constexpr double most_knots = 512;
   std::vector<double>& times = memory_.times;
   times.clear();
   const double window = until_ - from;
   const double acceleration = state_at(from).acceleration;
   const double by_curve =
       acceleration > 0.0 ? window / std::sqrt(2.0 * clearance / acceleration) : 0.0;
-  const auto count = static_cast<std::size_t>(std::clamp(by_curve, fewest, most_knots));
+  const auto count =
+      static_cast<std::size_t>(std::clamp(by_curve, fewest, double{most_even_times}));
   double kink = from;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = from + window * (static_cast<double>(i) / static_cast<double>(count));
-    while (times.size() < 2 * static_cast<std::size_t>(most_knots)) {
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double t =
+        i < count ? from + window * (static_cast<double>(i) / static_cast<double>(count)) : until_;
+    while (times.size() + most_even_times < most_search_times) {
       const double next = std::min(motion_a_.next_kink(kink), motion_b_.next_kink(kink));
       if (!(next <= t)) break;
       kink = next;
       if (kink < t) times.push_back(kink);
     }
-    times.push_back(t);
+    if (i < count) times.push_back(t);
   }
   if (memory_.knots.size() < times.size()) memory_.knots.resize(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) memory_.knots[i].ready = false;

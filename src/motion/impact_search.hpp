@@ -44,8 +44,10 @@ struct Thresholds {
   double prove_m = 0.0;  ///< proved apart by more than this; below `stop_m`
 };
 
-/// Most times at which a search looks at both motions: knots, and kinks among them.
-inline constexpr std::size_t most_search_times = 1536;
+/// Most times at which a search looks at both motions by and by.
+inline constexpr std::size_t most_even_times = 512;
+/// And with the kinks of both among them.
+inline constexpr std::size_t most_search_times = most_even_times + 4096;
 
 /// Buffers of a search, kept between searches.
 struct SearchMemory {

@@ -227,6 +227,31 @@ TEST_F(TimeOfImpact, TheStepLimitGivesAProvedAnswer) {
   EXPECT_GT(undecided, 0);
 }
 
+/// The same way in one piece and in timed poses, the last one just before the end.
+TEST_F(TimeOfImpact, KinksAnywhereCostNoPairsOfTriangles) {
+  const AabbTree ball = tree_of(sphere_mesh(1, 32));
+  for (const double aside_m : {2.3, 1.9}) {
+    const Motion past = moving(at(-20, aside_m, 0), {10, 0, 0});
+    const Motion rest = moving(at(0, 0, 0), {0, 0, 0});
+    const Impact plain = find(ball, past, ball, rest, 0, 4);
+    for (const std::size_t count : {2U, 3U, 41U, 1000U, 4000U}) {
+      SCOPED_TRACE(std::to_string(count) + " poses, " + std::to_string(aside_m) + " m aside");
+      std::vector<TimedPose> poses;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double t = 3.99 * static_cast<double>(i) / static_cast<double>(count - 1);
+        poses.push_back({t, at(-20 + 10 * t, aside_m, 0)});
+      }
+      const Result<Motion> timed = Motion::timed(poses);
+      ASSERT_TRUE(timed.ok());
+      const Impact impact = find(ball, *timed, ball, rest, 0, 4);
+      EXPECT_EQ(impact.state, plain.state);
+      EXPECT_NEAR(impact.time_s, plain.time_s, 1e-9);
+      EXPECT_LE(impact.work.primitive_tests, 3 * plain.work.primitive_tests + 100 + count);
+      EXPECT_LE(impact.work.bv_tests, 3 * plain.work.bv_tests + 16 * count);
+    }
+  }
+}
+
 TEST_F(TimeOfImpact, MirrorImagesMeetAtTheSameTime) {
   constexpr std::uint64_t seed = 31;
   Random random(seed);
