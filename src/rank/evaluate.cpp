@@ -308,6 +308,8 @@ bool approach_group(const Scene& scene, const Candidate& candidate, std::size_t 
     each.futures.assign(scratch.same.begin(), scratch.same.end());
     each.outcome.futures = each.futures.size();
     each.outcome.is_likeliest = future == futures.likeliest();
+    // Damage is told of the likeliest future alone; elsewhere it counts where it is the score.
+    if (!each.outcome.is_likeliest && !scored_by_damage(scene.measure)) each.plans.clear();
     for (const std::uint32_t f : scratch.same) each.outcome.probability += futures.probability(f);
   }
   return true;
