@@ -1,0 +1,214 @@
+// Scores over a stratified sample of futures beside plain Monte Carlo: worlds drawn one by one,
+// each written out without uncertainty and ranked by itself.
+#include "bench/rank/situations.hpp"
+
+#include "crashrank/rank/anytime/ranker.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace crashrank;
+
+struct Options {
+  std::vector<std::string> scenarios;
+  std::size_t worlds = 2000;
+  std::size_t sampled = 64;
+  std::size_t listed = 0;
+  std::uint64_t seed = 1;
+  unsigned workers = 2;
+};
+
+/// Mean and standard error of numbers that come one by one (Welford 1962).
+class Mean {
+public:
+  void add(double number) {
+    count_ += 1.0;
+    const double away = number - mean_;
+    mean_ += away / count_;
+    squares_ += away * (number - mean_);
+  }
+  double mean() const { return mean_; }
+  double error() const {
+    return count_ < 2.0 ? 0.0 : std::sqrt(squares_ / (count_ - 1.0) / count_);
+  }
+
+private:
+  double count_ = 0.0;
+  double mean_ = 0.0;
+  double squares_ = 0.0;
+};
+
+/// Draws motions of one world after the words of the scenario.
+class Worlds {
+public:
+  Worlds(const Scenario& scenario, std::uint64_t seed) : scenario_(scenario), random_(seed) {}
+
+  StateError error(const StateUncertainty& of) {
+    return {of.position_m * normal_(random_), of.position_m * normal_(random_),
+            of.heading_rad * normal_(random_), of.speed_mps * normal_(random_)};
+  }
+
+  Result<std::vector<Motion>> motions() {
+    Scenario world = scenario_;
+    std::uniform_real_distribution<double> even(0.0, 1.0);
+    if (!world.futures.empty()) {
+      std::vector<double> weights;
+      for (const JointFuture& future : world.futures) weights.push_back(future.probability);
+      std::discrete_distribution<std::size_t> pick(weights.begin(), weights.end());
+      for (const FutureMotion& moved : world.futures[pick(random_)].motions) {
+        static_cast<ActorMotion&>(world.actors[moved.actor]) = moved.motion;
+      }
+      world.futures.clear();
+    }
+    for (ScenarioActor& actor : world.actors) {
+      if (!actor.predictions.empty()) {
+        std::vector<double> weights;
+        for (const Prediction& each : actor.predictions) weights.push_back(each.probability);
+        std::discrete_distribution<std::size_t> pick(weights.begin(), weights.end());
+        static_cast<ActorMotion&>(actor) = ActorMotion(actor.predictions[pick(random_)]);
+        actor.predictions.clear();
+      }
+      if (even(random_) >= actor.existence_probability) {
+        actor.poses.clear();
+        actor.pose.translation.y() = far_away_m;
+        actor.speed_mps = actor.acceleration_mps2 = actor.yaw_rate_radps = 0.0;
+      }
+      actor.existence_probability = 1.0;
+    }
+    Result<std::vector<Motion>> motions = plan_motions(world);
+    for (std::size_t i = 0; motions && i < motions->size(); ++i) {
+      if (scenario_.actors[i].perception.any()) {
+        (*motions)[i].displace(error(scenario_.actors[i].perception));
+      }
+    }
+    return motions;
+  }
+
+private:
+  /// Nobody gets there within the longest horizon.
+  static constexpr double far_away_m = 5e4;
+
+  const Scenario& scenario_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+};
+
+/// The scenario in one world, for a Ranker that is told of each.
+Scenario single_world(const Scenario& scenario) {
+  Scenario single = likeliest_future(scenario);
+  for (ScenarioActor& actor : single.actors) actor.existence_probability = 1.0;
+  single.ego.uncertainty = {};
+  return single;
+}
+
+void refuse(const Error& error) {
+  std::fprintf(stderr, "%s\n", error.message().c_str());
+  std::exit(1);
+}
+
+/// Prints a line; returns how far the two answers are from each other at most, in errors of their
+/// difference.
+double compare(const std::string& file, const Options& o) {
+  Result<bench::Situations> made = bench::make_situations(file, 0, 1, 1);
+  if (!made) refuse(made.error());
+  Scenario& scenario = made->scenario;
+  if (o.listed > 0 && scenario.listed.size() > o.listed) scenario.listed.resize(o.listed);
+  if (o.listed == 0) {
+    scenario.listed.clear();
+    scenario.grid = CandidateGrid{};
+  }
+  const View<const Model> models{made->models.data(), made->models.size()};
+  Result<std::vector<Candidate>> candidates = make_candidates(
+      scenario, static_cast<double>(models[scenario.ego.model].mesh.bounds().extent().x()));
+  if (!candidates) refuse(candidates.error());
+
+  RankOptions plain;
+  plain.harm = scenario.harm;
+  plain.harm->intervals = false;
+  plain.workers = o.workers;
+  plain.sampled_futures = o.sampled;
+  const Result<RankResult> stratified = rank(scenario, models, plain);
+  if (!stratified) refuse(stratified.error());
+
+  RankerOptions options;
+  options.rank = plain;
+  options.rank.infeasible = Infeasible::keep;
+  const Scenario single = single_world(scenario);
+  Result<Ranker> ranker = Ranker::prepare(single, models, options);
+  if (!ranker) refuse(ranker.error());
+  std::vector<Mean> means(candidates->size());
+  Worlds worlds(scenario, o.seed);
+  for (std::size_t world = 0; world < o.worlds; ++world) {
+    const Result<std::vector<Motion>> motions = worlds.motions();
+    if (!motions) refuse(motions.error());
+    std::vector<Candidate> moved = *candidates;
+    const StateError error = worlds.error(scenario.ego.uncertainty);
+    for (Candidate& candidate : moved) candidate.motion.displace(error);
+    const Pose start = moved.front().motion.pose_at(0.0);
+    const Status placed = ranker->move_actors(start, {motions->data(), motions->size()});
+    if (!placed) refuse(placed.error());
+    const RankerAnswer answer = ranker->rank({moved.data(), moved.size()});
+    if (!answer.status) refuse(answer.status.error());
+    for (const RankedCandidate& told : answer.ranking) means[told.candidate].add(told.score);
+  }
+
+  double furthest = 0.0;
+  double widest = 0.0;
+  double highest = 0.0;
+  std::size_t beyond = 0;
+  std::size_t compared = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    if (means[i].mean() < means[first].mean()) first = i;
+  }
+  for (const CandidateResult& told : stratified->ranking) {
+    const Mean& mean = means[told.candidate];
+    const double drawn = told.sampling_error.value_or(0.0);
+    const double error = std::hypot(drawn, mean.error());
+    const double away = std::abs(*told.score - mean.mean());
+    highest = std::max(highest, mean.mean());
+    widest = std::max(widest, away);
+    if (!(error > 0.0)) continue;
+    ++compared;
+    if (away > 2.0 * error) ++beyond;
+    furthest = std::max(furthest, away / error);
+  }
+  std::printf("%s,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%.2f,%s\n", made->name.c_str(), means.size(),
+              o.worlds, stratified->futures.futures, compared, highest, widest, beyond,
+              compared == 0 ? 0 : beyond * 100 / compared, furthest,
+              stratified->ranking.front().candidate == first ? "yes" : "no");
+  std::fflush(stdout);
+  return furthest;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  CLI::App app("scores over a sample of futures beside worlds drawn one by one");
+  app.add_option("scenarios", o.scenarios, "files with predictions or errors of states")
+      ->required();
+  app.add_option("--worlds", o.worlds, "drawn one by one");
+  app.add_option("--futures", o.sampled, "of the stratified sample");
+  app.add_option("--listed", o.listed,
+                 "so many of the listed candidates instead of the grid of 225");
+  app.add_option("--seed", o.seed, "of the worlds");
+  app.add_option("--workers", o.workers, "threads");
+  CLI11_PARSE(app, argc, argv);
+  std::printf(
+      "scenario,candidates,worlds,futures,with an error,highest score,widest,beyond two "
+      "errors,in percent,furthest in errors,same first\n");
+  double furthest = 0.0;
+  for (const std::string& file : o.scenarios) furthest = std::max(furthest, compare(file, o));
+  // Of some thousand comparisons hardly one is further than five standard errors by chance.
+  return furthest > 5.0 ? 1 : 0;
+}
