@@ -88,13 +88,13 @@ Result<Scenario> read_scenario(const Options& options) {
   return load_scenario(*text, "standard input", paths);
 }
 
-/// A mesh outside its scenario's folder: the library's remedy, with the option for what a caller
+/// A file outside its scenario's folder: the library's remedy, with the option for what a caller
 /// can do.
 Error name_allow(Error error) {
-  const std::string call = "allow the mesh's folder when calling";
+  const std::string call = "allow its folder when calling";
   const std::size_t at = error.remedy.find(call);
   if (at != std::string::npos) {
-    error.remedy.replace(at, call.size(), "allow the mesh's folder with --allow FOLDER");
+    error.remedy.replace(at, call.size(), "allow its folder with --allow FOLDER");
   }
   return error;
 }

@@ -28,4 +28,13 @@ CodePoint decode_utf8(std::string_view text) noexcept {
   return {value, length, true};
 }
 
+bool is_utf8(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const CodePoint point = decode_utf8(text);
+    if (!point.valid) return false;
+    text.remove_prefix(point.bytes);
+  }
+  return true;
+}
+
 }  // namespace crashrank::detail

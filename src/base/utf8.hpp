@@ -16,4 +16,6 @@ struct CodePoint {
 /// U+10FFFF are not UTF-8 (RFC 3629).
 CodePoint decode_utf8(std::string_view text) noexcept;
 
+bool is_utf8(std::string_view text) noexcept;
+
 }  // namespace crashrank::detail

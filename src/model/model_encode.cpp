@@ -28,15 +28,6 @@ Error broken_part(std::size_t index, std::string reason) {
   return broken("part " + std::to_string(index), std::move(reason));
 }
 
-bool is_utf8(std::string_view text) {
-  while (!text.empty()) {
-    const CodePoint point = decode_utf8(text);
-    if (!point.valid) return false;
-    text.remove_prefix(point.bytes);
-  }
-  return true;
-}
-
 Status check_parts(const TriangleMesh& mesh) {
   std::uint64_t covered = 0;
   std::vector<std::string_view> names;

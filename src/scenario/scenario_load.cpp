@@ -1,6 +1,8 @@
 #include "crashrank/scenario/scenario.hpp"
 
 #include "crashrank/internal/base/guarded.hpp"
+#include "scenario/candidate_table.hpp"
+#include "scenario/scenario_parse.hpp"
 #include "scenario/text_file.hpp"
 
 #include <algorithm>
@@ -64,14 +66,28 @@ Result<std::string> resolve(const std::string& scenario_file, const std::string&
                {},
                "\"" + mesh + "\" lies outside the scenario's folder " + owner.string(),
                "copy it there, put an empty file named crashrank.root into the folder that holds "
-               "both, or allow the mesh's folder when calling"};
+               "both, or allow its folder when calling"};
+}
+
+Status read_table(const std::string& table, const std::string& file, const ScenarioPaths& paths,
+                  std::vector<ListedCandidate>& listed) {
+  Result<std::string> path = resolve(file, table, paths);
+  if (!path) {
+    path.error().place = "candidates.table";
+    return path.error();
+  }
+  const Result<std::string> text = detail::read_text_file(*path, scenario_limits::table_bytes,
+                                                          "name a table of comma-separated values");
+  if (!text) return text.error();
+  return detail::add_candidate_table(*text, *path, listed);
 }
 
 Result<Scenario> load(const std::string& text, const std::string& file,
                       const ScenarioPaths& paths) {
-  Result<Scenario> scenario = parse_scenario(text, file);
-  if (!scenario) return scenario;
-  for (ScenarioModel& model : scenario->models) {
+  Result<detail::ParsedScenario> parsed = detail::parse_scenario_text(text, file);
+  if (!parsed) return parsed.error();
+  Scenario& scenario = parsed->scenario;
+  for (ScenarioModel& model : scenario.models) {
     Result<std::string> path = resolve(file, model.mesh, paths);
     if (!path) {
       path.error().place = "models." + model.name + ".mesh";
@@ -79,7 +95,11 @@ Result<Scenario> load(const std::string& text, const std::string& file,
     }
     model.path = std::move(*path);
   }
-  return scenario;
+  if (!parsed->candidate_table.empty()) {
+    const Status read = read_table(parsed->candidate_table, file, paths, scenario.listed);
+    if (!read.ok()) return read.error();
+  }
+  return std::move(scenario);
 }
 
 Result<Scenario> read_and_load(const std::string& file, const ScenarioPaths& paths) {

@@ -1,3 +1,4 @@
+#include "scenario/scenario_parse.hpp"
 #include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "scenario/json_object.hpp"
@@ -177,18 +178,23 @@ ListedCandidate read_candidate(const json& value, const std::string& path, Statu
   return candidate;
 }
 
-void read_candidates(const JsonObject& root, Scenario& scenario) {
+void read_candidates(const JsonObject& root, detail::ParsedScenario& parsed) {
+  Scenario& scenario = parsed.scenario;
   if (!root.has("candidates")) return;
   Status& status = root.status();
   const JsonObject object(root.at("candidates"), "candidates", status,
-                          {"listed", "grid", "add_straight_braking"});
+                          {"listed", "table", "grid", "add_straight_braking"});
   if (const json* listed = object.array("listed", 0, limits::listed_candidates)) {
     for (std::size_t i = 0; i < listed->size() && status.ok(); ++i) {
       const std::string path = object.path_of(indexed("listed", i).c_str());
       scenario.listed.push_back(read_candidate((*listed)[i], path, status));
     }
   }
-  if (!scenario.listed.empty()) scenario.grid.reset();
+  if (object.has("table")) {
+    detail::require_version_2(root, object, {"table"});
+    parsed.candidate_table = object.name("table", limits::path_characters);
+  }
+  if (!scenario.listed.empty() || object.has("table")) scenario.grid.reset();
   if (object.has("grid") && object.at("grid").is_boolean()) {
     scenario.grid = object.flag("grid", true) ? std::optional(CandidateGrid{}) : std::nullopt;
   } else if (object.has("grid")) {
@@ -231,8 +237,9 @@ std::vector<std::string> find_keys_without_effect(const json& document) {
   return keys;
 }
 
-Scenario read_scenario(const json& document, Status& status) {
-  Scenario scenario;
+detail::ParsedScenario read_scenario(const json& document, Status& status) {
+  detail::ParsedScenario parsed;
+  Scenario& scenario = parsed.scenario;
   const JsonObject root(
       document, {}, status,
       {"$schema", "scenario_version", "name", "description", "models", "ego", "candidates",
@@ -248,9 +255,9 @@ Scenario read_scenario(const json& document, Status& status) {
   scenario.description = root.text("description", limits::description_characters);
   read_models(root, scenario);
   root.require("ego");
-  if (!status.ok()) return scenario;
+  if (!status.ok()) return parsed;
   scenario.ego = read_ego(root, scenario.models);
-  read_candidates(root, scenario);
+  read_candidates(root, parsed);
   detail::read_actors(root, scenario);
   detail::read_futures(root, scenario);
   detail::require_version_2(root, root, {"road"});
@@ -273,10 +280,10 @@ Scenario read_scenario(const json& document, Status& status) {
   }
   scenario.grip = root.number("grip", {limits::min_grip, limits::max_grip}, 0.8);
   if (status.ok()) scenario.keys_without_effect = find_keys_without_effect(document);
-  return scenario;
+  return parsed;
 }
 
-Result<Scenario> parse(const std::string& text, const std::string& file) {
+Result<detail::ParsedScenario> parse(const std::string& text, const std::string& file) {
   if (text.size() > limits::file_bytes) {
     return Error{
         ErrorCode::limit_exceeded, file, {}, "is larger than 16 MiB", "split the scenario"};
@@ -284,19 +291,38 @@ Result<Scenario> parse(const std::string& text, const std::string& file) {
   Result<json> document = detail::parse_json(text);
   if (!document) return detail::told_of(file, document.error());
   Status status = Success{};
-  Scenario scenario = read_scenario(*document, status);
+  detail::ParsedScenario parsed = read_scenario(*document, status);
+  Scenario& scenario = parsed.scenario;
   if (status.ok()) status = detail::check_names(scenario);
   if (status.ok()) status = detail::check_probabilities(scenario);
   if (status.ok()) status = detail::check_road(scenario.road);
   if (!status.ok()) return detail::told_of(file, status.error());
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
-  return scenario;
+  return parsed;
+}
+
+Result<Scenario> parse_alone(const std::string& text, const std::string& file) {
+  Result<detail::ParsedScenario> parsed = parse(text, file);
+  if (!parsed) return parsed.error();
+  if (!parsed->candidate_table.empty()) {
+    return detail::told_of(file, {ErrorCode::bad_input,
+                                  {},
+                                  "candidates.table",
+                                  "names a file, and text alone is read",
+                                  "load the scenario from its file, or list the candidates"});
+  }
+  return std::move(parsed->scenario);
 }
 
 }  // namespace
 
 Result<Scenario> parse_scenario(const std::string& text, const std::string& file) {
-  return detail::guarded([&] { return parse(text, file); });
+  return detail::guarded([&] { return parse_alone(text, file); });
+}
+
+Result<detail::ParsedScenario> detail::parse_scenario_text(const std::string& text,
+                                                           const std::string& file) {
+  return parse(text, file);
 }
 
 }  // namespace crashrank

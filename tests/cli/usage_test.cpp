@@ -189,7 +189,7 @@ TEST(Usage, AMeshOutsideTheScenariosFolderIsAllowedByTheOptionThatTheErrorNames)
   const Outcome refused = place.crashrank({"rank", "inner/s.json"});
   EXPECT_EQ(refused.code, 3);
   EXPECT_NE(refused.err.find("inner/s.json: models.ego.mesh: "), std::string::npos) << refused.err;
-  EXPECT_NE(refused.err.find("or allow the mesh's folder with --allow FOLDER\n"), std::string::npos)
+  EXPECT_NE(refused.err.find("or allow its folder with --allow FOLDER\n"), std::string::npos)
       << refused.err;
   const Outcome piped = place.shell("cd inner && " CRASHRANK_PROGRAM " rank - < s.json");
   EXPECT_NE(piped.err.find("--allow FOLDER"), std::string::npos) << piped.err;

@@ -183,6 +183,7 @@ CRASHRANK_API Scenario likeliest_future(const Scenario& scenario);
 /// Bounds on what a scenario may ask for; the published schema states the same numbers.
 namespace scenario_limits {
 inline constexpr std::size_t file_bytes = std::size_t{16} << 20;  ///< of the text
+inline constexpr std::size_t table_bytes = std::size_t{1} << 26;  ///< of a table of candidates
 inline constexpr std::size_t models = 256;                        ///< most
 inline constexpr std::size_t actors = 1000;                       ///< most
 inline constexpr std::size_t listed_candidates = 10'000;          ///< most
@@ -224,14 +225,15 @@ inline constexpr double probability_sum = 1e-6;         ///< probabilities sum t
 }  // namespace scenario_limits
 
 /// Reads a scenario from its text; `file` only names it in errors and lends it its name when the
-/// scenario has none. Touches no file: `ScenarioModel::path` stays empty. Every error is bad_input
-/// or limit_exceeded and names the key path, as "actors[2].speed_mps", or line and column where
-/// the text is no JSON. Linear in the text; safe from any thread.
+/// scenario has none. Touches no file: `ScenarioModel::path` stays empty, and a table of candidates
+/// is refused. Every error is bad_input or limit_exceeded and names the key path, as
+/// "actors[2].speed_mps", or line and column where the text is no JSON. Linear in the text; safe
+/// from any thread.
 CRASHRANK_API Result<Scenario> parse_scenario(const std::string& text, const std::string& file);
 
-/// Where a scenario's meshes may lie besides the places it has a right to.
+/// Where a scenario's files may lie besides the places it has a right to.
 struct ScenarioPaths {
-  std::vector<std::string> allowed_folders;  ///< meshes may lie there, too
+  std::vector<std::string> allowed_folders;  ///< files may lie there, too
 };
 
 /// Finds where a mesh named by a scenario is, symbolic links followed. It has to lie in the
@@ -245,8 +247,10 @@ CRASHRANK_API Result<std::string> resolve_mesh_path(const std::string& scenario_
                                                     const std::string& mesh,
                                                     const ScenarioPaths& paths = {});
 
-/// `parse_scenario`, then `resolve_mesh_path` for each model. Reads no mesh: the caller does, with
-/// the importer or from compiled model files, in the order of `Scenario::models`.
+/// `parse_scenario`, then `resolve_mesh_path` for each model. Reads the table of candidates that
+/// the scenario names, which has to lie where its meshes may, to the end of `Scenario::listed`.
+/// Reads no mesh: the caller does, with the importer or from compiled model files, in the order of
+/// `Scenario::models`. Errors also: not_found, and those of the table with its line.
 CRASHRANK_API Result<Scenario> load_scenario(const std::string& text, const std::string& file,
                                              const ScenarioPaths& paths = {});
 
