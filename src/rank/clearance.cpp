@@ -47,8 +47,12 @@ bool passes_over(const Body& a, const Motion& of_a, const Body& b, const Motion&
 /// Least outline distance of two bodies on their ways.
 class LeastDistance {
 public:
-  LeastDistance(const Moving& a, const Moving& b, double step_s)
-      : a_(a), b_(b), step_s_(step_s), travel_m_((a.fastest_mps + b.fastest_mps) * step_s) {
+  LeastDistance(const Moving& a, const Moving& b, double step_s, const StopCheck& stop)
+      : a_(a),
+        b_(b),
+        stop_(stop),
+        step_s_(step_s),
+        travel_m_((a.fastest_mps + b.fastest_mps) * step_s) {
     for (std::size_t i = 0; i < a.way.size(); ++i) {
       const double apart = rectangle_distance_m(a.outline, a.way[i], b.outline, b.way[i]);
       if (apart < coarse_m_) {
@@ -62,11 +66,11 @@ public:
   double bound_m() const noexcept { return coarse_m_ - 0.5 * travel_m_; }
 
   /// Looks closely only at the times at which the rectangles come near enough.
-  double find() const {
+  double find() {
     double best = at(nearest_, unbounded);
     double before = unbounded;
     double here = near(0, best);
-    for (std::size_t i = 0; i < a_.way.size(); ++i) {
+    for (std::size_t i = 0; i < a_.way.size() && !stop_(); ++i) {
       const double behind = i + 1 < a_.way.size() ? near(i + 1, best) : unbounded;
       best = std::min(best, here);
       if (here < unbounded && here <= before && here <= behind && here - travel_m_ < best) {
@@ -79,11 +83,11 @@ public:
   }
 
 private:
-  double at(std::size_t i, double cutoff_m) const {
-    return outline_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i], cutoff_m);
+  double at(std::size_t i, double cutoff_m) {
+    return outline_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i], cutoff_m, chains_);
   }
   /// Infinity where nothing below `best` is near.
-  double near(std::size_t i, double best) const {
+  double near(std::size_t i, double best) {
     const double reach = best + travel_m_;
     if (rectangle_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i]) >= reach) {
       return unbounded;
@@ -91,11 +95,12 @@ private:
     const double apart = at(i, reach);
     return apart < reach ? apart : unbounded;
   }
-  double at_time(double time_s, double cutoff_m) const {
-    return outline_distance_m(a_.outline, a_.at(time_s), b_.outline, b_.at(time_s), cutoff_m);
+  double at_time(double time_s, double cutoff_m) {
+    return outline_distance_m(a_.outline, a_.at(time_s), b_.outline, b_.at(time_s), cutoff_m,
+                              chains_);
   }
   /// Golden section between the neighbours of a time.
-  double refine(std::size_t i, double here) const {
+  double refine(std::size_t i, double here) {
     constexpr double golden = 0.6180339887498949;
     constexpr int rounds = 10;  // 0.1 s · 0.618^10 is less than a millisecond
     const double end_s = step_s_ * static_cast<double>(a_.way.size() - 1);
@@ -112,7 +117,7 @@ private:
     double of_p = at_time(p, cutoff);
     double of_q = at_time(q, cutoff);
     double best = std::min({here, of_p, of_q});
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < rounds && !stop_(); ++round) {
       if (of_p <= of_q) {
         high = std::exchange(q, p);
         of_q = of_p;
@@ -131,10 +136,12 @@ private:
 
   const Moving& a_;
   const Moving& b_;
+  const StopCheck& stop_;
   double step_s_;
   double travel_m_;
   double coarse_m_ = unbounded;
   std::size_t nearest_ = 0;
+  NearestChains chains_;
 };
 
 bool overlap(const Moving& a, const PlanarPose& pose_a, const Moving& b, const PlanarPose& pose_b) {
@@ -160,13 +167,14 @@ bool overlaps_near(const Moving& a, const Moving& b, double step_s, std::size_t 
 }
 
 /// Least time between a and b at one place, where it is not above `most_s`.
-double least_time_gap_s(const Moving& a, const Moving& b, double step_s, double most_s) {
+double least_time_gap_s(const Moving& a, const Moving& b, double step_s, double most_s,
+                        const StopCheck& stop) {
   constexpr std::size_t parts = 16;
   const std::size_t count = a.way.size();
   const auto lag_s = [step_s](std::size_t part) {
     return step_s / static_cast<double>(parts) * static_cast<double>(part);
   };
-  for (std::size_t lag = 0; lag < count; ++lag) {
+  for (std::size_t lag = 0; lag < count && !stop(); ++lag) {
     // What is found at one lag of whole steps may begin up to two steps before it.
     if (lag > 2 && lag_s((lag - 2) * parts) > most_s) break;
     std::size_t least = lag * parts;
@@ -209,7 +217,8 @@ void place_ways(const Scene& scene, PlanWays& ways) {
   }
 }
 
-Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& way) {
+Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& way,
+                       const StopCheck& stop) {
   const PlanWays& ways = scene.ways;
   way.resize(ways.steps + 1);
   for (std::size_t i = 0; i <= ways.steps; ++i) {
@@ -225,15 +234,16 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
   double nearest = farthest_clearance_m;
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t p = 0; p < scene.futures.own_plans(); ++p) {
+    if (stop()) return least;
     if (!scene.futures.is_followed(p)) continue;
     const Body& actor = scene.actors[plans[p].actor];
     if (passes_over(scene.ego, ego, actor, plans[p].motion)) continue;
     const Moving other{*actor.outline, plans[p].motion, ways.of(p), ways.fastest_mps[p]};
-    const LeastDistance distance(own, other, ways.step_s);
+    LeastDistance distance(own, other, ways.step_s, stop);
     if (distance.bound_m() < nearest) nearest = std::min(nearest, distance.find());
     if (other.fastest_mps > 0.0) {
-      least.time_gap_s =
-          std::min(least.time_gap_s, least_time_gap_s(own, other, ways.step_s, least.time_gap_s));
+      least.time_gap_s = std::min(
+          least.time_gap_s, least_time_gap_s(own, other, ways.step_s, least.time_gap_s, stop));
     }
   }
   if (nearest < farthest_clearance_m) least.distance_m = nearest;

@@ -282,7 +282,8 @@ bool approach_group(const Scene& scene, const Candidate& candidate, std::size_t 
   if (scratch.stopped()) return false;
   found.collision_probability =
       collision_probability(scene, group, scratch, found.collision_probability);
-  const auto leaving = find_leaving(scene.road, scene.ego, ego, scene.slice_s.back());
+  const auto leaving = find_leaving(scene.road, scene.ego, ego, scene.slice_s.back(), scratch.stop);
+  if (scratch.stopped()) return false;
   if (group.size() < futures.size() && first_hit(scene, scratch, first) == nullptr) {
     if (Approach* const same = same_without_contact(scene, leaving, found.outcomes)) {
       same->futures.push_back(static_cast<std::uint32_t>(first));
@@ -355,8 +356,11 @@ Approaches approach(const Scene& scene, const Candidate& candidate, Scratch& scr
   return found;
 }
 
-CandidateResult finish(const Scene& scene, const Candidate& candidate, Approaches&& approaches,
-                       FoundDamage found, Scratch& scratch, RankWork& work) {
+namespace {
+
+CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
+                                 Approaches&& approaches, FoundDamage found, Scratch& scratch,
+                                 RankWork& work) {
   // The likeliest future's, in which the ego is not displaced.
   const std::optional<RoadLeaving> leaving =
       approaches.outcomes.empty()
@@ -384,6 +388,18 @@ CandidateResult finish(const Scene& scene, const Candidate& candidate, Approache
   // What it asks for at its begin is all that is known of it.
   result.demand = demand_until(scene, candidate, 0.0, leaving);
   result.feasible = is_feasible(candidate, result.demand);
+  return result;
+}
+
+}  // namespace
+
+CandidateResult finish(const Scene& scene, const Candidate& candidate, Approaches&& approaches,
+                       FoundDamage found, Scratch& scratch, RankWork& work) {
+  // What is evaluated is told in full, also after the ranking was cancelled.
+  const StopCheck kept = std::exchange(scratch.stop, {});
+  CandidateResult result =
+      finish_unstopped(scene, candidate, std::move(approaches), found, scratch, work);
+  scratch.stop = kept;
   return result;
 }
 

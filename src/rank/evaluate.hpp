@@ -4,6 +4,7 @@
 #include "rank/damage.hpp"
 #include "rank/risk.hpp"
 #include "rank/scene.hpp"
+#include "rank/stop_check.hpp"
 #include "rank/tally.hpp"
 #include "rank/tell_contacts.hpp"
 
@@ -44,11 +45,10 @@ struct Scratch {
   std::vector<std::size_t> order;
   Tally tally;
   DamageScratch damage;
-  /// Asked by the search for contacts, see ImpactOptions, and before each simulation.
-  bool (*stop)(void* stop_context) = nullptr;
-  void* stop_context = nullptr;
+  /// Asked by all searches and before each simulation.
+  StopCheck stop;
 
-  bool stopped() const { return stop != nullptr && stop(stop_context); }
+  bool stopped() const { return stop(); }
 
   /// Room for a scene: nothing but its damage allocates after it.
   void prepare(const Scene& scene);

@@ -71,8 +71,8 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
     if (from > until) continue;
     const Plan& plan = futures.plans[near.plan];
     ImpactOptions options = scene.impact;
-    options.stop = scratch.stop;
-    options.stop_context = scratch.stop_context;
+    options.stop = scratch.stop.ask;
+    options.stop_context = scratch.stop.context;
     options.start_is_apart =
         near.first_slice > 0 || (same_start && scene.apart_at_start[near.plan] != 0);
     Impact impact = find_impact(scene, ego, plan, from, until, scratch.impact, options);

@@ -34,8 +34,9 @@ ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate
   facts.demand = demand_until(scene, candidate, followed.longest_s, leaving);
   facts.feasible = is_feasible(candidate, facts.demand);
   if (leaving && leaving->time_s <= followed.first_s) facts.leaves_road = leaving;
-  facts.clearance =
-      followed.touches ? Clearance{0.0, 0.0} : clearance_of(scene, candidate.motion, scratch.way);
+  facts.clearance = followed.touches
+                        ? Clearance{0.0, 0.0}
+                        : clearance_of(scene, candidate.motion, scratch.way, scratch.stop);
   Pose pose;
   Velocity velocity;
   // Timed poses that end with the horizon stand from then on: their speed is that before it.

@@ -25,7 +25,8 @@ struct ManoeuvreFacts {
   HorizonState at_horizon;
 };
 
-/// `leaving`: of its plan until the horizon. Depends on the scene and the candidate alone.
+/// `leaving`: of its plan until the horizon. Depends on the scene and the candidate alone, unless
+/// it is stopped where nobody is touched.
 ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate,
                                   const Followed& followed,
                                   const std::optional<RoadLeaving>& leaving, Scratch& scratch);

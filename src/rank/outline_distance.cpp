@@ -20,9 +20,8 @@ constexpr double straight_m = 0.002;
 constexpr double nowhere_m = std::numeric_limits<double>::infinity();
 
 /// Of a point to a piece from its begin, all relative to that begin.
-double distance2(double x, double y, double along_x, double along_y) {
-  const double length2 = along_x * along_x + along_y * along_y;
-  const double share = std::clamp((x * along_x + y * along_y) / length2, 0.0, 1.0);
+double distance2(double x, double y, double along_x, double along_y, double per_length2) {
+  const double share = std::clamp((x * along_x + y * along_y) * per_length2, 0.0, 1.0);
   const double dx = x - share * along_x;
   const double dy = y - share * along_y;
   return dx * dx + dy * dy;
@@ -86,11 +85,8 @@ bool is_straight(const std::vector<OutlineSegment>& pieces, std::size_t first, s
 }
 
 /// The pieces of a band in as few segments as their shape allows.
-std::vector<OutlineSegment> straightened(const std::vector<OutlinePiece>& all, std::size_t begin,
-                                         std::size_t end) {
+std::vector<OutlineSegment> straightened(const std::vector<OutlineSegment>& pieces) {
   constexpr std::size_t most_pieces = 512;  // of a segment: what is checked grows with its square
-  std::vector<OutlineSegment> pieces;
-  for (std::size_t i = begin; i < end; ++i) pieces.push_back(segment_of(all[i]));
   std::vector<OutlineSegment> segments;
   for (std::size_t first = 0, last = 0; first < pieces.size(); first = last + 1) {
     last = first;
@@ -100,6 +96,14 @@ std::vector<OutlineSegment> straightened(const std::vector<OutlinePiece>& all, s
       ++last;
     }
     segments.push_back({pieces[first].from, pieces[last].to});
+  }
+  return segments;
+}
+
+std::vector<OutlineSegment> cut_of(const Profile& profile, std::size_t band) {
+  std::vector<OutlineSegment> segments;
+  for (std::size_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
+    segments.push_back(segment_of(profile.pieces[i]));
   }
   return segments;
 }
@@ -165,13 +169,13 @@ BodyOutline::BodyOutline(const Profile& profile, const TriangleMesh* convex_mesh
   for (std::size_t band = 0; band < profile_bands; ++band) {
     first_chain_[band] = static_cast<std::uint32_t>(chains_.size());
     const auto first_of_band = static_cast<std::uint32_t>(pieces_.size());
-    for (const OutlineSegment& segment :
-         convex_mesh != nullptr
-             ? hull_of(std::move(points[band]))
-             : straightened(profile.pieces, profile.first[band], profile.first[band + 1])) {
+    for (const OutlineSegment& segment : straightened(
+             convex_mesh != nullptr ? hull_of(std::move(points[band])) : cut_of(profile, band))) {
       const Eigen::Vector2d along = segment.to - segment.from;
-      if (!(along.squaredNorm() > 0.0)) continue;
-      pieces_.push_back({segment.from.x(), segment.from.y(), along.x(), along.y()});
+      const double length2 = along.squaredNorm();
+      if (!(length2 > 0.0)) continue;
+      pieces_.push_back({segment.from.x(), segment.from.y(), along.x(), along.y(),
+                         std::sqrt(length2), 1.0 / length2});
       hold(segment.from.x(), segment.from.y());
       hold(segment.to.x(), segment.to.y());
     }
@@ -206,7 +210,7 @@ void BodyOutline::add_chain(std::uint32_t first, std::uint32_t end) {
 }
 
 double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
-                          const PlanarPose& pose_b, double cutoff_m) {
+                          const PlanarPose& pose_b, double cutoff_m, NearestChains& nearest) {
   // b in a's frame.
   const double cosine = pose_a.cosine * pose_b.cosine + pose_a.sine * pose_b.sine;
   const double sine = pose_a.cosine * pose_b.sine - pose_a.sine * pose_b.cosine;
@@ -215,8 +219,11 @@ double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const 
   const double x = pose_a.cosine * dx + pose_a.sine * dy;
   const double y = pose_a.cosine * dy - pose_a.sine * dx;
   double least = cutoff_m;
-  const auto near_pieces = [&](const BodyOutline::Chain& p, const BodyOutline::Chain& q) {
-    double least2 = least * least;
+  const auto near_pieces = [&](std::uint32_t chain_a, std::uint32_t chain_b) {
+    const BodyOutline::Chain& p = a.chains_[chain_a];
+    const BodyOutline::Chain& q = b.chains_[chain_b];
+    const double before = least;
+    double least2 = before * before;
     for (std::uint32_t k = q.first; k < q.end; ++k) {
       const BodyOutline::Piece& of_b = b.pieces_[k];
       const double bx = x + cosine * of_b.x - sine * of_b.y;
@@ -227,15 +234,23 @@ double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const 
         const BodyOutline::Piece& of_a = a.pieces_[i];
         const double apart_x = bx - of_a.x;
         const double apart_y = by - of_a.y;
-        least2 =
-            std::min({least2, distance2(apart_x, apart_y, of_a.along_x, of_a.along_y),
-                      distance2(-apart_x, -apart_y, along_x, along_y),
-                      distance2(apart_x + along_x, apart_y + along_y, of_a.along_x, of_a.along_y),
-                      distance2(of_a.along_x - apart_x, of_a.along_y - apart_y, along_x, along_y)});
+        // No point of a piece is further from its begin than its length.
+        const double reach = before + of_a.length_m + of_b.length_m;
+        if (apart_x * apart_x + apart_y * apart_y >= reach * reach) continue;
+        const double per_a2 = of_a.per_length2;
+        const double per_b2 = of_b.per_length2;
+        least2 = std::min(
+            {least2, distance2(apart_x, apart_y, of_a.along_x, of_a.along_y, per_a2),
+             distance2(-apart_x, -apart_y, along_x, along_y, per_b2),
+             distance2(apart_x + along_x, apart_y + along_y, of_a.along_x, of_a.along_y, per_a2),
+             distance2(of_a.along_x - apart_x, of_a.along_y - apart_y, along_x, along_y, per_b2)});
       }
     }
+    if (!(least2 < before * before)) return;
     least = std::sqrt(least2);
+    nearest = {chain_a, chain_b, true};
   };
+  if (nearest.known) near_pieces(nearest.a, nearest.b);
   bool common = false;
   for (std::size_t band = 0; band < profile_bands; ++band) {
     const std::uint32_t end_a = a.first_chain_[band + 1];
@@ -254,7 +269,7 @@ double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const 
         const double reach = least + p.radius + q.radius;
         const double apart_x = qx - p.x;
         const double apart_y = qy - p.y;
-        if (apart_x * apart_x + apart_y * apart_y < reach * reach) near_pieces(p, q);
+        if (apart_x * apart_x + apart_y * apart_y < reach * reach) near_pieces(i, k);
       }
     }
   }

@@ -21,6 +21,14 @@ struct PlanarPose {
 
 PlanarPose planar_pose(const Pose& pose) noexcept;
 
+/// Chains of two outlines that were nearest to each other: where the next search for the distance
+/// of the same two bodies, moved a little, begins.
+struct NearestChains {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  bool known = false;
+};
+
 /// A body's outlines prepared for distances: segments that follow them to 2 mm, in short chains
 /// with circles around them.
 class BodyOutline {
@@ -41,12 +49,14 @@ public:
 
 private:
   friend double outline_distance_m(const BodyOutline&, const PlanarPose&, const BodyOutline&,
-                                   const PlanarPose&, double);
+                                   const PlanarPose&, double, NearestChains&);
   struct Piece {
     double x = 0.0;  ///< from
     double y = 0.0;
     double along_x = 0.0;  ///< to its end
     double along_y = 0.0;
+    double length_m = 0.0;
+    double per_length2 = 0.0;  ///< 1 / length²
   };
   struct Chain {
     double x = 0.0;  ///< middle of its circle
@@ -72,9 +82,9 @@ private:
 /// over the height bands that both have, m. A number of at least `cutoff_m` where they are no
 /// nearer than it, infinity without a common band. Bodies in each other are as far apart as their
 /// outlines are. Exact to 4 mm. Allocates nothing. O(chains²) a band and the segments of the
-/// nearest.
+/// nearest; `nearest`, of the same two bodies, changes what that takes and is changed.
 double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
-                          const PlanarPose& pose_b, double cutoff_m);
+                          const PlanarPose& pose_b, double cutoff_m, NearestChains& nearest);
 
 /// Distance of the rectangles around the outlines, seen from above: no outline distance is less.
 /// 0 where they overlap. Constant time.

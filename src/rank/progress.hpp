@@ -18,8 +18,8 @@ public:
   /// Evaluations with this scratch memory stop once the ranking is cancelled.
   void watch(Scratch& scratch) {
     if (!options_.on_progress) return;
-    scratch.stop = [](void* self) { return static_cast<RankProgress*>(self)->is_cancelled(); };
-    scratch.stop_context = this;
+    scratch.stop = {[](void* self) { return static_cast<RankProgress*>(self)->is_cancelled(); },
+                    this};
   }
 
   /// Counts one evaluated candidate.

@@ -32,7 +32,7 @@ std::array<Vector2d, 4> wheels_of(const Body& body, const Pose& pose) {
 }  // namespace
 
 std::optional<RoadLeaving> find_leaving(const Road& road, const Body& body, const Motion& plan,
-                                        double until_s) {
+                                        double until_s, const StopCheck& stop) {
   if (!road.ends()) return std::nullopt;
   const View<const Area> areas(road.drivable);
   const auto wheel_off = [&](double time_s) -> std::optional<Vector2d> {
@@ -47,6 +47,7 @@ std::optional<RoadLeaving> find_leaving(const Road& road, const Body& body, cons
   double on_road_s = 0.0;
   std::optional<Vector2d> off = wheel_off(0.0);
   while (!off && time_s < until_s && fastest > 0.0) {
+    if (stop()) return std::nullopt;
     double apart = std::numeric_limits<double>::infinity();
     for (const Vector2d& wheel : wheels_of(body, plan.pose_at(time_s))) {
       apart = std::min(apart, distance_to_border_m(areas, wheel));

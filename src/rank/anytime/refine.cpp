@@ -35,10 +35,11 @@ std::uint64_t tests_of(const RankWork& work) {
 
 constexpr double never_s = std::numeric_limits<double>::infinity();
 
-/// Tells what is to be said besides the crash.
-void describe(const RefineQuery& q, const Followed& followed, Refined& state, Scratch& scratch) {
+/// Tells what is to be said besides the crash. False when time was up.
+bool describe(const RefineQuery& q, const Followed& followed, Refined& state, Scratch& scratch) {
   const ManoeuvreFacts facts =
       describe_manoeuvre(q.scene, q.candidate, followed, state.leaving, scratch);
+  if (!followed.touches && scratch.stopped()) return false;
   RankedCandidate& told = state.told;
   told.feasible = facts.feasible || q.scene.infeasible == Infeasible::keep;
   told.leaves_road = facts.leaves_road.has_value();
@@ -46,6 +47,7 @@ void describe(const RefineQuery& q, const Followed& followed, Refined& state, Sc
   told.least_time_gap_s = facts.clearance.time_gap_s;
   told.end_speed_mps = told.collides ? 0.0 : facts.at_horizon.speed_mps;
   state.demand_known = true;
+  return true;
 }
 
 constexpr double unknown = -1.0;
@@ -93,10 +95,10 @@ void choose_future(const Scene& scene, Refined& state) {
 }
 
 /// Leaving of the road by the ego on its motion in a future.
-std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const Refined& state,
-                                      const Motion& ego) {
+std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const Refined& state, const Motion& ego,
+                                      const Scratch& scratch) {
   if (&ego == &q.candidate.motion) return state.leaving;
-  return find_leaving(q.scene.road, q.scene.ego, ego, q.scene.slice_s.back());
+  return find_leaving(q.scene.road, q.scene.ego, ego, q.scene.slice_s.back(), scratch.stop);
 }
 
 /// Whether an actor may come near the ego in any future.
@@ -111,33 +113,44 @@ bool comes_near(const RefineQuery& q, Scratch& scratch, RankWork& work) {
   return false;
 }
 
-/// No future has a contact: all scores are known.
-void settle_without_contact(const RefineQuery& q, Refined& state, Scratch& scratch) {
+/// No future has a contact: all scores are known. False when time was up.
+bool settle_without_contact(const RefineQuery& q, Refined& state, Scratch& scratch) {
   const Futures& futures = q.scene.futures;
   if (!futures.displaces_ego()) {
     settle(state, leaving_score(q.scene, state.leaving, never_s));
-    return;
+    return true;
   }
   for (std::size_t f = 0; f < futures.size(); ++f) {
     const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
-    state.scores[f] = leaving_score(q.scene, leaving_of(q, state, ego), never_s);
+    const double score = leaving_score(q.scene, leaving_of(q, state, ego, scratch), never_s);
+    if (scratch.stopped()) return false;
+    state.scores[f] = score;
   }
   combine(q, 0.0, state, scratch);
+  return true;
 }
 
-void look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+/// False when time was up.
+bool look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
   const double horizon_s = q.scene.slice_s.back();
-  state.leaving = find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s);
-  state.told.stage = RankStage::near;
+  const auto leaving =
+      find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s, scratch.stop);
+  if (q.scene.road.ends() && scratch.stopped()) return false;
+  state.leaving = leaving;
   if (!comes_near(q, scratch, work)) {
-    describe(q, {horizon_s, never_s, false}, state, scratch);
-    settle_without_contact(q, state, scratch);
-    return;
+    if (!describe(q, {horizon_s, never_s, false}, state, scratch) ||
+        !settle_without_contact(q, state, scratch)) {
+      return false;
+    }
+    state.told.stage = RankStage::near;
+    return true;
   }
+  state.told.stage = RankStage::near;
   // What can be followed to the horizon can be followed to any contact.
   state.demand_known =
       q.scene.infeasible == Infeasible::keep ||
       is_feasible(q.candidate, demand_until(q.scene, q.candidate, horizon_s, state.leaving));
+  return true;
 }
 
 Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit) {
@@ -148,7 +161,7 @@ Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch:
 void note_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego, Refined& state,
                Followed& followed, const Scratch& scratch) {
   const std::size_t likeliest = q.scene.futures.likeliest();
-  const auto leaving = leaving_of(q, state, ego);
+  const auto leaving = leaving_of(q, state, ego, scratch);
   for (std::size_t f = group.begin; f < group.end; ++f) {
     const Scratch::Hit* const hit = first_hit(q.scene, scratch, f);
     const double until_s = hit != nullptr ? hit->impact.time_s : never_s;
@@ -172,7 +185,10 @@ void note_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego
 /// Finds the first contacts of the ego in all futures. False when time was up.
 bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
   const Futures& futures = q.scene.futures;
-  const RankedCandidate before = state.told;
+  const auto take_back = [&state, before = state.told] {
+    state.told = before;
+    return false;
+  };
   bool decided = true;
   double probability = 0.0;
   Followed followed;
@@ -180,19 +196,18 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
     const FutureGroup group = futures.group(f);
     const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
     const bool known = find_hits(q.scene, ego, group, scratch, work);
-    if ((!known || group.size() < futures.size()) && q.watch.expired()) {
-      state.told = before;
-      return false;
-    }
+    const bool in_time = known && group.size() == futures.size();
+    if (!in_time && scratch.stopped()) return take_back();
     decided = decided && known;
     probability = collision_probability(q.scene, group, scratch, probability);
     note_hits(q, group, ego, state, followed, scratch);
+    if (!in_time && scratch.stopped()) return take_back();
   }
   state.told.stage = RankStage::searched;
   state.told.collision_probability = probability;
   state.stuck = !decided;
   if (!decided) return true;
-  describe(q, followed, state, scratch);
+  if (!describe(q, followed, state, scratch)) return take_back();
   choose_future(q.scene, state);
   combine(q, 0.0, state, scratch);
   return true;
@@ -251,7 +266,8 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   bool going = true;
   bool in_time = true;
   const double left =
-      leaving_score(q.scene, leaving_of(q, state, ego), state.first.time_of_impact_s);
+      leaving_score(q.scene, leaving_of(q, state, ego, scratch), state.first.time_of_impact_s);
+  if (scratch.stopped()) return false;
   while (going) {
     going = chain.advance(steps_at_a_time);
     if (!going) break;
@@ -301,11 +317,10 @@ void bound_as_clear(const Scene& scene, Refined& state) {
 StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
   RankWork work;
   StepEnd end;
-  scratch.stop = &Watch::stop;
-  scratch.stop_context = const_cast<Watch*>(&q.watch);
+  scratch.stop = {&Watch::stop, const_cast<Watch*>(&q.watch)};
   switch (state.told.stage) {
     case RankStage::unseen:
-      look_near(q, state, scratch, work);
+      end.finished = look_near(q, state, scratch, work);
       break;
     case RankStage::near:
       end.finished = search(q, state, scratch, work);
@@ -316,7 +331,7 @@ StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
         end.finished = crash(q, state, scratch, work);
       } else {
         // No stop within: what is begun is worth finishing.
-        scratch.stop = nullptr;
+        scratch.stop = {};
         try {
           const CandidateResult result = evaluate(q.scene, q.candidate, scratch, work);
           if (result.score) {
