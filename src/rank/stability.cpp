@@ -10,7 +10,8 @@ namespace {
 
 /// Where scores are open, a candidate stands behind those whose scores are lower whatever is found
 /// out, and before those whose scores are higher.
-void places_by_intervals(std::vector<CandidateResult>& ranking) {
+void places_by_intervals(RankResult& result) {
+  std::vector<CandidateResult>& ranking = result.ranking;
   std::vector<double> lowest;
   std::vector<double> highest;
   for (const CandidateResult& c : ranking) {
@@ -29,6 +30,12 @@ void places_by_intervals(std::vector<CandidateResult>& ranking) {
     const std::size_t worst = ranking.size() - c.sharing - static_cast<std::size_t>(behind);
     c.best_place = std::min(c.place - 1, static_cast<std::size_t>(before));
     c.worst_place = std::max(c.place - 1, worst);
+    if (!result.proved) continue;
+    if (c.place == 1) {
+      c.worst_place = 0;
+    } else {
+      c.best_place = std::max<std::size_t>(c.best_place, 1);
+    }
   }
 }
 
@@ -59,7 +66,7 @@ void tell_stability(RankResult& result) {
         demoted(ranking[i]) != demoted(ranking[i + 1]) || scores_differ(ranking[i], ranking[i + 1]);
   }
   if (!result.complete) {
-    places_by_intervals(ranking);
+    places_by_intervals(result);
     return;
   }
   const std::size_t samples = result.samples.size();

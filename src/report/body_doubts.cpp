@@ -106,6 +106,9 @@ void doubt_shapes(const Scenario& scenario, View<const Model> models, const Rank
       doubts.push_back(fmt::format(
           "{}: it seems to lie {}; read its mesh with forward {} (or its opposite) and up {}", who,
           turned->lies, turned->forward, turned->up));
+    } else if (model.kind == BodyKind::car && lies_on_its_side(extent_m)) {
+      doubts.push_back(fmt::format(
+          "{}: it is higher than wide; does it lie on its side? Check up and forward", who));
     }
   }
 }

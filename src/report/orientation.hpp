@@ -45,6 +45,13 @@ inline std::optional<Orientation> guess_orientation(const Eigen::Vector3d& exten
   return std::nullopt;
 }
 
+/// Whether a car has its width where the height should be: cars that are not vans are wider than
+/// high.
+inline bool lies_on_its_side(const Eigen::Vector3d& extent_m) {
+  constexpr double longest_m = 4.8;
+  return extent_m.x() < longest_m && extent_m.z() > 1.1 * extent_m.y();
+}
+
 /// Whether some vehicle is of that size, whichever way it is turned.
 inline bool has_vehicle_size(const Eigen::Vector3d& extent_m) {
   const double length = extent_m.maxCoeff();

@@ -80,6 +80,20 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   return row;
 }
 
+/// The highest score of those that are not shown, or what it can be at most.
+std::string highest_hidden(const RankResult& result, const std::vector<std::string>& scores,
+                           std::size_t shown) {
+  const auto highest = [](const CandidateResult& c) {
+    return c.score.value_or(c.score_interval.highest);
+  };
+  const auto first = result.ranking.begin() + static_cast<std::ptrdiff_t>(shown);
+  const auto most = std::max_element(
+      first, result.ranking.end(),
+      [&](const CandidateResult& p, const CandidateResult& q) { return highest(p) < highest(q); });
+  if (!most->score) return fmt::format("{:.2g}", highest(*most));
+  return scores[static_cast<std::size_t>(most - result.ranking.begin())];
+}
+
 /// Whether the contact that the table names begins with the bodies in each other.
 bool overlaps_first(const CandidateResult& ranked) {
   return !ranked.contacts.empty() && detail::begins_in_contact(ranked.contacts.front());
@@ -120,8 +134,8 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
                                  scenario.actors.size(), scenario.actors.size() == 1 ? "" : "s");
   text += table.text(options.colours);
   if (shown < all) {
-    text += fmt::format("... and {} more, up to {} {}\n", all - shown, scores.back(),
-                        measure_unit(result.measure));
+    text += fmt::format("... and {} more, up to {} {}\n", all - shown,
+                        highest_hidden(result, scores, shown), measure_unit(result.measure));
   }
   const auto free = static_cast<std::size_t>(std::count_if(
       result.ranking.begin(), result.ranking.end(), [](const CandidateResult& ranked) {

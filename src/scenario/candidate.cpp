@@ -52,7 +52,10 @@ Result<Candidate> listed_candidate(const Scenario& scenario, std::size_t index, 
   if (!listed.poses.empty()) {
     Result<Motion> motion =
         timed_motion(listed.poses, "candidates.listed[" + std::to_string(index) + "]");
-    if (!motion) return motion.error();
+    if (!motion) {
+      motion.error().place += " of '" + listed.name + "'";
+      return motion.error();
+    }
     return Candidate{listed.name, CandidateOrigin::listed, std::move(*motion), 0.0, 0.0};
   }
   const bool crawls = std::abs(ego.speed_mps) < least_curving_mps;

@@ -55,9 +55,12 @@ public:
       take('\r');
     } else {
       const std::size_t end = std::min(rest_.find_first_of(",\n"), rest_.size());
-      field = rest_.substr(0, end);
+      std::string_view plain = rest_.substr(0, end);
       rest_.remove_prefix(end);
-      if (!field.empty() && field.back() == '\r') field.pop_back();
+      if (!plain.empty() && plain.back() == '\r') plain.remove_suffix(1);
+      while (!plain.empty() && plain.front() == ' ') plain.remove_prefix(1);
+      while (!plain.empty() && plain.back() == ' ') plain.remove_suffix(1);
+      field = plain;
     }
     if (take(',')) return true;
     line_ended_ = true;
@@ -130,7 +133,7 @@ private:
         refuse(absent,
                "'" + field_ + "' is " +
                    (column == absent ? "no column of a table of candidates" : "named twice"),
-               "the first line names columns out of " + known);
+               "the first line names columns, with commas between, out of " + known);
         return;
       }
       seen[column] = true;
@@ -174,11 +177,8 @@ private:
 
   double number(std::size_t column) {
     double value = 0.0;
-    while (!field_.empty() && field_.back() == ' ') field_.pop_back();
-    const char* begin = field_.data();
-    const char* const end = begin + field_.size();
-    while (begin != end && *begin == ' ') ++begin;
-    const auto [stop, fault] = std::from_chars(begin, end, value);
+    const char* const end = field_.data() + field_.size();
+    const auto [stop, fault] = std::from_chars(field_.data(), end, value);
     if (fault != std::errc() || stop != end) {
       refuse(column, "'" + field_ + "' is not a number", give_one_in(column_ranges[column]));
     } else if (!column_ranges[column].holds(value)) {

@@ -149,7 +149,7 @@ void check_ego(const Scenario& scenario, Check& check) {
 void check_candidates(const Scenario& scenario, Check& check) {
   for (std::size_t i = 0; i < scenario.listed.size() && check.status.ok(); ++i) {
     const ListedCandidate& candidate = scenario.listed[i];
-    const std::string path = "candidates.listed[" + std::to_string(i) + "]";
+    const std::string path = ranges::indexed("candidates.listed", i);
     check.at_most(path + ".acceleration_mps2", candidate.acceleration_mps2,
                   limits::acceleration_mps2);
     check.at_most(path + ".steering_deg", candidate.steering_rad.value_or(0.0),
@@ -164,11 +164,13 @@ void check_candidates(const Scenario& scenario, Check& check) {
                    "begins",
                    "write the poses in the frame of the ego's pose");
     }
+    // It may stand in a table, where an index tells little.
+    if (!check.status.ok()) check.status.error().place += " of '" + candidate.name + "'";
   }
   if (!scenario.grid) {
     if (scenario.listed.empty() && !scenario.add_straight_braking) {
       check.refuse("candidates", "leaves no manoeuvre to rank",
-                   "list one, or let the grid be made");
+                   "list one, name a table, let the grid be made, or set add_straight_braking");
     }
     return;
   }

@@ -78,7 +78,11 @@ Status read_table(const std::string& table, const std::string& file, const Scena
   }
   const Result<std::string> text = detail::read_text_file(*path, scenario_limits::table_bytes,
                                                           "name a table of comma-separated values");
-  if (!text) return text.error();
+  if (!text) {
+    Error error = text.error();
+    error.place = "candidates.table of " + file;
+    return error;
+  }
   return detail::add_candidate_table(*text, *path, listed);
 }
 

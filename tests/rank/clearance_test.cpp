@@ -206,6 +206,51 @@ TEST(OrderOfHarmless, StaysOnTheRoadKeepsApartAndEndsSlow) {
   EXPECT_EQ(order(scene.ranked()), "brakes, too=brakes right=on");
 }
 
+/// Wherever time is up: what is told as known is that of the whole answer.
+TEST(OrderOfHarmless, NoHalfOfADistanceIsTold) {
+  std::size_t cut_short = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    oracle::Random random(seed);
+    Scene scene = two_cars(random.real(5.0, 25.0));
+    for (int i = 0; i < 6; ++i) {
+      scene.add_actor("car " + std::to_string(i), 1, random.real(10.0, 60.0), random.real(4.0, 9.0),
+                      random.real(0.0, 6.3), random.real(0.0, 15.0));
+    }
+    scene.scenario.road.drivable = {{{{-20, -4}, {100, -4}, {100, 4}, {-20, 4}}, {}}};
+    scene.scenario.road.harm_per_leaving = 0.05;
+    if (seed % 2 == 0) scene.scenario.ego.uncertainty = {0.1, 0.01, 0.2};
+    scene.scenario.grid = CandidateGrid{3, 5};
+    RankerOptions options;
+    options.rank.measure = Measure::harm;
+    options.rank.sampled_futures = 8;
+    Result<Ranker> ranker = Ranker::prepare(scene.scenario, scene.models, options);
+    ASSERT_TRUE(ranker.ok());
+    const RankResult plain = scene.ranked(options.rank);
+    const RankerAnswer answer = ranker->rank(plain.candidates, {});
+    ASSERT_TRUE(answer.complete);
+    std::vector<RankedCandidate> whole(plain.candidates.size());
+    for (const RankedCandidate& each : answer.ranking) whole[each.candidate] = each;
+    for (double deadline_s = 2e-6; deadline_s < 0.1; deadline_s *= 1.25) {
+      RankBudget budget;
+      budget.deadline_s = deadline_s;
+      const RankerAnswer cut = ranker->rank(plain.candidates, budget);
+      if (!cut.complete) ++cut_short;
+      for (const RankedCandidate& each : cut.ranking) {
+        const RankedCandidate& all = whole[each.candidate];
+        EXPECT_LE(each.interval.lowest, all.score);
+        EXPECT_GE(each.interval.highest, all.score);
+        if (!each.known) continue;
+        EXPECT_EQ(each.score, all.score);
+        EXPECT_EQ(each.least_distance_m, all.least_distance_m);
+        EXPECT_EQ(each.least_time_gap_s, all.least_time_gap_s);
+        EXPECT_EQ(each.leaves_road, all.leaves_road);
+      }
+    }
+  }
+  EXPECT_GT(cut_short, 6U);
+}
+
 TEST(OrderOfHarmless, IsTheRankersToo) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

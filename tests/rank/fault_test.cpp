@@ -149,7 +149,7 @@ TEST(Fault, APoseWithoutANumberIsNoRigidPose) {
   const Result<RankResult> refused = rank(scene.scenario, scene.models);
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, ErrorCode::bad_input);
-  EXPECT_EQ(refused.error().place, "candidates.listed[0].poses[1]");
+  EXPECT_EQ(refused.error().place, "candidates.listed[0].poses[1] of 'poses'");
   pose = {};
   pose.translation.x() = nan;
   scene.scenario.listed[0].poses[1].pose = pose;
@@ -157,7 +157,7 @@ TEST(Fault, APoseWithoutANumberIsNoRigidPose) {
   scene.scenario.listed[0].poses[1] = {nan, {}};
   const Result<RankResult> timeless = rank(scene.scenario, scene.models);
   ASSERT_FALSE(timeless.ok());
-  EXPECT_EQ(timeless.error().place, "candidates.listed[0].poses[1].t_s");
+  EXPECT_EQ(timeless.error().place, "candidates.listed[0].poses[1].t_s of 'poses'");
 }
 
 TEST(Fault, MoreWorkersThanThereMayBeAreRefused) {

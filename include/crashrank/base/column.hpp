@@ -43,7 +43,7 @@ public:
   static Column borrow(View<const T> items, std::shared_ptr<const void> keeper) noexcept {
     assert(keeper != nullptr);
     Column column;
-    column.keeper_ = std::move(keeper);
+    column.keeper_.swap(keeper);
     column.data_ = items.data();
     column.size_ = items.size();
     return column;
