@@ -48,6 +48,11 @@ inline void begin_block(const PressQuery& q, const PieceBlock& block, const Piec
     store(load(earlier.ahead.data() + h), states.ahead.data() + h);
   }
   std::fill(states.s.begin() + block.count, states.s.end(), never);
+  if (!q.pusher->vehicle->in_joint.empty()) {
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (q.pusher->vehicle->in_joint[block.first + k] != 0) states.s[k] = never;
+    }
+  }
   if (q.settings->neighbours.size() < 2) return;
   for (std::size_t k = 0; k < block.count; ++k) {
     const OutlinePiece& piece = q.pusher->vehicle->profile->pieces[block.first + k];

@@ -12,20 +12,41 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double adjoining_m = 0.05;
-
 double reach_along(const Rectangle& r, const Vector2d& direction) {
   return r.half[0] * std::abs(r.axis[0].dot(direction)) +
          r.half[1] * std::abs(r.axis[1].dot(direction));
 }
 
+constexpr double touching_m = 0.05;
+
+/// How near parts of one body have to be: more where they stand end to end.
+double reach_of(const Rectangle& p, const Rectangle& q) {
+  const Vector2d apart = q.center - p.center;
+  double widest_gap = 0.0;
+  double reach = touching_m;
+  for (const Rectangle* r : {&p, &q}) {
+    for (const Vector2d& axis : r->axis) {
+      const double gap = std::abs(apart.dot(axis)) - reach_along(p, axis) - reach_along(q, axis);
+      if (gap <= widest_gap) continue;
+      widest_gap = gap;
+      const Vector2d across(-axis.y(), axis.x());
+      const double half_p = reach_along(p, across);
+      const double half_q = reach_along(q, across);
+      const double common =
+          std::min({half_p + half_q - std::abs(apart.dot(across)), 2.0 * half_p, 2.0 * half_q});
+      reach = common >= std::max(half_p, half_q) ? widest_joint_m : touching_m;
+    }
+  }
+  return reach;
+}
+
 /// Separating axes of two rectangles.
-bool boxes_adjoin(const Rectangle& p, const Rectangle& q) {
+bool boxes_near(const Rectangle& p, const Rectangle& q, double reach_m) {
   for (const Rectangle* r : {&p, &q}) {
     for (const Vector2d& axis : r->axis) {
       const double gap =
           std::abs((q.center - p.center).dot(axis)) - reach_along(p, axis) - reach_along(q, axis);
-      if (gap > adjoining_m) return false;
+      if (gap > reach_m) return false;
     }
   }
   return true;
@@ -53,12 +74,12 @@ bool cross_each_other(const Segment& s, const Segment& t) {
          side(t, s.middle - s.half) != side(t, s.middle + s.half);
 }
 
-bool are_near(const Segment& s, const Segment& t) {
-  if ((s.middle - t.middle).norm() > s.half_m + t.half_m + adjoining_m) return false;
-  return distance_m(s, t.middle - t.half) <= adjoining_m ||
-         distance_m(s, t.middle + t.half) <= adjoining_m ||
-         distance_m(t, s.middle - s.half) <= adjoining_m ||
-         distance_m(t, s.middle + s.half) <= adjoining_m || cross_each_other(s, t);
+bool are_near(const Segment& s, const Segment& t, double reach_m) {
+  if ((s.middle - t.middle).norm() > s.half_m + t.half_m + reach_m) return false;
+  return distance_m(s, t.middle - t.half) <= reach_m ||
+         distance_m(s, t.middle + t.half) <= reach_m ||
+         distance_m(t, s.middle - s.half) <= reach_m ||
+         distance_m(t, s.middle + s.half) <= reach_m || cross_each_other(s, t);
 }
 
 /// A body's heading seen from above, as the contact law has it.
@@ -76,13 +97,14 @@ struct Heading {
 };
 
 /// The pieces of a body's outlines that lie within reach of a rectangle, by rising band.
-std::vector<Segment> segments_near(const Body& body, const Rectangle& box, const Vector2d& origin) {
+std::vector<Segment> segments_near(const Body& body, const Rectangle& box, const Vector2d& origin,
+                                   double reach_m) {
   const Heading heading(body.standing);
   std::vector<Segment> near;
   for (const OutlinePiece& piece : body.vehicle.profile->pieces) {
     const Vector2d middle = heading.to_world(piece.x, piece.y);
     const double half_m = 0.5 * static_cast<double>(piece.length_m);
-    if (distance_m(box, middle) > half_m + adjoining_m) continue;
+    if (distance_m(box, middle) > half_m + reach_m) continue;
     const Vector2d end =
         heading.to_world(piece.x - half_m * piece.normal_y, piece.y + half_m * piece.normal_x);
     near.push_back({middle - origin, end - middle, half_m});
@@ -90,36 +112,71 @@ std::vector<Segment> segments_near(const Body& body, const Rectangle& box, const
   return near;
 }
 
-/// Sorts one's pieces into the cells of a grid and looks around each of the other's.
-bool outlines_near(const std::vector<Segment>& p, const std::vector<Segment>& q) {
-  double longest_m = 0.0;
-  for (const std::vector<Segment>* side : {&p, &q}) {
-    for (const Segment& s : *side) longest_m = std::max(longest_m, s.half_m);
+/// Segments sorted into the cells of a grid so wide that those which are near each other have their
+/// middles in cells that touch.
+class Grid {
+public:
+  Grid(const std::vector<Segment>& segments, double longest_half_m)
+      : cell_m_(2.0 * longest_half_m + widest_joint_m) {
+    cells_.reserve(segments.size());
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      cells_.emplace_back(cell_of(segments[i]), static_cast<std::uint32_t>(i));
+    }
+    std::sort(cells_.begin(), cells_.end());
   }
-  // No two pieces that are near have middles in cells that do not touch.
-  const double cell_m = 2.0 * longest_m + adjoining_m;
-  using Cell = std::pair<std::int64_t, std::int64_t>;
-  const auto cell_of = [cell_m](const Segment& s) {
-    return Cell{static_cast<std::int64_t>(std::floor(s.middle.x() / cell_m)),
-                static_cast<std::int64_t>(std::floor(s.middle.y() / cell_m))};
-  };
-  std::vector<std::pair<Cell, std::uint32_t>> grid;
-  grid.reserve(q.size());
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    grid.emplace_back(cell_of(q[i]), static_cast<std::uint32_t>(i));
-  }
-  std::sort(grid.begin(), grid.end());
-  for (const Segment& s : p) {
+
+  /// Whether one of those around a segment is meant, by its index.
+  template <class Meant> bool any_around(const Segment& s, Meant&& meant) const {
     const Cell own = cell_of(s);
     for (std::int64_t column = own.first - 1; column <= own.first + 1; ++column) {
-      auto at = std::lower_bound(grid.begin(), grid.end(),
+      auto at = std::lower_bound(cells_.begin(), cells_.end(),
                                  std::pair{Cell{column, own.second - 1}, std::uint32_t{0}});
-      for (; at != grid.end() && at->first <= Cell{column, own.second + 1}; ++at) {
-        if (are_near(s, q[at->second])) return true;
+      for (; at != cells_.end() && at->first <= Cell{column, own.second + 1}; ++at) {
+        if (meant(at->second)) return true;
       }
     }
+    return false;
   }
-  return false;
+
+private:
+  using Cell = std::pair<std::int64_t, std::int64_t>;
+  Cell cell_of(const Segment& s) const {
+    return {static_cast<std::int64_t>(std::floor(s.middle.x() / cell_m_)),
+            static_cast<std::int64_t>(std::floor(s.middle.y() / cell_m_))};
+  }
+
+  double cell_m_;
+  std::vector<std::pair<Cell, std::uint32_t>> cells_;
+};
+
+double longest_half_m(const std::vector<Segment>& segments) {
+  double longest = 0.0;
+  for (const Segment& s : segments) longest = std::max(longest, s.half_m);
+  return longest;
+}
+
+bool outlines_near(const std::vector<Segment>& p, const std::vector<Segment>& q, double reach_m) {
+  const Grid grid(q, std::max(longest_half_m(p), longest_half_m(q)));
+  return std::any_of(p.begin(), p.end(), [&](const Segment& s) {
+    return grid.any_around(s, [&](std::uint32_t i) { return are_near(s, q[i], reach_m); });
+  });
+}
+
+/// Whether another segment faces one within reach ahead of its outer side. Both run with the body
+/// on the same hand.
+bool faces(const Segment& s, const Segment& other) {
+  constexpr double opposed = -0.5;
+  const Vector2d along = s.half / s.half_m;
+  if (along.dot(other.half) > opposed * other.half_m) return false;
+  // From the middle along the outward normal until the other's line.
+  const Vector2d normal(along.y(), -along.x());
+  const Vector2d apart = other.middle - s.middle;
+  const double across = cross(normal, other.half);
+  if (across == 0.0) return false;
+  const double ahead_m = cross(apart, other.half) / across;
+  const double on_other = cross(apart, normal) / across;
+  constexpr double reach = 1.0 + 1e-6;
+  return ahead_m > 0.0 && ahead_m <= widest_joint_m && std::abs(on_other) <= reach;
 }
 
 /// Whether one of the pieces, none of which is near the body's outlines, lies inside them.
@@ -164,11 +221,34 @@ double distance_m(const Rectangle& rectangle, const Vector2d& point) {
 }
 
 bool adjoin(const Body& p, const Rectangle& box_p, const Body& q, const Rectangle& box_q) {
-  if (!boxes_adjoin(box_p, box_q)) return false;
+  const double reach_m = reach_of(box_p, box_q);
+  if (!boxes_near(box_p, box_q, reach_m)) return false;
   const Vector2d origin = box_p.center;
-  const std::vector<Segment> of_p = segments_near(p, box_q, origin);
-  const std::vector<Segment> of_q = segments_near(q, box_p, origin);
-  return outlines_near(of_p, of_q) || lies_inside(of_p, q, origin) || lies_inside(of_q, p, origin);
+  const std::vector<Segment> of_p = segments_near(p, box_q, origin, reach_m);
+  const std::vector<Segment> of_q = segments_near(q, box_p, origin, reach_m);
+  return outlines_near(of_p, of_q, reach_m) || lies_inside(of_p, q, origin) ||
+         lies_inside(of_q, p, origin);
+}
+
+std::vector<std::uint8_t> pieces_in_joints(const Profile& profile) {
+  std::vector<std::uint8_t> in_joint(profile.pieces.size(), 0);
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    std::vector<Segment> segments;
+    for (std::size_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
+      const OutlinePiece& piece = profile.pieces[i];
+      const double half_m = 0.5 * static_cast<double>(piece.length_m);
+      segments.push_back({Vector2d(static_cast<double>(piece.x), static_cast<double>(piece.y)),
+                          half_m * Vector2d(-static_cast<double>(piece.normal_y),
+                                            static_cast<double>(piece.normal_x)),
+                          half_m});
+    }
+    const Grid grid(segments, longest_half_m(segments));
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      in_joint[profile.first[band] + i] = static_cast<std::uint8_t>(grid.any_around(
+          segments[i], [&](std::uint32_t k) { return faces(segments[i], segments[k]); }));
+    }
+  }
+  return in_joint;
 }
 
 }  // namespace crashrank::detail

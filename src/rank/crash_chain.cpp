@@ -1,6 +1,7 @@
 #include "rank/crash_chain.hpp"
 
 #include "crash/pair_order.hpp"
+#include "rank/held_manoeuvre.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,9 @@ namespace crashrank::detail {
 namespace {
 
 using Eigen::Vector3d;
+
+/// No wheels are turned further, rad.
+constexpr double most_steering_rad = 0.7;
 
 SideEffect side_of(std::size_t body, const ContactBody& given, const BodyContact& contact) {
   SideEffect side;
@@ -73,8 +77,8 @@ void CrashChain::prepare(const Scene& scene) {
   run_.prepare(scene.actors.size() + 1, pieces);
 }
 
-void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Motion& plan,
-                       std::size_t future, const Contact& first, const HarmSample& sample) {
+void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t future,
+                       const Contact& first, const HarmSample& sample) {
   first_ = &first;
   bodies_.clear();
   actors_.clear();
@@ -83,8 +87,14 @@ void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Mot
     SceneBody body;
     body.vehicle = &vehicle;
     body.plan = &motion;
-    body.brake = brake_after_contact;
-    body.footing = vehicle.movable() ? &body_of(scene, index).footing : nullptr;
+    if (vehicle.movable()) {
+      const HeldManoeuvre held = held_manoeuvre(motion, vehicle.center_m, first.time_of_impact_s);
+      body.brake = std::clamp(held.braking_mps2 / (scene.grip * standard_gravity_mps2),
+                              brake_after_contact, 1.0);
+      body.steering_rad = std::clamp(std::atan(held.curvature_per_m * vehicle.wheelbase_m),
+                                     -most_steering_rad, most_steering_rad);
+      body.footing = &body_of(scene, index).footing;
+    }
     body.number = static_cast<std::uint32_t>(number);
     if (index != ego_body) body.adjoins = scene.adjoining[number];
     bodies_.push_back(body);
@@ -93,9 +103,6 @@ void CrashChain::begin(const Scene& scene, const Candidate& candidate, const Mot
   add(ego_body, scene.actors.size(), scene.ego.vehicle, plan);
   std::size_t partner = 0;
   SceneBody& ego = bodies_.front();
-  const double braking = -candidate.acceleration_mps2 / (scene.grip * standard_gravity_mps2);
-  ego.brake = std::clamp(braking, brake_after_contact, 1.0);
-  ego.steering_rad = std::atan(candidate.curvature_per_m * scene.ego.vehicle.wheelbase_m);
   const Vector3d across(-first.closing.y(), first.closing.x(), 0.0);
   const double speed = across.norm();
   if (speed > 0.0) ego.shift_m = (sample.shift_m / speed) * across;

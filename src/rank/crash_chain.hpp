@@ -22,8 +22,8 @@ public:
 
   /// Begins with the ego on its motion in a future at its first contact, the actors on their plans
   /// in that future; all of them outlive the run.
-  void begin(const Scene& scene, const Candidate& candidate, const Motion& ego, std::size_t future,
-             const Contact& first, const HarmSample& sample);
+  void begin(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
+             const HarmSample& sample);
   /// Takes at most so many steps; false once everything rests.
   bool advance(int steps) { return run_.advance(steps); }
   void finish();

@@ -84,10 +84,10 @@ std::vector<std::size_t> effect_of_sample(const Scene& scene) {
 }
 
 /// Simulates the chain of a first contact in a future and a sample.
-void simulate(const Scene& scene, const Candidate& candidate, const Motion& ego, std::size_t future,
-              const Contact& first, const HarmSample& sample, Scratch& scratch, RankWork& work,
+void simulate(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
+              const HarmSample& sample, Scratch& scratch, RankWork& work,
               std::vector<ContactEffect>& effects) {
-  scratch.chain.begin(scene, candidate, ego, future, first, sample);
+  scratch.chain.begin(scene, ego, future, first, sample);
   scratch.chain.finish();
   scratch.chain.feel(scene, scratch.felt);
   scratch.chain.effects(effects, scratch.order);
@@ -164,8 +164,8 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
 }
 
 /// Follows one candidate through its crash in a future. False where it was stopped.
-bool approach_future(const Scene& scene, const Candidate& candidate, const Motion& ego,
-                     std::size_t future, Scratch& scratch, RankWork& work, Approach& found) {
+bool approach_future(const Scene& scene, const Motion& ego, std::size_t future, Scratch& scratch,
+                     RankWork& work, Approach& found) {
   std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
   const Scratch::Hit* const hit = first_hit(scene, scratch, future);
   feel_hits(scratch, hit, scratch.felt);
@@ -180,8 +180,7 @@ bool approach_future(const Scene& scene, const Candidate& candidate, const Motio
     found.outcome.time_of_impact_s = first.time_of_impact_s;
     found.outcome.closing_speed_mps = first.closing_speed_mps;
     found.effects.emplace_back();
-    simulate(scene, candidate, ego, future, first, scene.plain, scratch, work,
-             found.effects.back());
+    simulate(scene, ego, future, first, scene.plain, scratch, work, found.effects.back());
     result.crowded = scratch.chain.run().crowded();
     found.outcome.contacts = scratch.chain.contacts().size();
     found.told = tell_contacts(scene, scratch.chain, scratch.order, hit->impact,
@@ -194,8 +193,7 @@ bool approach_future(const Scene& scene, const Candidate& candidate, const Motio
       last = places[i];
       if (scratch.stopped()) return false;
       found.effects.emplace_back();
-      simulate(scene, candidate, ego, future, first, scene.samples[i], scratch, work,
-               found.effects.back());
+      simulate(scene, ego, future, first, scene.samples[i], scratch, work, found.effects.back());
     }
   }
   add_grazes(scene, scratch, future, result);
@@ -301,7 +299,7 @@ bool approach_group(const Scene& scene, const Candidate& candidate, std::size_t 
     const std::size_t future = is_first ? first : scratch.open.front();
     found.outcomes.emplace_back();
     Approach& each = found.outcomes.back();
-    if (!approach_future(scene, candidate, ego, future, scratch, work, each)) return false;
+    if (!approach_future(scene, ego, future, scratch, work, each)) return false;
     scratch.same.swap(scratch.open);
     scratch.open.clear();
     futures.split(future, scratch.felt, scratch.same, scratch.open);

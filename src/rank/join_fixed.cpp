@@ -102,6 +102,7 @@ Status join_fixed(Scene& scene) {
     facts.surface = first.surface;
     Result<Vehicle> vehicle = describe_vehicle(common_mesh(scene, members), facts);
     if (!vehicle) return vehicle.error();
+    vehicle->in_joint = pieces_in_joints(*vehicle->profile);
     for (const std::size_t i : members) scene.joined_of[i] = scene.joined.size();
     scene.joined.push_back({std::move(members), std::move(*vehicle)});
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace crashrank::detail {
 namespace {
@@ -36,52 +35,23 @@ void fill(const ContactBody& body, const Model& model, const BodyContact& from, 
   to.cdc = cdc_code({to.pdof_deg, from.damaged, bounds, damage_m, slides});
 }
 
-/// Actors by which joined bodies are named.
-class JoinedNames {
-public:
-  JoinedNames(const Scene& scene, const CrashChain& chain, const std::vector<std::size_t>& order,
-              std::size_t first_actor)
-      : scene_(scene), chain_(chain), names_(scene.joined.size(), Scene::alone) {
-    if (names_.empty()) return;
-    const std::size_t first = scene.joined_of[first_actor];
-    if (first != Scene::alone) names_[first] = first_actor;
-    for (const std::size_t k : order) {
-      if (k != CrashChain::without_force) add(chain.contacts()[k]);
-    }
-  }
-  /// The second body of a contact.
-  std::size_t second(const SceneContact& contact) const {
-    const std::size_t actor = chain_.body(contact.b);
-    const std::size_t joined = scene_.joined_of[actor];
-    return joined == Scene::alone ? actor : names_[joined];
-  }
-
-private:
-  /// The contact that begins first decides, by where its force acts.
-  void add(const SceneContact& contact) {
-    const std::size_t joined = scene_.joined_of[chain_.body(contact.b)];
-    if (joined == Scene::alone || names_[joined] != Scene::alone) return;
-    const std::vector<std::size_t>& members = scene_.joined[joined].members;
-    names_[joined] = members.front();
-    double least_m = std::numeric_limits<double>::infinity();
-    for (const std::size_t actor : members) {
-      const Rectangle box = rectangle_of(scene_.actors[actor]);
-      const double away_m = distance_m(box, contact.outcome.point_m.head<2>());
-      if (!(away_m < least_m)) continue;
-      least_m = away_m;
-      names_[joined] = actor;
-    }
-  }
-
-  const Scene& scene_;
-  const CrashChain& chain_;
-  std::vector<std::size_t> names_;  ///< by index into `Scene::joined`
-};
+/// The second body of a contact; of joined ones the one in or next to which the force acts.
+std::size_t second_body(const Scene& scene, const CrashChain& chain, const SceneContact& contact) {
+  const std::size_t body = chain.body(contact.b);
+  const std::size_t joined = scene.joined_of[body];
+  if (joined == Scene::alone) return body;
+  const std::vector<std::size_t>& members = scene.joined[joined].members;
+  const auto away_m = [&](std::size_t actor) {
+    return distance_m(rectangle_of(scene.actors[actor]), contact.outcome.point_m.head<2>());
+  };
+  return *std::min_element(members.begin(), members.end(),
+                           [&](std::size_t p, std::size_t q) { return away_m(p) < away_m(q); });
+}
 
 /// A contact of the ego's that the exact search did not find: bodies are deformed by then.
-Contact later_contact(const Scene& scene, const JoinedNames& names, const SceneContact& from) {
+Contact later_contact(const Scene& scene, const CrashChain& chain, const SceneContact& from) {
   Contact contact;
-  contact.actor = names.second(from);
+  contact.actor = second_body(scene, chain, from);
   contact.time_of_impact_s = from.begin_s;
   contact.point_m = from.outcome.point_m;
   contact.closing = closing_of(from);
@@ -95,10 +65,10 @@ Contact later_contact(const Scene& scene, const JoinedNames& names, const SceneC
 }
 
 FurtherContact further_contact(const Scene& scene, const CrashChain& chain,
-                               const JoinedNames& names, const SceneContact& from) {
+                               const SceneContact& from) {
   FurtherContact contact;
   contact.a = chain.body(from.a);
-  contact.b = names.second(from);
+  contact.b = second_body(scene, chain, from);
   const Body& a = scene.actors[contact.a];
   const Body& b = scene.actors[contact.b];
   contact.time_s = from.begin_s;
@@ -193,7 +163,6 @@ std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& cha
                                        const Pose& ego, const Pose& other, CandidateResult& result,
                                        std::vector<DamagePlan>& plans) {
   std::vector<ToldContact> told;
-  const JoinedNames names(scene, chain, order, result.contacts.front().actor);
   std::vector<DamagePlan> further_plans;
   plans.emplace_back();  // the first contact's
   bool first_acts = false;
@@ -207,7 +176,7 @@ std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& cha
     const View<const std::size_t> pressed_view{pressed.data(), pressed.size()};
     DamageQuery query;
     if (from.a != 0) {
-      result.further.push_back(further_contact(scene, chain, names, from));
+      result.further.push_back(further_contact(scene, chain, from));
       told.push_back({true, result.further.size() - 1});
       const FurtherContact& contact = result.further.back();
       query = {contact.a, contact.b, ImpactState::contact, 0.0, -1, -1, contact.point_m};
@@ -215,7 +184,7 @@ std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& cha
       continue;
     }
     const bool is_first = from.is_first;
-    if (!is_first) result.contacts.push_back(later_contact(scene, names, from));
+    if (!is_first) result.contacts.push_back(later_contact(scene, chain, from));
     const std::size_t index = is_first ? 0 : result.contacts.size() - 1;
     Contact& contact = result.contacts[index];
     tell_severity(scene, from, contact);

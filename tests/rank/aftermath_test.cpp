@@ -1,3 +1,4 @@
+#include "crashrank/scenario/candidate.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -5,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <numbers>
 
 namespace crashrank {
@@ -45,6 +47,46 @@ TEST(Aftermath, TheForceIsTheWallsThatBearsItNotThePostsMetFirst) {
   EXPECT_EQ(scene.scenario.actors[ranked.contacts[1].actor].name, "wall");
   EXPECT_GT(ranked.contacts[1].severity.ego.delta_v_mps, 20.0);
   EXPECT_GE(ranked.contacts[1].time_of_impact_s, ranked.contacts[0].time_of_impact_s);
+}
+
+/// Braking and steering by a listed manoeuvre and by the same motion in poses every 50 ms: what the
+/// ego runs into after its first contact is the same.
+TEST(Aftermath, TimedPosesBrakeAndSteerOnAsTheManoeuvreDoes) {
+  for (const double yaw_rate : {0.0, 0.15}) {
+    Scene scene = road();
+    scene.scenario.grip = 0.8;
+    scene.scenario.ego.max_deceleration_mps2 = 8.0;
+    const std::size_t light = scene.add_model(
+        "light", box_mesh({0.5F, 0.5F, 0.7F}, 2, {0, 0, 0.7F}), BodyKind::car, 300.0);
+    const std::size_t wall =
+        scene.add_model("wall", box_mesh({0.5F, 8.0F, 1.5F}, 2, {0, 0, 1.5F}), BodyKind::building);
+    scene.add_actor("light", light, 12.0, 0.0);
+    scene.add_actor("wall", wall, 16.0, 0.0);
+    ListedCandidate& listed = scene.scenario.listed.front();
+    listed.acceleration_mps2 = -7.0;
+    if (yaw_rate != 0.0) listed.yaw_rate_radps = yaw_rate;
+    const std::vector<Candidate> made = *make_candidates(scene.scenario, 4.0);
+    const CandidateResult manoeuvre = scene.ranked().ranking.front();
+    listed = {};
+    listed.name = "poses";
+    for (int i = 0; i <= 40; ++i) {
+      const double time_s = 0.05 * i;
+      listed.poses.push_back({time_s, made.front().motion.pose_at(time_s)});
+    }
+    scene.scenario.listed.resize(1);
+    const CandidateResult poses = scene.ranked().ranking.front();
+    ASSERT_EQ(manoeuvre.contacts.size(), poses.contacts.size());
+    ASSERT_GE(poses.contacts.size(), 1U);
+    EXPECT_NEAR(*poses.score / *manoeuvre.score, 1.0, 0.1) << yaw_rate;
+    EXPECT_NEAR(poses.contacts.back().time_of_impact_s, manoeuvre.contacts.back().time_of_impact_s,
+                0.03);
+    EXPECT_NEAR(poses.contacts.back().closing_speed_mps,
+                manoeuvre.contacts.back().closing_speed_mps, 0.4);
+    std::printf("yaw rate %.2f: %zu contacts, %.4f and %.4f, last closing %.2f and %.2f m/s\n",
+                yaw_rate, poses.contacts.size(), *manoeuvre.score, *poses.score,
+                manoeuvre.contacts.back().closing_speed_mps,
+                poses.contacts.back().closing_speed_mps);
+  }
 }
 
 TEST(Aftermath, AChainOfEqualMassesHandsTheSpeedOn) {

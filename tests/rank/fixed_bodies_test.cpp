@@ -208,25 +208,72 @@ TEST(FixedBodies, AnAngleOfWallsDoesNotAdjoinWhatStandsBetweenItsArms) {
 }
 
 // Two blocks before the car's front, as one wall and with a gap between them.
-TEST(FixedBodies, WhatComesWithinFiftyMillimetresIsOneBody) {
+/// How many bodies of a scene the ego touches.
+std::size_t bodies_touched(const Scene& scene) {
+  std::vector<std::size_t> bodies;
+  const RankResult result = scene.ranked();
+  for (const Contact& contact : of(result, "on").contacts) {
+    if (std::find(bodies.begin(), bodies.end(), contact.actor) == bodies.end()) {
+      bodies.push_back(contact.actor);
+    }
+  }
+  return bodies.size();
+}
+
+TEST(FixedBodies, PartsWithAJointAreOneBody) {
   const auto contacts = [](double gap_m) {
     Scene scene = ice();
     const std::size_t wall =
         scene.add_model("wall", box_mesh({0.5F, 0.5F, 1.5F}, 2, {0, 0, 1.5F}), BodyKind::building);
     scene.add_actor("left", wall, wall_face_m + 0.5, 0.5 + 0.5 * gap_m);
     scene.add_actor("right", wall, wall_face_m + 0.5, -0.5 - 0.5 * gap_m);
-    const RankResult result = scene.ranked();
-    std::vector<std::size_t> bodies;
-    for (const Contact& contact : of(result, "on").contacts) {
-      if (std::find(bodies.begin(), bodies.end(), contact.actor) == bodies.end()) {
-        bodies.push_back(contact.actor);
-      }
-    }
-    return bodies.size();
+    return bodies_touched(scene);
   };
   EXPECT_EQ(contacts(0.0), 1U);
   EXPECT_EQ(contacts(0.049), 1U);
-  EXPECT_EQ(contacts(0.2), 2U);
+  EXPECT_EQ(contacts(0.29), 1U);
+  EXPECT_EQ(contacts(0.4), 2U);
+}
+
+TEST(FixedBodies, APostBeforeAWallIsNoPartOfIt) {
+  const auto contacts = [](double gap_m) {
+    Scene scene = ice();
+    const std::size_t wall =
+        scene.add_model("wall", box_mesh({0.5F, 4.0F, 1.5F}, 2, {0, 0, 1.5F}), BodyKind::building);
+    const std::size_t post =
+        scene.add_model("post", box_mesh({0.05F, 0.05F, 1.0F}, 1, {0, 0, 1.0F}), BodyKind::pole);
+    scene.add_actor("wall", wall, wall_face_m + 0.5, 0.0);
+    scene.add_actor("post", post, wall_face_m - 0.05 - gap_m, 0.2);
+    return bodies_touched(scene);
+  };
+  EXPECT_EQ(contacts(0.04), 1U);
+  EXPECT_EQ(contacts(0.06), 2U);
+}
+
+/// A car along a rail of ten parts: no end of a part in a joint catches it.
+TEST(FixedBodies, ARailWithJointsActsAsOneWithout) {
+  const auto delta_v = [](double gap_m, double yaw_rad) {
+    constexpr float half_m = 2.0F;
+    Scene scene = ice();
+    scene.scenario.ego.pose = pose_from_angles({0, 0, 0}, yaw_rad, 0, 0);
+    const std::size_t part =
+        scene.add_model("part", box_mesh({half_m, 0.2F, 0.6F}, 2, {0, 0, 0.6F}), BodyKind::barrier);
+    for (int i = 0; i < 10; ++i) {
+      scene.add_actor("part " + std::to_string(i), part, 4.0 + i * (2.0 * half_m + gap_m), 3.5);
+    }
+    const RankResult result = scene.ranked();
+    double sum = 0.0;
+    for (const Contact& contact : of(result, "on").contacts)
+      sum += contact.severity.ego.delta_v_mps;
+    return sum;
+  };
+  for (const double yaw_rad : {0.09, 0.17, 0.35}) {
+    const double without = delta_v(0.0, yaw_rad);
+    EXPECT_GT(without, 1.0);
+    for (const double gap_m : {0.03, 0.06, 0.12, 0.2, 0.29}) {
+      EXPECT_NEAR(delta_v(gap_m, yaw_rad) / without, 1.0, 0.1) << gap_m << " m, " << yaw_rad;
+    }
+  }
 }
 
 }  // namespace

@@ -27,14 +27,16 @@ constexpr std::array<Kind, 4> kinds{{{"sedan", BodyKind::car},
                                      {"truck", BodyKind::truck},
                                      {"motorcycle", BodyKind::motorcycle}}};
 
-/// Poses of a body that is at (x, y) at one second and drives and turns evenly before and after.
-std::vector<TimedPose> drive(double x, double y, double yaw, double speed_mps, double yaw_rate) {
+/// Poses of a body that is at (x, y) at one second and drives and turns evenly before and after, or
+/// brakes and turns.
+std::vector<TimedPose> drive(double x, double y, double yaw, double speed_mps, double yaw_rate,
+                             double braking_mps2) {
   std::vector<TimedPose> poses;
   for (int i = 0; i <= 40; ++i) {
     const double time_s = 0.05 * i;
     const double since_s = time_s - 1.0;
     const double heading = yaw + yaw_rate * since_s;
-    const double way = speed_mps * since_s;
+    const double way = (speed_mps - 0.5 * braking_mps2 * since_s) * since_s;
     poses.push_back({time_s, pose_from_angles({x + way * std::cos(yaw), y + way * std::sin(yaw), 0},
                                               heading, 0.0, 0.0)});
   }
@@ -104,7 +106,8 @@ TEST(Roles, ExchangingEgoAndOtherChangesNoBitOfTheFirstContact) {
       pair.kind[side] = random.below(kinds.size());
       pair.poses[side] =
           drive(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-3.1, 3.1),
-                random.uniform(6, 40), random.below(2) == 0 ? 0.0 : random.uniform(-0.5, 0.5));
+                random.uniform(8, 40), random.below(2) == 0 ? 0.0 : random.uniform(-0.5, 0.5),
+                random.below(2) == 0 ? 0.0 : random.uniform(0, 8));
     }
     // The same car or lorry twice: only pose and motion tell them apart.
     if (i % 4 == 0) pair.kind[1] = pair.kind[0];

@@ -11,9 +11,11 @@
 
 #include <Eigen/Core>
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace crashrank {
 
@@ -43,6 +45,9 @@ struct Vehicle {
   double density_kgm3 = 0.0;                                 ///< mass over the profile's volume
   std::shared_ptr<const Profile> profile;                    ///< its outlines, never null
   Silhouettes silhouettes;                                   ///< of the profile
+  /// By piece of the profile, 1 where it faces the other side of a joint between parts of the body
+  /// and presses on nothing; empty: none does.
+  std::vector<std::uint8_t> in_joint;
 
   /// False for a body that nothing moves.
   bool movable() const noexcept { return mass_kg < std::numeric_limits<double>::infinity(); }

@@ -260,7 +260,7 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   CrashChain& chain = scratch.chain;
   const Motion& ego = ego_motion(q.scene, q.candidate, state.future, scratch.ego);
   if (!search_future(q, ego, state, scratch, work)) return false;
-  chain.begin(q.scene, q.candidate, ego, state.future, state.first, plain);
+  chain.begin(q.scene, ego, state.future, state.first, plain);
   std::size_t over = 0;
   scratch.tally.begin();
   bool going = true;
