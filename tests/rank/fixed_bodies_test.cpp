@@ -18,7 +18,7 @@ using scenes::box_mesh;
 using scenes::of;
 using scenes::Scene;
 
-constexpr double speed_mps = 15.0;
+constexpr double driven_mps = 15.0;
 constexpr double half_length_m = 2.0;
 constexpr double half_width_m = 0.9;
 constexpr double pole_half_m = 0.15;
@@ -33,7 +33,7 @@ Scene ice() {
       box_mesh({static_cast<float>(half_length_m), static_cast<float>(half_width_m), 0.7F}, 8,
                {0.0F, 0.0F, 0.7F});
   scene.scenario.ego.model = scene.add_model("car", car, BodyKind::car, 1000.0);
-  scene.scenario.ego.speed_mps = speed_mps;
+  scene.scenario.ego.speed_mps = driven_mps;
   scene.scenario.horizon_s = 3.0;
   scene.scenario.measure = Measure::harm;
   scene.scenario.grip = 0.01;
@@ -91,10 +91,10 @@ TEST(FixedBodies, ThoseThatStandApartAreContactsOfTheirOwn) {
   ASSERT_FALSE(wall.empty());
   EXPECT_EQ(pole.front(), &of(result, "on").contacts.front());
   // Each begins when the car has driven there.
-  EXPECT_NEAR(pole.front()->time_of_impact_s, (pole_x_m - pole_half_m - half_length_m) / speed_mps,
+  EXPECT_NEAR(pole.front()->time_of_impact_s, (pole_x_m - pole_half_m - half_length_m) / driven_mps,
               1e-3);
-  EXPECT_NEAR(wall.front()->time_of_impact_s, (wall_face_m - half_length_m) / speed_mps, 0.01);
-  EXPECT_NEAR(wall.front()->closing_speed_mps, speed_mps, 0.02 * speed_mps);
+  EXPECT_NEAR(wall.front()->time_of_impact_s, (wall_face_m - half_length_m) / driven_mps, 0.01);
+  EXPECT_NEAR(wall.front()->closing_speed_mps, driven_mps, 0.02 * driven_mps);
   // The brush is no more than it is without the wall, the crash about what it is without the pole.
   const BodyOutcome& brush = pole.front()->severity.ego;
   const BodyOutcome& crash = wall.front()->severity.ego;
@@ -102,8 +102,8 @@ TEST(FixedBodies, ThoseThatStandApartAreContactsOfTheirOwn) {
   const BodyOutcome& crash_alone = of(only_wall, "on").contacts.front().severity.ego;
   EXPECT_GT(brush.delta_v_mps, 0.0);
   EXPECT_LT(brush.delta_v_mps, 1.2 * brush_alone.delta_v_mps);
-  EXPECT_LT(brush.delta_v_mps, 0.02 * speed_mps);
-  EXPECT_GT(crash.delta_v_mps, speed_mps);
+  EXPECT_LT(brush.delta_v_mps, 0.02 * driven_mps);
+  EXPECT_GT(crash.delta_v_mps, driven_mps);
   EXPECT_NEAR(crash.delta_v_mps, crash_alone.delta_v_mps, 0.02 * crash_alone.delta_v_mps);
   EXPECT_NEAR(crash.crush_m, crash_alone.crush_m, 0.05 * crash_alone.crush_m);
   // The wall pushes from ahead over the whole front, the pole touches the right flank alone.
@@ -166,7 +166,7 @@ TEST(FixedBodies, PartsOfAWallActAsOneBesideAPole) {
       ASSERT_EQ(of(result, "on").contacts.size(), of(reference, "on").contacts.size());
       ASSERT_FALSE(pole.empty());
       ASSERT_FALSE(wall.empty());
-      EXPECT_NEAR(pole.front()->severity.ego.delta_v_mps, brush.delta_v_mps, 0.02 * speed_mps);
+      EXPECT_NEAR(pole.front()->severity.ego.delta_v_mps, brush.delta_v_mps, 0.02 * driven_mps);
       EXPECT_NEAR(wall.front()->severity.ego.delta_v_mps, crash.delta_v_mps,
                   0.02 * crash.delta_v_mps);
       EXPECT_NEAR(*of(result, "on").score, *of(reference, "on").score,
@@ -203,8 +203,8 @@ TEST(FixedBodies, AnAngleOfWallsDoesNotAdjoinWhatStandsBetweenItsArms) {
   const auto walls = contacts_with(result, 1, 1);
   ASSERT_FALSE(pole.empty());
   ASSERT_FALSE(walls.empty());
-  EXPECT_LT(pole.front()->severity.ego.delta_v_mps, 0.1 * speed_mps);
-  EXPECT_GT(walls.front()->severity.ego.delta_v_mps, speed_mps);
+  EXPECT_LT(pole.front()->severity.ego.delta_v_mps, 0.1 * driven_mps);
+  EXPECT_GT(walls.front()->severity.ego.delta_v_mps, driven_mps);
 }
 
 // Two blocks before the car's front, as one wall and with a gap between them.
