@@ -122,7 +122,7 @@ struct ContactSeverity {
 /// after the first, which the simulation finds, `gap_m` is 0, `point_m` the mean point of the force
 /// and `normal` the direction of `closing`.
 struct Contact {
-  /// Index into Scenario::actors; of adjoining fixed bodies the one that was touched first.
+  /// Index into Scenario::actors; of joined fixed bodies the one touched first, later the one hit.
   std::size_t actor = 0;
   ImpactState state = ImpactState::contact;  ///< how the bodies meet
   double time_of_impact_s = 0.0;             ///< from the decision, s

@@ -2,17 +2,32 @@
 
 #include "crashrank/rank/anytime/ranker.hpp"
 
+#include "campaign.hpp"
 #include "rank/random_scene.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace crashrank {
+
+inline constexpr std::array<Measure, 7> measures{
+    Measure::harm,     Measure::delta_v, Measure::energy,   Measure::closing_energy,
+    Measure::polygons, Measure::area,    Measure::intrusion};
+
+/// How many scenes a property is tried on, the seed of the first, and how often the work on each is
+/// cut: campaigns say so in CRASHRANK_RANKER_SCENES, CRASHRANK_RANKER_SEED, CRASHRANK_RANKER_CUTS.
+inline std::uint64_t scenes_to_try(std::uint64_t otherwise) {
+  return test::wished("CRASHRANK_RANKER_SCENES", otherwise);
+}
+inline std::uint64_t first_seed(std::uint64_t otherwise) {
+  return test::wished("CRASHRANK_RANKER_SEED", otherwise);
+}
 
 inline RankOptions options_of(Measure measure, unsigned workers = 1) {
   RankOptions options;
