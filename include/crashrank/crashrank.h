@@ -650,6 +650,7 @@ typedef struct crashrank_ranked {
   double time_of_impact_s;   ///< from now
   double closing_speed_mps;  ///< of the points that meet; see CRASHRANK_FASTEST_CRASH_MPS
   double collision_probability;  ///< over all futures, as far as it is known
+  double estimated_score;        ///< what the score is taken for; itself where it is known
   int32_t in_race;               ///< can still be first
   int32_t collides;              ///< in the likeliest future, as far as it is known
 } crashrank_ranked;

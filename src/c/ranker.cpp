@@ -225,6 +225,7 @@ crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank
       told.score = one.known ? one.score : unknown;
       told.lowest_score = one.interval.lowest;
       told.highest_score = one.interval.highest;
+      told.estimated_score = one.stage >= RankStage::searched ? one.estimate : unknown;
       told.time_of_impact_s = one.collides ? one.time_of_impact_s : unknown;
       told.closing_speed_mps = one.collides ? one.closing_speed_mps : unknown;
       told.collision_probability = one.collision_probability;

@@ -303,6 +303,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
       {"score_interval",
        Json::array({ranked.score_interval.lowest, ranked.score_interval.highest})},
+      {"score_estimate", optional_json(ranked.score_estimate)},
       {"numerical_interval",
        result.samples.empty()
            ? Json(nullptr)

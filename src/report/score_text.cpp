@@ -143,8 +143,10 @@ std::vector<std::string> score_texts(const RankResult& result) {
   std::size_t known = 0;
   for (const CandidateResult& ranked : result.ranking) {
     if (!ranked.score) {
-      texts.push_back(fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
-                                  ranked.score_interval.highest));
+      std::string text = fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
+                                     ranked.score_interval.highest);
+      if (ranked.score_estimate) text += fmt::format(" (about {:.2g})", *ranked.score_estimate);
+      texts.push_back(std::move(text));
       continue;
     }
     if (scores[known].score() != *ranked.score) ++known;

@@ -43,6 +43,8 @@ TEST(RankingJson, SumsWhatIsHitAndLeavesOutWhatIsNotKnown) {
   const auto& unknown = answer["ranking"][2];
   EXPECT_TRUE(unknown["score"].is_null());
   EXPECT_EQ(unknown["score_interval"], nlohmann::json::array({1.0, 8.0}));
+  EXPECT_EQ(unknown["score_estimate"], 2.5);
+  EXPECT_TRUE(hit["score_estimate"].is_null());
 }
 
 TEST(RankingText, IsSafeForATerminalAndSaysThatItIsPartial) {

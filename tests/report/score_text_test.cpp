@@ -98,6 +98,8 @@ TEST(ScoreText, AScoreThatIsNotKnownIsItsInterval) {
   CandidateResult open;
   open.score_interval = {0.5, std::numeric_limits<double>::infinity()};
   EXPECT_EQ(texts({exact(0.0), open, exact(2.0)}), (Texts{"0", "0.5 to inf", "2"}));
+  open.score_estimate = 0.823;
+  EXPECT_EQ(texts({open}), (Texts{"0.5 to inf (about 0.82)"}));
 }
 
 TEST(ScoreText, FixedDecimalsShowWhatIsNotZero) {

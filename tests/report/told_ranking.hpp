@@ -72,6 +72,7 @@ struct Told {
     CandidateResult unknown;
     unknown.candidate = 2;
     unknown.score_interval = {1.0, 8.0};
+    unknown.score_estimate = 2.5;
     unknown.collides = true;
     result.ranking = {miss, hit, unknown};
     for (std::size_t i = 0; i < result.ranking.size(); ++i) result.ranking[i].place = i + 1;

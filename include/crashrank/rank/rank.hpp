@@ -251,6 +251,9 @@ struct CandidateResult {
   std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
   ScoreInterval
       score_interval;  ///< what the score is within; of the samples without numerical ones
+  /// What an absent score is taken for, see RankedCandidate::estimate; absent before the first
+  /// contact is known.
+  std::optional<double> score_estimate;
   /// Least and greatest of the score and its numerical samples (`is_numerical`); the score alone
   /// where there are none, the score's interval where the score is not known.
   ScoreInterval numerical_interval;

@@ -47,7 +47,7 @@ bool Race::can_win(const Refined& state, const std::vector<Refined>& states) con
   }
   // At the same score a candidate that touches nothing stands before all that touch or graze; how
   // far one stays from all others is known only once it is searched.
-  const OrderKey best = key_of(states[best_known_].told);
+  const OrderKey best = key_of(states[best_known_].told, false);
   const bool clean = !(best.collision_probability > 0.0) && !best.collides && !best.grazes;
   const bool touches =
       candidate.collision_probability > 0.0 || candidate.collides || candidate.grazes;
@@ -80,7 +80,8 @@ void Race::put_back(std::uint32_t candidate, const std::vector<Refined>& states)
   ++counts_[tiers_[candidate]];
   double& limit = limits_[tiers_[candidate]];
   limit = std::min(limit, told.interval.highest);
-  if (told.known && (best_known_ == nobody || promises_more(told, states[best_known_].told))) {
+  if (told.known &&
+      (best_known_ == nobody || promises_more(told, states[best_known_].told, false))) {
     best_known_ = candidate;
   }
   if (states[candidate].open()) push(states, candidate);

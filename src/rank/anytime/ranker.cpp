@@ -144,9 +144,16 @@ struct CRASHRANK_HIDDEN Ranker::State {
   /// Of the first `all` states. Touches nothing that workers do.
   void tell(RankerAnswer& answer, std::size_t all) noexcept {
     race.mark(states);
-    for (std::size_t i = 0; i < all; ++i) ranking[i] = states[i].told;
+    bool searched = true;
+    for (std::size_t i = 0; i < all; ++i) {
+      ranking[i] = states[i].told;
+      searched = searched && (ranking[i].known || ranking[i].stage >= RankStage::searched);
+    }
+    // Estimates of some, from their contacts, say nothing beside bounds of others.
     std::sort(ranking.begin(), ranking.begin() + static_cast<std::ptrdiff_t>(all),
-              detail::promises_more);
+              [searched](const RankedCandidate& a, const RankedCandidate& b) {
+                return detail::promises_more(a, b, searched);
+              });
     answer.ranking = {ranking.data(), all};
     answer.complete = true;
     RankerEffort& effort = answer.effort;
@@ -258,7 +265,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->bodies = std::move(bodies);
     state->bounds.prepare(state->scene);
     state->states.resize(options.limits.candidates);
-    for (Refined& each : state->states) each.scores.reserve(state->scene.futures.size());
+    for (Refined& each : state->states) each.reserve(state->scene.futures);
     state->ranking.resize(options.limits.candidates);
     state->race.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
@@ -412,6 +419,7 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
       } else {
         full.collides = told.collides;
         full.score_interval = told.interval;
+        if (told.stage >= RankStage::searched) full.score_estimate = told.estimate;
       }
       full.candidate = told.candidate;
     }

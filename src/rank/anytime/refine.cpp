@@ -1,5 +1,6 @@
 #include "rank/anytime/refine.hpp"
 
+#include "rank/anytime/guess.hpp"
 #include "rank/combine_futures.hpp"
 #include "rank/ego_motion.hpp"
 #include "rank/hits.hpp"
@@ -24,7 +25,7 @@ void narrow(Refined& state, double lowest, double highest) {
 
 void settle(Refined& state, double score) {
   state.told.known = true;
-  state.told.score = score;
+  state.told.score = state.told.estimate = score;
   state.told.interval = {score, score};
 }
 
@@ -34,6 +35,9 @@ std::uint64_t tests_of(const RankWork& work) {
 }
 
 constexpr double never_s = std::numeric_limits<double>::infinity();
+/// Pieces of outlines that the first simulation of a crash in a race moves: about the first contact
+/// of two cars.
+constexpr std::uint64_t first_turn = 20'000;
 
 /// Tells what is to be said besides the crash. False when time was up.
 bool describe(const RefineQuery& q, const Followed& followed, Refined& state, Scratch& scratch) {
@@ -50,48 +54,52 @@ bool describe(const RefineQuery& q, const Followed& followed, Refined& state, Sc
   return true;
 }
 
-constexpr double unknown = -1.0;
-
-/// Narrows the interval to what is known of the futures, of the one that is simulated that its
-/// score is no less than `least`; settles it where all are known.
-void combine(const RefineQuery& q, double least, Refined& state, Scratch& scratch) {
-  const auto risk_with = [&](double of_future, double of_others) {
-    scratch.first_s = state.scores;  // room that is free between searches
-    for (std::size_t f = 0; f < scratch.first_s.size(); ++f) {
-      double& score = scratch.first_s[f];
-      if (score < 0.0) score = f == state.future ? of_future : of_others;
+/// Narrows the interval to what is known of the futures; settles it where all that count are known.
+void combine(const RefineQuery& q, Refined& state, Scratch& scratch) {
+  const Futures& futures = q.scene.futures;
+  bool known = true;
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    known = known && (state.futures[f].known() || !(futures.probability(f) > 0.0));
+  }
+  const auto risk_with = [&](auto of_unknown) {
+    std::vector<double>& scores = scratch.first_s;  // room that is free between searches
+    scores.clear();
+    for (const FutureScore& each : state.futures) {
+      scores.push_back(each.known() ? each.score : of_unknown(each));
     }
-    return risk_of_futures(q.scene, {scratch.first_s.data(), scratch.first_s.size()},
-                           scratch.weighted);
+    return risk_of_futures(q.scene, {scores.data(), scores.size()}, scratch.weighted);
   };
-  const bool known = std::none_of(state.scores.begin(), state.scores.end(),
-                                  [](double score) { return score < 0.0; });
+  const auto least_of = [](const FutureScore& future) { return future.least; };
+  const double estimate =
+      risk_with([](const FutureScore& future) { return std::max(future.least, future.guess); });
   if (known) {
-    settle(state, risk_with(0.0, 0.0));
-  } else if (state.scores.size() == 1) {
-    narrow(state, least, state.told.interval.highest);
+    settle(state, risk_with(least_of));
+  } else if (futures.size() == 1) {
+    narrow(state, state.futures.front().least, state.told.interval.highest);
   } else {
     // Sums round.
     constexpr double rounding = 1e-12;
-    narrow(state, (1.0 - rounding) * risk_with(least, 0.0),
-           (1.0 + rounding) * risk_with(state.most, state.most));
+    narrow(state, (1.0 - rounding) * risk_with(least_of),
+           (1.0 + rounding) * risk_with([&](const FutureScore&) { return state.most; }));
   }
+  const ScoreInterval& interval = state.told.interval;
+  state.told.estimate = std::clamp(estimate, interval.lowest, interval.highest);
 }
 
-/// Chooses the future whose crash is simulated next: the likeliest, then the most probable of those
-/// that are not known.
-void choose_future(const Scene& scene, Refined& state) {
-  const Futures& futures = scene.futures;
-  state.future = futures.likeliest();
-  state.simulated = 0;
-  if (state.scores[state.future] < 0.0) return;
-  double most = unknown;
+/// The future whose crash is simulated next: that in which the least has been simulated for its
+/// probability.
+std::size_t next_future(const Futures& futures, const Refined& state) {
+  std::size_t next = futures.size();
+  double least = 0.0;
   for (std::size_t f = 0; f < futures.size(); ++f) {
-    if (state.scores[f] < 0.0 && futures.probability(f) > most) {
-      most = futures.probability(f);
-      state.future = f;
-    }
+    const double probability = futures.probability(f);
+    if (state.futures[f].known() || !(probability > 0.0)) continue;
+    const double simulated = static_cast<double>(first_turn + state.futures[f].simulated);
+    if (next < futures.size() && simulated >= least * probability) continue;
+    next = f;
+    least = simulated / probability;
   }
+  return next;
 }
 
 /// Leaving of the road by the ego on its motion in a future.
@@ -124,9 +132,9 @@ bool settle_without_contact(const RefineQuery& q, Refined& state, Scratch& scrat
     const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
     const double score = leaving_score(q.scene, leaving_of(q, state, ego, scratch), never_s);
     if (scratch.stopped()) return false;
-    state.scores[f] = score;
+    state.futures[f].score = score;
   }
-  combine(q, 0.0, state, scratch);
+  combine(q, state, scratch);
   return true;
 }
 
@@ -157,28 +165,60 @@ Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch:
   return first_contact(q.scene, ego, hit.actor, q.scene.futures.plans[hit.plan].motion, hit.impact);
 }
 
+/// Keeps the contacts of the last search that are the first of a future of the group, in their
+/// order, and what the crashes that begin with them are taken for.
+void keep_firsts(const RefineQuery& q, const FutureGroup& group, const Motion& ego, Refined& state,
+                 Scratch& scratch) {
+  const Futures& futures = q.scene.futures;
+  for (const Scratch::Hit& hit : scratch.hits) {
+    if (!hit.impact.hit()) continue;
+    const auto index = static_cast<std::uint32_t>(state.firsts.size());
+    double guess = FutureScore::unknown;
+    for (std::size_t f = group.begin; f < group.end; ++f) {
+      FutureScore& future = state.futures[f];
+      if (future.first != FutureScore::no_contact || !futures.has(f, hit.plan)) continue;
+      if (guess < 0.0) {
+        guess = scored_by_damage(q.scene.measure)
+                    ? state.most
+                    : guess_score(q.scene, ego, futures.plans[hit.plan].motion,
+                                  first_contact_of(q, ego, hit), scratch.tally);
+        state.firsts.push_back(hit);
+      }
+      future.first = index;
+      future.guess = guess;
+    }
+  }
+}
+
 /// Notes what the search of a group of futures found.
 void note_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego, Refined& state,
-               Followed& followed, const Scratch& scratch) {
+               Followed& followed, Scratch& scratch) {
   const std::size_t likeliest = q.scene.futures.likeliest();
   const auto leaving = leaving_of(q, state, ego, scratch);
+  keep_firsts(q, group, ego, state, scratch);
   for (std::size_t f = group.begin; f < group.end; ++f) {
-    const Scratch::Hit* const hit = first_hit(q.scene, scratch, f);
-    const double until_s = hit != nullptr ? hit->impact.time_s : never_s;
-    followed.touches = followed.touches || hit != nullptr;
-    followed.longest_s =
-        std::max(followed.longest_s, hit != nullptr ? until_s : q.scene.slice_s.back());
-    if (hit == nullptr) state.scores[f] = leaving_score(q.scene, leaving, never_s);
+    FutureScore& future = state.futures[f];
+    const bool touches = future.first != FutureScore::no_contact;
+    const double until_s = touches ? state.firsts[future.first].impact.time_s : never_s;
+    followed.touches = followed.touches || touches;
+    followed.longest_s = std::max(followed.longest_s, touches ? until_s : q.scene.slice_s.back());
+    const double left = leaving_score(q.scene, leaving, until_s);
+    if (touches) {
+      future.least = left;
+      future.guess += left;
+    } else {
+      future.score = left;
+    }
     if (f != likeliest) continue;
     followed.first_s = until_s;
     RankedCandidate& told = state.told;
-    told.collides = hit != nullptr;
+    told.collides = touches;
     told.grazes = grazes_before(q.scene, scratch, f, until_s);
-    if (hit == nullptr) continue;
-    state.first = first_contact_of(q, ego, *hit);
-    told.actor = state.first.actor;
-    told.time_of_impact_s = state.first.time_of_impact_s;
-    told.closing_speed_mps = state.first.closing_speed_mps;
+    if (!touches) continue;
+    const Contact first = first_contact_of(q, ego, state.firsts[future.first]);
+    told.actor = first.actor;
+    told.time_of_impact_s = first.time_of_impact_s;
+    told.closing_speed_mps = first.closing_speed_mps;
   }
 }
 
@@ -187,6 +227,8 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
   const Futures& futures = q.scene.futures;
   const auto take_back = [&state, before = state.told] {
     state.told = before;
+    state.futures.assign(state.futures.size(), {});
+    state.firsts.clear();
     return false;
   };
   bool decided = true;
@@ -208,65 +250,59 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
   state.stuck = !decided;
   if (!decided) return true;
   if (!describe(q, followed, state, scratch)) return take_back();
-  choose_future(q.scene, state);
-  combine(q, 0.0, state, scratch);
+  combine(q, state, scratch);
   return true;
 }
 
-/// What the first contact of the future that is simulated is, where it is another than that of the
-/// search. False when time was up.
-bool search_future(const RefineQuery& q, const Motion& ego, Refined& state, Scratch& scratch,
-                   RankWork& work) {
-  if (state.scores.size() == 1) return true;
-  find_hits(q.scene, ego, q.scene.futures.group(state.future), scratch, work);
-  if (q.watch.expired()) return false;
-  const Scratch::Hit* const hit = first_hit(q.scene, scratch, state.future);
+/// What a simulation of one future's crash has found holds for all that do not differ from it as
+/// far as it went.
+void spread(const Scene& scene, std::size_t future, Refined& state, Scratch& scratch) {
+  const FutureScore found = state.futures[future];
+  const FutureGroup group = scene.futures.group(future);
+  if (group.size() == 1) return;
   std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
-  feel_hits(scratch, hit, scratch.felt);
-  state.first = first_contact_of(q, ego, *hit);
-  return true;
-}
-
-/// All futures that are not known and do not differ from the simulated one have its score.
-void spread(const RefineQuery& q, double score, Refined& state, Scratch& scratch) {
-  if (state.scores.size() == 1) {
-    state.scores.front() = score;
-    return;
-  }
-  const FutureGroup group = q.scene.futures.group(state.future);
-  scratch.chain.feel(q.scene, scratch.felt);
+  for (std::uint32_t k = 0; k <= found.first; ++k) scratch.felt[state.firsts[k].plan] = 1;
+  scratch.chain.feel(scene, scratch.felt);
   scratch.same.clear();
   scratch.others.clear();
   for (std::size_t f = group.begin; f < group.end; ++f) {
-    if (state.scores[f] < 0.0) scratch.same.push_back(static_cast<std::uint32_t>(f));
+    if (f == future || !state.futures[f].known()) {
+      scratch.same.push_back(static_cast<std::uint32_t>(f));
+    }
   }
-  q.scene.futures.split(state.future, scratch.felt, scratch.same, scratch.others);
-  for (const std::uint32_t f : scratch.same) state.scores[f] = score;
-  choose_future(q.scene, state);
+  scene.futures.split(future, scratch.felt, scratch.same, scratch.others);
+  for (const std::uint32_t f : scratch.same) {
+    FutureScore& same = state.futures[f];
+    same.score = found.score;
+    same.least = std::max(same.least, found.least);
+    same.simulated = std::max(same.simulated, found.simulated);
+  }
 }
 
 /// Simulates what follows from the first contact in one future. False when time was up.
 ///
-/// To find the first place, candidates take turns, each with several times the work of its last
-/// turn: most are beaten by their first contact alone. A simulation begins anew with each turn, for
-/// there is no room for one of each candidate; all turns before the last cost half of it together.
+/// To find the first place, candidates and their futures take turns, each with several times the
+/// work of its last turn: most candidates are beaten by first contacts alone. A simulation begins
+/// anew with each turn, for there is no room for one of each future; all turns before the last cost
+/// half of it together.
 bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
   constexpr int steps_at_a_time = 4;
-  constexpr std::uint64_t first_turn = 20'000;  // pieces: about the first contact of two cars
   constexpr std::uint64_t more = 3;
+  const std::size_t index = next_future(q.scene.futures, state);
+  FutureScore& future = state.futures[index];
   const bool in_turns = q.give_up_above < std::numeric_limits<double>::infinity();
-  const std::uint64_t turn = std::max(first_turn, more * state.simulated);
+  const std::uint64_t turn = std::max(first_turn, more * future.simulated);
   const HarmSample& plain = q.scene.plain;
   CrashChain& chain = scratch.chain;
-  const Motion& ego = ego_motion(q.scene, q.candidate, state.future, scratch.ego);
-  if (!search_future(q, ego, state, scratch, work)) return false;
-  chain.begin(q.scene, ego, state.future, state.first, plain);
+  const Motion& ego = ego_motion(q.scene, q.candidate, index, scratch.ego);
+  const Contact first = first_contact_of(q, ego, state.firsts[future.first]);
+  chain.begin(q.scene, ego, index, first, plain);
   std::size_t over = 0;
   scratch.tally.begin();
   bool going = true;
   bool in_time = true;
   const double left =
-      leaving_score(q.scene, leaving_of(q, state, ego, scratch), state.first.time_of_impact_s);
+      leaving_score(q.scene, leaving_of(q, state, ego, scratch), first.time_of_impact_s);
   if (scratch.stopped()) return false;
   while (going) {
     going = chain.advance(steps_at_a_time);
@@ -275,36 +311,46 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
     for (; over < chain.contacts().size(); ++over) {
       scratch.tally.add(q.scene, chain.effect(over), plain);
     }
-    if (more_is_over) combine(q, left + scratch.tally.least_score(q.scene), state, scratch);
+    if (more_is_over) {
+      future.least = std::max(future.least, left + scratch.tally.least_score(q.scene));
+      combine(q, state, scratch);
+    }
     in_time = !q.watch.expired();
     if (!in_time || state.told.interval.lowest > q.give_up_above) break;
     if (in_turns && chain.run().work() > turn) break;
   }
-  state.simulated = std::max(state.simulated, chain.run().work());
+  future.simulated = std::max(future.simulated, chain.run().work());
   work.crash_steps += chain.run().steps();
   work.crash_pieces += chain.run().work();
-  if (going) return in_time;
-  chain.effects(scratch.effects, scratch.order);
-  scratch.tally.begin();
-  for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, plain);
-  spread(q, left + scratch.tally.score(q.scene), state, scratch);
-  combine(q, 0.0, state, scratch);
-  return true;
+  if (!going) {
+    chain.effects(scratch.effects, scratch.order);
+    scratch.tally.begin();
+    for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, plain);
+    future.score = left + scratch.tally.score(q.scene);
+  }
+  spread(q.scene, index, state, scratch);
+  combine(q, state, scratch);
+  return in_time;
 }
 
 }  // namespace
 
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Motion& room, Refined& state) {
-  std::vector<double> scores = std::move(state.scores);  // keeps its memory
+  // They keep their memory.
+  std::vector<FutureScore> futures = std::move(state.futures);
+  std::vector<Scratch::Hit> firsts = std::move(state.firsts);
   state = {};
-  state.scores = std::move(scores);
-  state.scores.assign(scene.futures.size(), unknown);
+  state.futures = std::move(futures);
+  state.firsts = std::move(firsts);
+  state.futures.assign(scene.futures.size(), {});
+  state.firsts.clear();
   state.told.candidate = index;
   // Whether it leaves the road is looked for later.
   state.most = bounds.most_displaced(scene, candidate.motion, room);
   if (scene.road.ends()) state.most += leaving_score(scene, RoadLeaving{}, never_s);
   state.told.interval = {0.0, state.most};
+  state.told.estimate = state.most;
 }
 
 void bound_as_clear(const Scene& scene, Refined& state) {
@@ -312,6 +358,7 @@ void bound_as_clear(const Scene& scene, Refined& state) {
       scene.road.ends() ? std::optional<RoadLeaving>(RoadLeaving{}) : std::nullopt;
   state.most = leaving_score(scene, may_leave, never_s);
   narrow(state, 0.0, state.most);
+  state.told.estimate = state.most;
 }
 
 StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
@@ -350,10 +397,10 @@ StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
   return end;
 }
 
-OrderKey key_of(const RankedCandidate& c) noexcept {
+OrderKey key_of(const RankedCandidate& c, bool by_estimate) noexcept {
   OrderKey key;
   key.demoted = !c.feasible;
-  key.worth = c.known ? c.score : c.interval.highest;
+  key.worth = c.known ? c.score : by_estimate ? c.estimate : c.interval.highest;
   key.known = c.known;
   key.collision_probability = c.collision_probability;
   key.collides = c.collides;
@@ -366,8 +413,8 @@ OrderKey key_of(const RankedCandidate& c) noexcept {
   return key;
 }
 
-bool promises_more(const RankedCandidate& a, const RankedCandidate& b) noexcept {
-  const int compared = compare(key_of(a), key_of(b));
+bool promises_more(const RankedCandidate& a, const RankedCandidate& b, bool by_estimate) noexcept {
+  const int compared = compare(key_of(a, by_estimate), key_of(b, by_estimate));
   return compared != 0 ? compared < 0 : a.candidate < b.candidate;
 }
 

@@ -6,7 +6,7 @@
 #include "rank/evaluate.hpp"
 #include "rank/order.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,18 +14,38 @@
 
 namespace crashrank::detail {
 
+/// What is known of a candidate's score in one future.
+struct FutureScore {
+  static constexpr double unknown = -1.0;
+  static constexpr std::uint32_t no_contact = static_cast<std::uint32_t>(-1);
+
+  double score = unknown;
+  double least = 0.0;  ///< it is not below, where it is not known
+  double guess = 0.0;  ///< what it is taken for, where it is not known: see guess_score
+  /// Pieces of outlines that the longest simulation of its crash so far has moved.
+  std::uint64_t simulated = 0;
+  std::uint32_t first = no_contact;  ///< index of its first contact in Refined::firsts
+
+  bool known() const noexcept { return score >= 0.0; }
+};
+
 /// A candidate on its way to its score, between two steps.
 struct Refined {
   RankedCandidate told;
-  bool stuck = false;      ///< a question about it stayed undecided: no step follows
-  Contact first;           ///< of `future`: from which its crash is simulated
-  std::size_t future = 0;  ///< whose crash is simulated next
-  /// Pieces of outline that the simulation of that crash has moved so far.
-  std::uint64_t simulated = 0;
+  bool stuck = false;                  ///< a question about it stayed undecided: no step follows
   double most = 0.0;                   ///< no future's score is above
   bool demand_known = false;           ///< `told.feasible` is final
   std::optional<RoadLeaving> leaving;  ///< of its plan; from the stage `near` on
-  std::vector<double> scores;          ///< by future; below 0: not known
+  std::vector<FutureScore> futures;    ///< what is known of each
+  /// First contacts of the futures, those of a group by their times; from the stage `searched` on.
+  std::vector<Scratch::Hit> firsts;
+
+  /// Room for any scene of so many plans and futures: nothing allocates after it.
+  void reserve(const Futures& all) {
+    futures.reserve(all.size());
+    // Every one is some future's, and no plan has two in one group.
+    firsts.reserve(all.displaces_ego() ? all.size() : std::min(all.size(), all.plans.size()));
+  }
 
   bool open() const noexcept { return !told.known && !stuck; }
 };
@@ -58,9 +78,10 @@ void bound_as_clear(const Scene& scene, Refined& state);
 /// alone. The interval only ever narrows.
 StepEnd refine(const RefineQuery& query, Refined& state, Scratch& scratch);
 
-/// What decides the place, for what is known of a candidate so far.
-OrderKey key_of(const RankedCandidate& candidate) noexcept;
+/// What decides the place, for what is known of a candidate so far. Where the score is not known,
+/// by its estimate or by the worst that may come.
+OrderKey key_of(const RankedCandidate& candidate, bool by_estimate) noexcept;
 /// Whether `a` stands before `b`, for what is known of both.
-bool promises_more(const RankedCandidate& a, const RankedCandidate& b) noexcept;
+bool promises_more(const RankedCandidate& a, const RankedCandidate& b, bool by_estimate) noexcept;
 
 }  // namespace crashrank::detail

@@ -30,7 +30,7 @@ void StepRounds::prepare(std::size_t candidates) {
   for (Scratch& scratch : scratch_) prepare_scratch(scene_, scratch);
   for (std::uint32_t i = 0; i < pool_.size(); ++i) helpers_.push_back({this, i + 1});
   if (pool_.size() > 0) kept_.resize(candidates);
-  for (Slot& slot : slots_) slot.state.scores.reserve(scene_.futures.size());
+  for (Slot& slot : slots_) slot.state.reserve(scene_.futures);
 }
 
 void StepRounds::await() noexcept {

@@ -53,6 +53,9 @@ void cut_everywhere(const Case& c, Measure measure, std::uint64_t cuts, Widths& 
       ASSERT_GE(told.interval.lowest, last[i].lowest) << "candidate " << i << ", cut " << cut;
       ASSERT_LE(told.interval.highest, last[i].highest) << "candidate " << i << ", cut " << cut;
       ASSERT_TRUE(!told.known || told.score == c.scores[i]);
+      ASSERT_TRUE(!told.known || told.estimate == told.score);
+      ASSERT_GE(told.estimate, told.interval.lowest) << "candidate " << i << ", cut " << cut;
+      ASSERT_LE(told.estimate, told.interval.highest) << "candidate " << i << ", cut " << cut;
       last[i] = told.interval;
       if (cut == 0) first[i] = told.interval.highest - told.interval.lowest;
       if (i == c.plain.ranking[0].candidate) winner_in_race = told.in_race;

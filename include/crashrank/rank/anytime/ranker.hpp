@@ -62,6 +62,11 @@ struct RankedCandidate {
   bool in_race = true;                  ///< can still be first
   double score = 0.0;                   ///< where it is known
   ScoreInterval interval;               ///< holds the final score, whatever was left undone
+  /// What the score is taken for where it is not known, within the interval: futures that are not
+  /// simulated yet count as their first contact would if both bodies were points that stick
+  /// together. Before the stage `searched` the upper end. No bound. Once all candidates are
+  /// searched, it decides the order among those not known, before that the upper end does.
+  double estimate = 0.0;
   /// From the stage `searched` on: that the ego touches somebody in a future.
   double collision_probability = 0.0;
   /// From the stage `searched` on: its first contact in the likeliest future.
