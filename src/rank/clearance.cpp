@@ -240,10 +240,18 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
     if (passes_over(scene.ego, ego, actor, plans[p].motion)) continue;
     const Moving other{*actor.outline, plans[p].motion, ways.of(p), ways.fastest_mps[p]};
     LeastDistance distance(own, other, ways.step_s, stop);
-    if (distance.bound_m() < nearest) nearest = std::min(nearest, distance.find());
+    if (distance.bound_m() < nearest) {
+      if (const double apart_m = distance.find(); apart_m < nearest) {
+        nearest = apart_m;
+        least.nearest = plans[p].actor;
+      }
+    }
     if (other.fastest_mps > 0.0) {
-      least.time_gap_s = std::min(
-          least.time_gap_s, least_time_gap_s(own, other, ways.step_s, least.time_gap_s, stop));
+      const double gap_s = least_time_gap_s(own, other, ways.step_s, least.time_gap_s, stop);
+      if (gap_s < least.time_gap_s) {
+        least.time_gap_s = gap_s;
+        least.soonest = plans[p].actor;
+      }
     }
   }
   if (nearest < farthest_clearance_m) least.distance_m = nearest;

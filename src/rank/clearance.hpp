@@ -17,9 +17,11 @@ struct Scene;
 struct Clearance {
   /// Of the outlines, m; infinity where nobody comes nearer than `farthest_clearance_m`.
   double distance_m = std::numeric_limits<double>::infinity();
+  std::size_t nearest = 0;  ///< the actor whose that is, where it is finite
   /// Least time between the ego and another at one place: see CandidateResult::least_time_gap_s.
   /// Infinity where no two ways cross.
   double time_gap_s = std::numeric_limits<double>::infinity();
+  std::size_t soonest = 0;  ///< the actor whose that is, where it is finite
 };
 
 /// Ways of the scenario's own plans seen from above, at even times from 0 to the horizon.

@@ -230,6 +230,10 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
   result.leaves_road = facts.leaves_road;
   result.least_distance_m = told(facts.clearance.distance_m);
   result.least_time_gap_s = told(facts.clearance.time_gap_s);
+  if (!followed.touches) {
+    if (result.least_distance_m) result.nearest = facts.clearance.nearest;
+    if (result.least_time_gap_s) result.soonest = facts.clearance.soonest;
+  }
   if (!result.collides) result.at_horizon = facts.at_horizon;
 }
 

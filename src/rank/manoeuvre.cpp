@@ -35,7 +35,7 @@ ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate
   facts.feasible = is_feasible(candidate, facts.demand);
   if (leaving && leaving->time_s <= followed.first_s) facts.leaves_road = leaving;
   facts.clearance = followed.touches
-                        ? Clearance{0.0, 0.0}
+                        ? Clearance{.distance_m = 0.0, .time_gap_s = 0.0}
                         : clearance_of(scene, candidate.motion, scratch.way, scratch.stop);
   Pose pose;
   Velocity velocity;

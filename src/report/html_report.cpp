@@ -231,7 +231,7 @@ private:
     }
     if (ranked.contacts.empty()) {
       out_ += "<td colspan='3' class='free'>";
-      out_ += ranked.score ? detail::passing_words(ranked) : "not known yet";
+      out_ += ranked.score ? escape_xml(detail::passing_words(scenario_, ranked)) : "not known yet";
       out_ += "</td></tr>\n";
       return;
     }
@@ -308,7 +308,7 @@ private:
                     ranked.place, escape_xml(name_of(place)), ranked.sharing > 1 ? " (tied)" : "");
     out_ += "<p>It " + escape_xml(detail::outcome_words(scenario_, ranked)) + ": " +
             escape_xml(detail::score_words(ranked, scores_[place], result_.measure)) + ". " +
-            detail::manoeuvre_words(ranked);
+            escape_xml(detail::manoeuvre_words(scenario_, ranked));
     if (place > 0 && place + 1 < result_.ranking.size() && is_drawn(place + 1)) {
       out_ += std::string(ranked.place == result_.ranking[place + 1].place
                               ? " Tied with the next: "

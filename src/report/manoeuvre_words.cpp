@@ -42,12 +42,18 @@ std::string leaving_words(const CandidateResult& ranked) {
                      ranked.leaves_road->speed_mps);
 }
 
-std::string passing_words(const CandidateResult& ranked) {
+std::string passing_words(const Scenario& scenario, const CandidateResult& ranked) {
   std::string words = ranked.grazes.empty() ? "nothing" : "nothing, but grazes";
   // Of a candidate that touches somebody in another future both are 0.
   if (ranked.collision_probability > 0.0) return words;
-  if (ranked.least_distance_m) words += fmt::format(", {:.2f} m away", *ranked.least_distance_m);
-  if (ranked.least_time_gap_s) words += fmt::format(", {:.2f} s apart", *ranked.least_time_gap_s);
+  if (ranked.nearest) {
+    words += fmt::format(", {:.2f} m from {}", *ranked.least_distance_m,
+                         scenario.actors[*ranked.nearest].name);
+  }
+  if (ranked.soonest) {
+    words += fmt::format(", {:.2f} s from {}", *ranked.least_time_gap_s,
+                         scenario.actors[*ranked.soonest].name);
+  }
   return words;
 }
 
@@ -58,15 +64,18 @@ std::string manoeuvre_mark(const CandidateResult& ranked) {
   return mark;
 }
 
-std::string manoeuvre_words(const CandidateResult& ranked) {
+std::string manoeuvre_words(const Scenario& scenario, const CandidateResult& ranked) {
   if (!ranked.score) return {};
   std::string words = "It " + demand_words(ranked.demand) + ".";
   if (!ranked.feasible) words += " The vehicle cannot follow it.";
   if (ranked.collides || ranked.collision_probability > 0.0) return words;
   words += fmt::format(" It stays {} from all others", distance_words(ranked.least_distance_m));
-  if (ranked.least_time_gap_s) {
-    words += fmt::format(", {:.2f} s from those that move where it was or will be",
-                         *ranked.least_time_gap_s);
+  if (ranked.nearest) {
+    words += fmt::format(" (the nearest is {})", scenario.actors[*ranked.nearest].name);
+  }
+  if (ranked.soonest) {
+    words += fmt::format(", and is {:.2f} s from {} at one place", *ranked.least_time_gap_s,
+                         scenario.actors[*ranked.soonest].name);
   }
   if (ranked.at_horizon) {
     words += fmt::format(", and is at {:.1f} m/s at the horizon", ranked.at_horizon->speed_mps);

@@ -10,8 +10,8 @@ namespace crashrank::detail {
 std::string demand_words(const ManoeuvreDemand& demand);
 
 /// What a candidate without contact hits, with its least distance and time gap: "nothing, 0.84 m
-/// away, 1.20 s apart".
-std::string passing_words(const CandidateResult& ranked);
+/// from kerb, 1.20 s from van".
+std::string passing_words(const Scenario& scenario, const CandidateResult& ranked);
 
 /// When and how fast a wheel leaves the road: "leaves the road after 1.31 s at 17.2 m/s"; empty
 /// where none does.
@@ -21,8 +21,8 @@ std::string leaving_words(const CandidateResult& ranked);
 std::string manoeuvre_mark(const CandidateResult& ranked);
 
 /// What is to be said of a candidate besides its crash, sentences: "It takes 0.89 times the grip.
-/// It stays 0.26 m from all others and ends at 20.0 m/s."
-std::string manoeuvre_words(const CandidateResult& ranked);
+/// It stays 0.26 m from all others (the nearest is kerb), and is at 20.0 m/s at the horizon."
+std::string manoeuvre_words(const Scenario& scenario, const CandidateResult& ranked);
 
 /// Which tie-break decides between equal scores; the two are not tied.
 std::string tie_words(const CandidateResult& first, const CandidateResult& second);

@@ -115,6 +115,10 @@ Json severity_json(const FurtherContact& contact, bool simulated) {
   return entry;
 }
 
+Json name_json(const Scenario& scenario, const std::optional<std::size_t>& actor) {
+  return actor ? Json(scenario.actors[*actor].name) : Json(nullptr);
+}
+
 Json optional_json(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
@@ -298,7 +302,9 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"demand", ranked.score ? demand_json(ranked.demand) : Json(nullptr)},
       {"leaves_road", leaving_json(ranked)},
       {"least_distance_m", optional_json(ranked.least_distance_m)},
+      {"nearest", name_json(scenario, ranked.nearest)},
       {"least_time_gap_s", optional_json(ranked.least_time_gap_s)},
+      {"soonest", name_json(scenario, ranked.soonest)},
       {"at_horizon", horizon_json(ranked)},
       {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
       {"score_interval",

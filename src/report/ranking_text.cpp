@@ -49,7 +49,7 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
     if (!ranked.score) {
       row.emplace_back("not known yet");
     } else {
-      row.push_back(detail::passing_words(ranked));
+      row.push_back(detail::passing_words(scenario, ranked));
     }
     return row;
   }

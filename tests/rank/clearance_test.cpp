@@ -86,17 +86,25 @@ TEST(Clearance, LeastDistanceIsThatOfTheOutlinesAlongThePlans) {
     if (ranked.collides) {
       EXPECT_EQ(ranked.least_distance_m, 0.0);
       EXPECT_EQ(ranked.least_time_gap_s, 0.0);
+      EXPECT_FALSE(ranked.nearest.has_value() || ranked.soonest.has_value());
       EXPECT_FALSE(ranked.at_horizon.has_value());
       continue;
     }
     double expected = farthest_clearance_m;
+    std::vector<double> by_actor;
     for (const ScenarioActor& actor : scene.scenario.actors) {
       const Result<Motion> motion = make_motion(actor);
       ASSERT_TRUE(motion.ok());
+      by_actor.push_back(farthest_clearance_m);
       for (double t = 0.0; t <= 3.0; t += 1e-3) {
-        expected =
-            std::min(expected, apart(result.candidates[0].motion.pose_at(t), motion->pose_at(t)));
+        by_actor.back() = std::min(
+            by_actor.back(), apart(result.candidates[0].motion.pose_at(t), motion->pose_at(t)));
       }
+      expected = std::min(expected, by_actor.back());
+    }
+    EXPECT_EQ(ranked.nearest.has_value(), ranked.least_distance_m.has_value());
+    if (ranked.nearest) {
+      EXPECT_NEAR(by_actor[*ranked.nearest], expected, 0.03);
     }
     if (expected < farthest_clearance_m - 0.05) {
       ++near;
@@ -151,6 +159,8 @@ TEST(Clearance, TimeGapBehindAnother) {
   // Twenty metres of free road at twenty metres a second.
   EXPECT_NEAR(*ranked.least_time_gap_s, 1.0, 0.005);
   EXPECT_NEAR(*ranked.least_distance_m, 1.0, 0.01);
+  EXPECT_EQ(ranked.soonest, 0U);
+  EXPECT_EQ(ranked.nearest, 1U);
 }
 
 TEST(Clearance, BodiesAboveEachOtherAreNotNear) {

@@ -284,10 +284,14 @@ struct CandidateResult {
   /// plans of all futures until the horizon, m; 0 where it touches somebody in one of them, absent
   /// where nobody comes nearer than `farthest_clearance_m` and where the score is not known.
   std::optional<double> least_distance_m;
+  /// The actor that comes so near; absent with that and where it touches somebody.
+  std::optional<std::size_t> nearest;
   /// Post-encroachment time: the least time between the ego and another that moves at one place,
   /// by the rectangles around their outlines, along the plans of all futures until the horizon, s;
   /// 0 where it touches somebody in one of them, absent where no two ways cross.
   std::optional<double> least_time_gap_s;
+  /// The actor that is there so soon before or after; absent as `nearest` is.
+  std::optional<std::size_t> soonest;
   std::optional<HorizonState>
       at_horizon;  ///< where it collides with nobody in the likeliest future
   /// Standard error of the score that comes from drawing a sample of futures, as if they were drawn
