@@ -16,15 +16,29 @@ step() { printf '\n== %s\n' "$*"; }
 # Every compiler warns about other things: warnings are errors with the one they were mended for.
 home_compiler() { [ "$(g++ -dumpversion)" = 12 ]; }
 
-# configure PRESET: through ccache where the machine has it; without, sources that are compiled
+# python_environment FOLDER REQUIREMENTS...: a virtual environment with these packages, made anew where
+# they changed.
+python_environment() {
+  local folder=$1 stamp
+  shift
+  stamp=$(cat "$@" | sha256sum | cut -c1-16)
+  if [ ! -e "$folder/$stamp" ]; then
+    rm -rf "$folder"
+    "${PYTHON:-python3}" -m venv "$folder"
+    "$folder/bin/python" -m pip install -q --disable-pip-version-check "${@/#/-r}"
+    touch "$folder/$stamp"
+  fi
+}
+
+# configure PRESET [OPTION...]: through ccache where the machine has it; without, sources that are compiled
 # together take a third less.
 configure() {
-  local options=()
+  local preset=$1 options=("${@:2}")
   if command -v ccache >/dev/null && [ -z "${CCACHE_DISABLE:-}" ]; then
     options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   else
     options+=(-DCMAKE_UNITY_BUILD=ON)
   fi
   home_compiler || options+=(-DCRASHRANK_WERROR=OFF)
-  cmake --preset "$1" ${options[@]+"${options[@]}"}
+  cmake --preset "$preset" ${options[@]+"${options[@]}"}
 }

@@ -19,8 +19,6 @@
 #include "crashrank/tree/build.hpp"
 #include "crashrank/tree/model.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -162,25 +160,12 @@ Status write_report(const std::string& path, const std::string& page) {
   return file->close();
 }
 
-/// Ranks within a budget; what is known at its end is then told in full, off the clock.
-Result<RankResult> rank_bounded(const Options& options, const Scenario& scenario,
-                                const std::vector<Model>& models, const RankOptions& how) {
-  Result<std::vector<Candidate>> candidates = make_candidates(
-      scenario, static_cast<double>(models[scenario.ego.model].mesh.bounds().extent().x()));
-  if (!candidates) return candidates.error();
-  RankerOptions ranker_options;
-  ranker_options.rank = how;
-  ranker_options.limits.candidates = candidates->size();
-  ranker_options.limits.actors = scenario.actors.size();
-  ranker_options.limits.triangles = std::numeric_limits<std::size_t>::max();
-  Result<Ranker> ranker = Ranker::prepare(scenario, models, ranker_options);
-  if (!ranker) return ranker.error();
+RankBudget budget_of(const Options& options) {
   RankBudget budget;
   budget.deadline_s = 1e-3 * options.deadline_ms;
   budget.work = options.work_budget;
   budget.first_place_only = options.first_place;
-  const RankerAnswer answer = ranker->rank(*candidates, budget);
-  return ranker->explain(*candidates, answer);
+  return budget;
 }
 
 /// Says what is to be warned of in the options and the end of the ranking, and adds it.
@@ -191,20 +176,9 @@ void warn_of_end(const Options& options, const RankResult& ranked, bool answered
     warnings.emplace_back("--policy and --depth have no part in an answer within a budget");
   }
   if (!answered) {
-    const char* const why = options.bounded() ? "the budget ended before every score was known"
-                                              : "a search for a contact came to no end";
-    warnings.push_back(std::string(why) + ": a partial answer, its first place " +
-                       (ranked.proved ? "proved" : "not proved"));
+    warnings.push_back(why_partial(ranked, options.bounded()));
   }
   for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
-}
-
-/// What an interrupted ranking has come to.
-std::string how_far(const RankResult& ranked) {
-  const auto known = std::count_if(ranked.ranking.begin(), ranked.ranking.end(),
-                                   [](const CandidateResult& c) { return c.score.has_value(); });
-  return fmt::format("{} of {} candidates are evaluated, of the others only bounds are known",
-                     known, ranked.ranking.size());
 }
 
 int run(const Options& options) {
@@ -275,7 +249,7 @@ int run(const Options& options) {
       progress.update(evaluated, candidates);
       return !is_interrupted();
     };
-    return options.bounded() ? rank_bounded(options, *scenario, *models, how)
+    return options.bounded() ? rank_within(*scenario, *models, how, budget_of(options))
                              : rank(*scenario, *models, how);
   }();
   if (!ranked) {
@@ -284,7 +258,7 @@ int run(const Options& options) {
     return fail(error);
   }
   if (is_interrupted()) {
-    warnings.push_back(how_far(*ranked));
+    warnings.push_back(ranking_progress(*ranked));
     if (!options.report.empty() || !options.damage_folder.empty()) {
       warnings.back() += "; files of --damage and --report are not written";
     }

@@ -228,4 +228,18 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   return doubts;
 }
 
+std::string why_partial(const RankResult& result, bool bounded) {
+  return fmt::format("{}: a partial answer, its first place {}",
+                     bounded ? "the budget ended before every score was known"
+                             : "a search for a contact came to no end",
+                     result.proved ? "proved" : "not proved");
+}
+
+std::string ranking_progress(const RankResult& result) {
+  const auto known = std::count_if(result.ranking.begin(), result.ranking.end(),
+                                   [](const CandidateResult& c) { return c.score.has_value(); });
+  return fmt::format("{} of {} candidates are evaluated, of the others only bounds are known",
+                     known, result.ranking.size());
+}
+
 }  // namespace crashrank

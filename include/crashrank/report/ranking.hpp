@@ -48,4 +48,11 @@ CRASHRANK_API std::vector<std::string> ranking_doubts(const Scenario& scenario,
                                                       View<const Model> models,
                                                       const RankResult& result);
 
+/// Why an answer is partial and whether its first place is proved, as a warning; `bounded`: it was
+/// ranked within a budget.
+CRASHRANK_API std::string why_partial(const RankResult& result, bool bounded);
+
+/// How far an interrupted ranking came, as a warning: how many candidates have a score.
+CRASHRANK_API std::string ranking_progress(const RankResult& result);
+
 }  // namespace crashrank

@@ -374,12 +374,13 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   // What is left to do after the last look at the clock: an order and a hash.
   const auto count = static_cast<double>(candidates.size());
   const double closing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);
-  Watch watch;
+  Watch watch(budget.cancel);
   constexpr double longest_s = 1e6;
   if (budget.deadline_s < longest_s) {
     const double seconds = std::max(budget.deadline_s - closing_s, 0.0);
     watch = Watch(start + std::chrono::duration_cast<Watch::Clock::duration>(
-                              std::chrono::duration<double>(seconds)));
+                              std::chrono::duration<double>(seconds)),
+                  budget.cancel);
   }
   answer.effort.prepare_s = s.prepare_s;
   s.begin(candidates);
@@ -392,7 +393,8 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   return answer;
 }
 
-Result<RankResult> Ranker::explain(View<const Candidate> candidates, const RankerAnswer& answer) {
+Result<RankResult> Ranker::explain(View<const Candidate> candidates, const RankerAnswer& answer,
+                                   const std::atomic<bool>* cancel) {
   return detail::guarded([&]() -> Result<RankResult> {
     State& s = *state_;
     if (!answer.status) return answer.status.error();
@@ -411,10 +413,12 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     result.candidates.assign(candidates.begin(), candidates.end());
     result.ranking.resize(answer.ranking.size());
     detail::Scratch scratch;
+    Watch watch(cancel);
+    scratch.stop = {&Watch::stop, &watch};
     for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
       const RankedCandidate& told = answer.ranking[i];
       CandidateResult& full = result.ranking[i];
-      if (told.known) {
+      if (told.known && !watch.expired()) {
         full = detail::evaluate(s.scene, candidates[told.candidate], scratch, result.work);
       } else {
         full.collides = told.collides;
@@ -426,7 +430,7 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     for (const RankedCandidate& told : answer.ranking) {
       if (told.in_race) result.in_race.push_back(told.candidate);
     }
-    result.complete = answer.complete;
+    result.complete = answer.complete && !watch.expired();
     result.infeasible = s.scene.infeasible;
     detail::drop_infeasible(result);
     result.proved = answer.proved;

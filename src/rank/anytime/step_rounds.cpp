@@ -54,7 +54,7 @@ void StepRounds::begin(View<const Candidate> candidates, const Watch& watch) noe
   leaves_ = watch.runs() && pool_.size() > 0 && looks &&
             std::none_of(candidates.begin(), candidates.end(),
                          [](const Candidate& c) { return c.motion.holds_poses(); });
-  helpers_watch_ = leaves_ ? Watch(watch.until() - ahead) : watch;
+  helpers_watch_ = leaves_ ? watch.earlier_by(ahead) : watch;
   if (!leaves_) return;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     kept_[i].motion = candidates[i].motion;

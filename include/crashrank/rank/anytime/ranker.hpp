@@ -9,6 +9,7 @@
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/model.hpp"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -44,6 +45,9 @@ struct RankBudget {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   /// Ends as soon as the first place is proved.
   bool first_place_only = false;
+  /// Ends soon after this is set, from any thread, with what is known by then; null: by nothing.
+  /// Looked at wherever the clock is. Has to stay until the Ranker's next call or its end.
+  const std::atomic<bool>* cancel = nullptr;
 };
 
 /// How far a candidate was followed.
@@ -184,13 +188,21 @@ public:
   /// What `crashrank::rank` returns, of an answer. Complete: the same, samples, intervals and marks
   /// included (HarmOptions::intervals). Otherwise without samples: the known candidates in full,
   /// with contacts and damage, the others with their intervals, and places as far as these leave
-  /// them open. Evaluates and allocates; not for use on time.
-  Result<RankResult> explain(View<const Candidate> candidates, const RankerAnswer& answer);
+  /// them open. Evaluates and allocates; not for use on time. Once `cancel` is set, from any
+  /// thread, candidates that are not evaluated yet get bounds on their scores.
+  Result<RankResult> explain(View<const Candidate> candidates, const RankerAnswer& answer,
+                             const std::atomic<bool>* cancel = nullptr);
 
 private:
   struct State;
   explicit Ranker(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };
+
+/// As `crashrank::rank`, within a budget: prepares a Ranker, ranks the scenario's candidates and
+/// explains the answer, off the clock. Without a budget use `rank`, whose workers share the
+/// explanation. Policy and depth have no effect. Errors: as `rank`.
+CRASHRANK_API Result<RankResult> rank_within(const Scenario& scenario, View<const Model> models,
+                                             const RankOptions& options, const RankBudget& budget);
 
 }  // namespace crashrank

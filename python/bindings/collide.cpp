@@ -1,0 +1,195 @@
+#include "arrays.hpp"
+#include "error.hpp"
+#include "interrupts.hpp"
+#include "model.hpp"
+
+#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/dispatch/worker_pool.hpp"
+
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+namespace crashrank::python {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using PairArray = nb::ndarray<nb::numpy, std::int32_t, nb::shape<-1, 2>>;
+using OffsetArray = nb::ndarray<nb::numpy, std::int64_t, nb::shape<-1>>;
+using TouchArray = nb::ndarray<nb::numpy, bool, nb::shape<-1>>;
+
+std::vector<Pose> read_poses(const GivenPoses& given) {
+  std::vector<Pose> poses;
+  poses.reserve(given.shape(0));
+  for (std::size_t i = 0; i < given.shape(0); ++i) {
+    Result<Pose> pose = pose_from_matrix({given.data() + 16 * i, 16});
+    if (!pose) {
+      pose.error().place = "poses[" + std::to_string(i) + "]";
+      throw Failure(pose.error());
+    }
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+Pose read_pose(const Given<double, nb::shape<4, 4>>& given) {
+  Result<Pose> pose = pose_from_matrix({given.data(), 16});
+  if (!pose) pose.error().place = "pose";
+  return value_of(std::move(pose));
+}
+
+/// One for each thread that asks, kept between its calls.
+ModelWorkspace& workspace_for(const Body& a, const Body& b) {
+  thread_local ModelWorkspace workspace;
+  workspace.prepare(a.model(), b.model());
+  return workspace;
+}
+
+/// Calls `body(index)` for every index below `count`, on `workers` threads, the calling one alone
+/// for one. Looks at the signals now and then. The interpreter's lock is not held.
+template <class Function>
+void for_each_index(std::size_t count, std::uint32_t workers, const Function& body) {
+  Interrupts interrupts;
+  if (workers <= 1) {
+    for (std::size_t i = 0; i < count; ++i) {
+      body(i);
+      if (i % 4 == 3) interrupts.look();  // a clock costs 20 ns, a query 1 us or more
+    }
+    return;
+  }
+  PoolOptions options;
+  options.workers = workers;
+  WorkerPool pool = value_of(WorkerPool::start(options));
+  // Blocks grow until one takes a while: few enough that starting them costs nothing, short enough
+  // that signals are seen.
+  std::size_t block = std::size_t{64} * workers;
+  for (std::size_t begin = 0; begin < count;) {
+    const std::size_t size = std::min(block, count - begin);
+    const auto start = Clock::now();
+    check(pool.for_each(size, [&](std::size_t i, std::uint32_t) { body(begin + i); }));
+    if (Clock::now() - start < look_every / 4) block *= 2;
+    begin += size;
+    interrupts.look();
+  }
+}
+
+PairArray collide_once(const Body& a, const Body& b, const Given<double, nb::shape<4, 4>>& given) {
+  const Pose pose = read_pose(given);
+  std::vector<Pair> pairs;
+  std::vector<std::int32_t> flat;
+  {
+    const nb::gil_scoped_release unlocked;
+    collide(a.model(), b.model(), pose, pairs, workspace_for(a, b));
+    std::sort(pairs.begin(), pairs.end());
+    flat.reserve(2 * pairs.size());
+    for (const Pair& pair : pairs) {
+      flat.push_back(pair.a);
+      flat.push_back(pair.b);
+    }
+  }
+  return make_array<std::int32_t, nb::shape<-1, 2>>(std::move(flat), {pairs.size(), 2});
+}
+
+TouchArray collide_any(const Body& a, const Body& b, const GivenPoses& given,
+                       std::uint32_t workers) {
+  const std::vector<Pose> poses = read_poses(given);
+  auto touch = std::make_unique<bool[]>(poses.size());
+  {
+    const nb::gil_scoped_release unlocked;
+    CollideOptions options;
+    options.any = true;
+    for_each_index(poses.size(), workers, [&](std::size_t i) {
+      thread_local std::vector<Pair> pairs;
+      touch[i] =
+          collide(a.model(), b.model(), poses[i], pairs, workspace_for(a, b), options).intersecting;
+    });
+  }
+  bool* const data = touch.get();
+  const nb::capsule keeper(data, [](void* kept) noexcept { delete[] static_cast<bool*>(kept); });
+  touch.release();
+  return TouchArray(data, {poses.size()}, keeper);
+}
+
+/// Pairs of all poses one after the other, each pose's sorted, and where each begins.
+std::pair<PairArray, OffsetArray> collide_all(const Body& a, const Body& b, const GivenPoses& given,
+                                              std::uint32_t workers) {
+  const std::vector<Pose> poses = read_poses(given);
+  std::vector<std::int32_t> flat;
+  std::vector<std::int64_t> offsets(poses.size() + 1, 0);
+  {
+    const nb::gil_scoped_release unlocked;
+    std::vector<std::vector<Pair>> found(poses.size());
+    for_each_index(poses.size(), workers, [&](std::size_t i) {
+      collide(a.model(), b.model(), poses[i], found[i], workspace_for(a, b));
+      std::sort(found[i].begin(), found[i].end());
+      found[i].shrink_to_fit();
+    });
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      offsets[i + 1] = offsets[i] + static_cast<std::int64_t>(found[i].size());
+    }
+    flat.reserve(2 * static_cast<std::size_t>(offsets.back()));
+    for (std::vector<Pair>& of_pose : found) {
+      for (const Pair& pair : of_pose) {
+        flat.push_back(pair.a);
+        flat.push_back(pair.b);
+      }
+      of_pose = {};
+    }
+  }
+  const std::size_t pairs = flat.size() / 2;
+  const std::size_t ends = offsets.size();
+  return {make_array<std::int32_t, nb::shape<-1, 2>>(std::move(flat), {pairs, 2}),
+          make_array<std::int64_t, nb::shape<-1>>(std::move(offsets), {ends})};
+}
+
+std::string hash_of(const Given<std::int32_t, nb::shape<-1, 2>>& given) {
+  std::vector<Pair> pairs(given.shape(0));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i] = {given.data()[2 * i], given.data()[2 * i + 1]};
+  }
+  const nb::gil_scoped_release unlocked;
+  std::sort(pairs.begin(), pairs.end());
+  return pairs_hash(pairs);
+}
+
+nb::ndarray<nb::numpy, double, nb::shape<4, 4>> matrix_of(double x_m, double y_m, double z_m,
+                                                          double yaw_rad, double pitch_rad,
+                                                          double roll_rad) {
+  const Pose pose = pose_from_angles({x_m, y_m, z_m}, yaw_rad, pitch_rad, roll_rad);
+  std::vector<double> rows(16, 0.0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t j = 0; j < 3; ++j) {
+      rows[4 * i + j] = pose.rotation(row, static_cast<Eigen::Index>(j));
+    }
+    rows[4 * i + 3] = pose.translation[row];
+  }
+  rows[15] = 1.0;
+  return make_array<double, nb::shape<4, 4>>(std::move(rows), {4, 4});
+}
+
+}  // namespace
+
+void bind_queries(nb::module_& module) {
+  module.def("collide", &collide_once, nb::arg("a"), nb::arg("b"), nb::arg("pose").noconvert(),
+             "Pairs at one pose, sorted.");
+  module.def("collide_any", &collide_any, nb::arg("a"), nb::arg("b"), nb::arg("poses").noconvert(),
+             nb::arg("workers"), "By pose, whether any two triangles share a point.");
+  module.def("collide_all", &collide_all, nb::arg("a"), nb::arg("b"), nb::arg("poses").noconvert(),
+             nb::arg("workers"), "Pairs of all poses, and by pose where they begin.");
+  module.def("pairs_hash", &hash_of, nb::arg("pairs").noconvert(),
+             "Fingerprint of pairs, sorted here.");
+  module.def("pose_matrix", &matrix_of, nb::arg("x_m"), nb::arg("y_m"), nb::arg("z_m"),
+             nb::arg("yaw_rad"), nb::arg("pitch_rad"), nb::arg("roll_rad"),
+             "Row-major 4x4 matrix of a pose.");
+  module.def("vector_unit", &vector_unit, "Name of the vector unit in use.");
+  module.attr("max_workers") = max_workers;
+}
+
+}  // namespace crashrank::python

@@ -1,0 +1,189 @@
+#include "ranking.hpp"
+
+#include "arrays.hpp"
+#include "error.hpp"
+#include "waiting.hpp"
+
+#include "crashrank/rank/anytime/ranker.hpp"
+#include "crashrank/report/html_report.hpp"
+#include "crashrank/report/ranking.hpp"
+#include "crashrank/scenario/profile.hpp"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace crashrank::python {
+
+RankOptions options_of(const RankRequest& request, const Scenario& scenario) {
+  RankOptions options;
+  options.workers = request.workers;
+  options.sampled_futures = request.sampled_futures;
+  if (!request.measure.empty()) options.measure = value_of(measure_from_name(request.measure));
+  if (!request.risk.empty()) options.risk = value_of(risk_from_name(request.risk));
+  options.infeasible = value_of(infeasible_from_name(request.infeasible));
+  options.harm = scenario.harm;
+  if (!request.profile_file.empty()) {
+    options.harm = value_of(load_profile_file(request.profile_file, scenario.harm));
+  }
+  return options;
+}
+
+namespace {
+
+using PathArray = nb::ndarray<nb::numpy, double, nb::shape<-1, -1, 3>>;
+
+struct Budget {
+  double deadline_s = std::numeric_limits<double>::infinity();
+  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
+  bool first_place_only = false;
+
+  bool bounded() const {
+    return std::isfinite(deadline_s) || first_place_only ||
+           work != std::numeric_limits<std::uint64_t>::max();
+  }
+};
+
+/// Ranks; the interpreter's lock is not held. Throws Failure.
+RankResult rank_now(const Situation& situation, RankOptions& how, const Budget& within,
+                    Progress& progress) {
+  if (within.bounded()) {
+    RankBudget budget;
+    budget.deadline_s = within.deadline_s;
+    budget.work = within.work;
+    budget.first_place_only = within.first_place_only;
+    budget.cancel = &progress.cancel;
+    return value_of(rank_within(situation.scenario(), situation.models(), how, budget));
+  }
+  how.on_progress = [&progress](std::size_t evaluated, std::size_t candidates) {
+    progress.done = evaluated;
+    progress.all = candidates;
+    return !progress.cancel;
+  };
+  return value_of(rank(situation.scenario(), situation.models(), how));
+}
+
+std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const RankRequest& request,
+                                       const Budget& within, const nb::object& report) {
+  auto ranked = std::make_shared<Ranked>();
+  ranked->situation = situation;
+  Progress progress;
+  bool loaded = false;
+  ranked->interrupted = run_waiting(progress, report, [&] {
+    situation->load();
+    loaded = true;
+    RankOptions how = options_of(request, situation->scenario());
+    ranked->warnings = situation->warnings();
+    if (progress.cancel) return;
+    ranked->result = rank_now(*situation, how, within, progress);
+  });
+  if (ranked->result.ranking.empty() && ranked->interrupted) {
+    // Nothing is known yet: there is no partial answer.
+    PyErr_SetNone(PyExc_KeyboardInterrupt);
+    throw nb::python_error();
+  }
+  if (ranked->interrupted || (progress.cancel && !ranked->result.complete)) {
+    ranked->warnings.push_back(ranking_progress(ranked->result));
+  } else if (!ranked->result.complete && !(within.first_place_only && ranked->result.proved)) {
+    ranked->warnings.push_back(why_partial(ranked->result, within.bounded()));
+  }
+  return ranked;
+}
+
+std::string json_of(const Ranked& ranked) {
+  const nb::gil_scoped_release unlocked;
+  return ranking_json(ranked.situation->scenario(), ranked.situation->models(), ranked.result,
+                      ranked.warnings);
+}
+
+std::string html_of(const Ranked& ranked, std::size_t drawn) {
+  const nb::gil_scoped_release unlocked;
+  HtmlReportOptions options;
+  options.drawn = drawn;
+  return html_report(ranked.situation->scenario(), ranked.situation->models(), ranked.result,
+                     options);
+}
+
+/// x, y (m) and heading (rad) in the world, by motion and time.
+PathArray sample_motions(const std::vector<Motion>& motions, const GivenTimes& times) {
+  std::vector<double> values;
+  values.reserve(3 * motions.size() * times.shape(0));
+  for (const Motion& motion : motions) {
+    for (std::size_t i = 0; i < times.shape(0); ++i) {
+      const Pose pose = motion.pose_at(times.data()[i]);
+      values.push_back(pose.translation.x());
+      values.push_back(pose.translation.y());
+      values.push_back(std::atan2(pose.rotation(1, 0), pose.rotation(0, 0)));
+    }
+  }
+  return make_array<double, nb::shape<-1, -1, 3>>(std::move(values),
+                                                  {motions.size(), times.shape(0), 3});
+}
+
+PathArray candidate_paths(const Ranked& ranked, const GivenTimes& times) {
+  std::vector<Motion> motions;
+  for (const CandidateResult& each : ranked.result.ranking) {
+    motions.push_back(ranked.result.candidates[each.candidate].motion);
+  }
+  return sample_motions(motions, times);
+}
+
+PathArray actor_paths(const Ranked& ranked, const GivenTimes& times) {
+  const Scenario likeliest = likeliest_future(ranked.situation->scenario());
+  std::vector<Motion> motions;
+  for (const ScenarioActor& actor : likeliest.actors) {
+    motions.push_back(value_of(make_motion(actor)));
+  }
+  return sample_motions(motions, times);
+}
+
+/// Of the model of an actor, or of the ego for -1: what is seen from above.
+nb::ndarray<nb::numpy, double, nb::shape<-1, 2>> outline_of(const Ranked& ranked, long actor) {
+  const Scenario& scenario = ranked.situation->scenario();
+  const std::size_t model =
+      actor < 0 ? scenario.ego.model : scenario.actors.at(static_cast<std::size_t>(actor)).model;
+  std::vector<double> corners = outline_corners(ranked.situation->models()[model].mesh);
+  const std::size_t count = corners.size() / 2;
+  return make_array<double, nb::shape<-1, 2>>(std::move(corners), {count, 2});
+}
+
+}  // namespace
+
+void bind_rankings(nb::module_& module) {
+  nb::class_<Ranked>(module, "Ranked", "A ranking with its scenario and models.")
+      .def("json", &json_of, "The document that `crashrank rank --json` prints.")
+      .def("html", &html_of, nb::arg("drawn"), "The report, one page.")
+      .def("candidate_paths", &candidate_paths, nb::arg("times_s").noconvert(),
+           "x, y, heading by rank and time; m, rad, world.")
+      .def("actor_paths", &actor_paths, nb::arg("times_s").noconvert(),
+           "The same by actor, in the likeliest future.")
+      .def("outline", &outline_of, nb::arg("actor"), "Seen from above, body coordinates, m.")
+      .def_prop_ro(
+          "horizon_s", [](const Ranked& self) { return self.situation->scenario().horizon_s; },
+          "How far contacts were searched for, s.")
+      .def_ro("interrupted", &Ranked::interrupted, "Whether Ctrl-C ended it.");
+  module.def(
+      "rank",
+      [](const SharedSituation& situation, std::string measure, std::string risk,
+         std::string infeasible, std::string profile, unsigned workers, std::size_t futures,
+         double deadline_s, std::uint64_t work_budget, bool first_place_only,
+         const nb::object& progress) {
+        const RankRequest request{std::move(measure), std::move(risk), std::move(infeasible),
+                                  std::move(profile), workers,         futures};
+        return rank_situation(situation, request, {deadline_s, work_budget, first_place_only},
+                              progress);
+      },
+      nb::arg("situation"), nb::arg("measure"), nb::arg("risk"), nb::arg("infeasible"),
+      nb::arg("profile"), nb::arg("workers"), nb::arg("futures"), nb::arg("deadline_s"),
+      nb::arg("work_budget"), nb::arg("first_place_only"), nb::arg("progress").none(),
+      "Ranks the candidates of a scenario.");
+  module.attr("max_sampled_futures") = max_sampled_futures;
+}
+
+}  // namespace crashrank::python

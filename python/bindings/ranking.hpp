@@ -1,0 +1,36 @@
+#pragma once
+
+#include "scenario.hpp"
+
+#include "crashrank/rank/rank.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crashrank::python {
+
+/// What a ranking's options are in Python. Names are checked where they become options.
+struct RankRequest {
+  std::string measure;  ///< empty: the scenario's
+  std::string risk;     ///< empty: the scenario's
+  std::string infeasible = "demote";
+  std::string profile_file;  ///< empty: none
+  unsigned workers = 1;
+  std::size_t sampled_futures = RankOptions{}.sampled_futures;
+};
+
+/// The library's options. Reads the profile. Throws Failure.
+RankOptions options_of(const RankRequest& request, const Scenario& scenario);
+
+/// A ranking with what it was made of.
+struct Ranked {
+  SharedSituation situation;
+  RankResult result;
+  std::vector<std::string> warnings;  ///< of the meshes, and of how the ranking ended
+  bool interrupted = false;
+};
+
+}  // namespace crashrank::python

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "model.hpp"
+
+#include "crashrank/scenario/scenario.hpp"
+#include "crashrank/tree/model.hpp"
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace crashrank::python {
+
+/// A scenario with its models, read when they are first needed and kept. Any number of threads may
+/// share it.
+class Situation {
+public:
+  Situation(Scenario scenario, std::vector<SharedBody> bodies)
+      : scenario_(std::move(scenario)), bodies_(std::move(bodies)) {}
+
+  /// Reads the models that are not read yet. Not with the interpreter's lock: it may wait for
+  /// another thread that reads them. Throws Failure.
+  void load();
+
+  /// As read; what model files state of the mass comes with `load`.
+  const Scenario& scenario() const noexcept { return scenario_; }
+  /// By model. After `load` only.
+  const std::vector<Model>& models() const noexcept { return models_; }
+  /// Of the meshes, each with its file. After `load` only.
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+private:
+  std::mutex mutex_;
+  bool loaded_ = false;
+  Scenario scenario_;
+  std::vector<SharedBody> bodies_;  ///< by model, null where its file is to be read
+  std::vector<Model> models_;
+  std::vector<std::string> warnings_;
+};
+
+using SharedSituation = std::shared_ptr<Situation>;
+
+}  // namespace crashrank::python

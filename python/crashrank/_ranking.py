@@ -1,0 +1,294 @@
+"""Rankings: the crashes that a scenario leaves, least harmful first."""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, overload
+
+from . import _core
+from ._checks import as_count, as_flag, as_path, as_real, as_text
+from ._errors import NotFoundError, checked_call, usage, wrong_type
+from ._record import Record, wrap
+from ._scenario import Scenario, as_scenario
+
+if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+    from matplotlib.figure import Figure
+
+NO_LIMIT = 2**64 - 1
+
+
+class RankedCandidate(Record):
+    """One candidate of a ranking. Attributes are named as in the JSON answer.
+
+    Distances in m, times in s from the decision, speeds in m/s, angles in degrees. None where a
+    value is not known or does not exist. Further attributes: ``at_horizon``, ``crowded``,
+    ``demand``, ``futures``, ``grazes``, ``numerical_interval``, ``origin``, ``overtaken_share``,
+    ``people``, ``places``, ``sampling_error``, ``separable_from_next``; see
+    ``data/schemas/rank.schema.json``.
+    """
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+        rank: int
+        candidate: str
+        score: float | None
+        score_interval: tuple[float, float]
+        feasible: bool | None
+        collides: bool | None
+        collision_probability: float | None
+        other: str | None
+        time_of_impact_s: float | None
+        closing_speed_mps: float | None
+        delta_v_mps: Record | None
+        pdof_deg: Record | None
+        contacts: tuple[Record, ...]
+        damaged_triangles: Record | None
+        damaged_area_m2: Record | None
+        damaged_parts: Record | None
+        tied_with: tuple[str, ...]
+        grip_demand: float | None
+        leaves_road: Record | None
+        least_distance_m: float | None
+        least_time_gap_s: float | None
+        acceleration_mps2: float
+        curvature_per_m: float
+
+
+class Ranking(Sequence[RankedCandidate]):
+    """The candidates of a scenario, least harmful first.
+
+    A sequence of `RankedCandidate`. The members of the JSON answer are attributes: ``measure``,
+    ``measure_unit``, ``complete``, ``proved``, ``in_race``, ``warnings``, ``stability``, ...
+    """
+
+    __slots__ = ("__weakref__", "_document", "_ranked")
+
+    _ranked: _core.Ranked
+    _document: dict[str, Any]
+
+    if TYPE_CHECKING:
+        scenario: str
+        measure: str
+        measure_unit: str
+        complete: bool
+        proved: bool
+        in_race: tuple[str, ...]
+        warnings: tuple[str, ...]
+        elapsed_s: float
+
+    def __init__(self, ranked: _core.Ranked) -> None:
+        self._ranked = ranked
+        self._document = json.loads(ranked.json())
+
+    def __getattr__(self, name: str) -> Any:
+        if not name.startswith("_") and name in self._document:
+            return wrap(self._document[name])
+        raise AttributeError(f"Ranking has no attribute {name!r}", name=name, obj=self)
+
+    def __dir__(self) -> list[str]:
+        """List the members of the JSON answer, too."""
+        return sorted({*super().__dir__(), *self._document})
+
+    @overload
+    def __getitem__(self, index: int) -> RankedCandidate: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[RankedCandidate, ...]: ...
+    def __getitem__(self, index: int | slice) -> RankedCandidate | tuple[RankedCandidate, ...]:
+        """Return the candidate at that place, from 0."""
+        rows = self._document["ranking"]
+        if isinstance(index, slice):
+            return tuple(RankedCandidate(row) for row in rows[index])
+        return RankedCandidate(rows[index])
+
+    def __len__(self) -> int:
+        """Return the number of candidates."""
+        return len(self._document["ranking"])
+
+    def __iter__(self) -> Iterator[RankedCandidate]:
+        """Iterate from the least harmful on."""
+        return (RankedCandidate(row) for row in self._document["ranking"])
+
+    @property
+    def best(self) -> RankedCandidate:
+        """The least harmful candidate."""
+        return self[0]
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether Ctrl-C ended the ranking: `complete` is then false."""
+        return self._ranked.interrupted
+
+    def named(self, candidate: str) -> RankedCandidate:
+        """Return the candidate of that name. Raises `UsageError` where there is none."""
+        for row in self._document["ranking"]:
+            if row["candidate"] == candidate:
+                return RankedCandidate(row)
+        raise usage(
+            "candidate", f"there is no candidate {candidate!r}", "see [c.candidate for c in …]"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the answer as ``crashrank rank --json`` prints it: plain dicts and lists."""
+        return Record(self._document).to_dict()
+
+    def to_json(self) -> str:
+        """Return the document that ``crashrank rank --json`` prints."""
+        return self._ranked.json()
+
+    def to_arrow(self) -> pyarrow.Table:
+        """Return a table with one row for each candidate; needs ``crashrank[arrow]``.
+
+        Units stand in the names of the columns. Scenario, measure and its unit are in the
+        schema's metadata.
+        """
+        from ._tables import to_arrow
+
+        return to_arrow(self._document)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """Return the table of `to_arrow` as a data frame; needs pandas."""
+        from ._tables import to_pandas
+
+        return to_pandas(self._document)
+
+    @checked_call
+    def report(self, path: object, *, drawn: int = 24) -> None:
+        """Write the report: one HTML page that works offline.
+
+        Parameters
+        ----------
+        path : path
+            The file to write. Replaced where it exists.
+        drawn : int
+            Most candidates drawn in plan and in 3-D, best first; 0 for all.
+        """
+        file = as_path(path, "path")
+        page = self._ranked.html(as_count(drawn, "drawn", 0, 2**31))
+        try:
+            with open(file, "w", encoding="utf-8", newline="\n") as out:
+                out.write(page)
+        except OSError as error:
+            raise NotFoundError(
+                "not_found", file, "", f"cannot be written: {error.strerror}", "choose another file"
+            ) from error
+
+    def plot(self, *, candidate: str | None = None, top: int = 12) -> Figure:
+        """Draw the plan of one candidate, and scores with intervals; needs matplotlib.
+
+        Parameters
+        ----------
+        candidate : str, optional
+            Whose plan is drawn. Default: the best.
+        top : int
+            Most candidates whose scores are drawn.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Two axes: the plan, world coordinates in m, at the candidate's first contact or at the
+            horizon; and the scores in the measure's unit.
+        """
+        from ._plot import plot
+
+        return plot(self, self._ranked, candidate, as_count(top, "top", 1, 1000))
+
+    def _repr_html_(self) -> str:
+        """Return the report in a frame that may run its own script and nothing else."""
+        page = html.escape(self._ranked.html(8), quote=True)
+        return (
+            '<iframe sandbox="allow-scripts" referrerpolicy="no-referrer" '
+            'style="width:100%;height:640px;border:0" title="crashrank report" '
+            f'srcdoc="{page}"></iframe>'
+        )
+
+    def __repr__(self) -> str:
+        """Return the number of candidates and the best."""
+        state = "" if self.complete else ", partial"
+        return f"Ranking({len(self)} candidates, best {self.best.candidate!r}{state})"
+
+
+@checked_call
+def rank(
+    scenario: Scenario | object,
+    *,
+    measure: str | None = None,
+    workers: int = 1,
+    risk: str | None = None,
+    deadline_s: float | None = None,
+    work_budget: int | None = None,
+    first_place_only: bool = False,
+    infeasible: str = "demote",
+    profile: object = None,
+    futures: int = 64,
+    progress: Callable[[int, int], object] | None = None,
+    base: object = None,
+    allow: Iterable[object] = (),
+) -> Ranking:
+    """Rank the crashes that a scenario leaves, least harmful first.
+
+    The answer has the bits of ``crashrank rank --json`` for every number of workers. The
+    interpreter's lock is released.
+
+    Ctrl-C ends the ranking: the partial answer is returned, `Ranking.interrupted` is true, and
+    candidates that were not evaluated have bounds in place of a score. Before anything is ranked
+    Ctrl-C raises KeyboardInterrupt.
+
+    Parameters
+    ----------
+    scenario : Scenario, path, JSON text or mapping
+        What to rank.
+    measure : {'harm', 'delta-v', 'energy', 'intrusion', 'polygons', 'area', 'closing-energy'}
+        What is compared. Default: the scenario's.
+    workers : int
+        Threads that share the work, 1 to 64.
+    risk : str, optional
+        How scores of several futures become one: ``expected``, ``worst``, ``cvar:X``,
+        ``quantile:X``. Default: the scenario's.
+    deadline_s : float, optional
+        Time for the search, s, after its preparation. At its end bounds stand in place of
+        scores that are not known.
+    work_budget : int, optional
+        Tests of boxes, triangles and outline pieces after which the search ends: the same answer
+        on every machine.
+    first_place_only : bool
+        End as soon as the first place is proved.
+    infeasible : {'demote', 'drop', 'keep'}
+        What becomes of manoeuvres beyond grip, engine, brakes or steering.
+    profile : path, optional
+        File of weights and ranges, over those of the scenario.
+    futures : int
+        Futures drawn where predictions have too many combinations.
+    progress : callable, optional
+        Called about 40 times a second, in the calling thread, with the numbers of candidates
+        evaluated and of all. Returning False ends the ranking with the partial answer. Without a
+        budget only.
+    base, allow
+        As of `Scenario`, where `scenario` is none yet.
+
+    Returns
+    -------
+    Ranking
+    """
+    given = as_scenario(scenario, base, allow)
+    if progress is not None and not callable(progress):
+        raise wrong_type("progress", f"is a {type(progress).__name__}, not callable")
+    return Ranking(
+        _core.rank(
+            given._situation,
+            "" if measure is None else as_text(measure, "measure"),
+            "" if risk is None else as_text(risk, "risk"),
+            as_text(infeasible, "infeasible"),
+            "" if profile is None else as_path(profile, "profile"),
+            as_count(workers, "workers", 1, _core.max_workers),
+            as_count(futures, "futures", 1, _core.max_sampled_futures),
+            float("inf") if deadline_s is None else as_real(deadline_s, "deadline_s"),
+            NO_LIMIT if work_budget is None else as_count(work_budget, "work_budget", 0, NO_LIMIT),
+            as_flag(first_place_only, "first_place_only"),
+            progress,
+        )
+    )

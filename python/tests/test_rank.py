@@ -1,0 +1,267 @@
+"""Rankings have the bits of the command's, for every shipped scenario."""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import crashrank
+import jsonschema
+import numpy as np
+import pytest
+from conftest import DATA, ROOT, SCENARIOS, box_arrays, run_command
+
+# These take a minute each without a budget. CRASHRANK_PYTHON_LONG ranks them in full.
+LONG = () if os.environ.get("CRASHRANK_PYTHON_LONG") else ("crossing_traffic", "motorway_pile_up")
+
+
+def without_times(document):
+    document = json.loads(json.dumps(document))
+    document.pop("elapsed_s")
+    for key in [key for key in document.get("effort", {}) if key.endswith("_s")]:
+        document["effort"].pop(key)
+    return document
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
+def test_answers_are_those_of_the_command(path):
+    budget = {"work_budget": 200_000} if path.stem in LONG else {}
+    words = [f"--{key.replace('_', '-')}={value}" for key, value in budget.items()]
+    told = run_command("rank", path, "--workers", 2, *words)
+    mine = crashrank.rank(path, workers=2, **budget).to_dict()
+    assert without_times(mine) == without_times(told)
+
+
+@pytest.mark.parametrize("measure", ["delta-v", "energy", "polygons", "area", "closing-energy"])
+def test_measures_are_those_of_the_command(measure):
+    path = DATA / "scenarios/oncoming_truck.json"
+    told = run_command("rank", path, "--measure", measure, "--infeasible", "keep")
+    mine = crashrank.rank(path, measure=measure, infeasible="keep")
+    assert without_times(mine.to_dict()) == without_times(told)
+
+
+def test_risk_profile_and_futures_reach_the_engine():
+    path = DATA / "scenarios/oncoming_may_turn.json"
+    profile = DATA / "profiles/everybody_alike.json"
+    told = run_command("rank", path, "--risk", "cvar:0.8", "--profile", profile, "--futures", 32)
+    mine = crashrank.rank(path, risk="cvar:0.8", profile=profile, futures=32)
+    assert without_times(mine.to_dict()) == without_times(told)
+
+
+def test_all_ways_to_give_a_scenario_are_one():
+    path = DATA / "scenarios/oncoming_truck.json"
+    text = path.read_text()
+    base = path.parent
+    want = without_times(crashrank.rank(str(path)).to_dict())
+    scenario = crashrank.Scenario.load(path)
+    for answer in (
+        crashrank.rank(json.loads(text), base=base),
+        crashrank.rank(text, base=base),
+        crashrank.rank(scenario, workers=2),
+        crashrank.rank(scenario),
+        crashrank.rank(crashrank.Scenario.from_json(text, base=base)),
+    ):
+        assert without_times(answer.to_dict()) == want
+
+
+def test_a_scenario_built_in_code_is_that_of_its_file():
+    path = DATA / "scenarios/pedestrian_or_parked_car.json"
+    document = json.loads(path.read_text())
+    document.pop("$schema")
+    bodies = {
+        name: crashrank.Body(**{**body, "mesh": crashrank.load_model(path.parent / body["mesh"])})
+        for name, body in document.pop("models").items()
+        if "scale" not in body
+    }
+    ego = crashrank.Ego(**document.pop("ego"))
+    actors = [crashrank.Actor(**actor) for actor in document.pop("actors")]
+    document["scenario_version"] = 1
+    built = crashrank.Scenario.build(models=bodies, ego=ego, actors=actors, **document)
+    mine, want = crashrank.rank(built).to_dict(), crashrank.rank(path).to_dict()
+    assert mine["ranking"] == want["ranking"]
+
+
+def test_members_of_a_scenario_are_those_of_its_schema():
+    import dataclasses
+
+    definitions = json.loads((DATA / "scenario.schema.json").read_text())["$defs"]
+
+    def keys(name):
+        entry = definitions[name]
+        branches = [entry, *entry.get("oneOf", [])]
+        return {key for branch in branches for key in branch.get("properties", {})}
+
+    for kind, name in (
+        (crashrank.Body, "model"),
+        (crashrank.Ego, "ego"),
+        (crashrank.Actor, "actor"),
+        (crashrank.Candidate, "candidate"),
+        (crashrank.Pose, "pose"),
+    ):
+        assert {field.name for field in dataclasses.fields(kind)} == keys(name)
+
+
+def test_attributes_are_named_as_in_the_answer(truck_ranking):
+    document = truck_ranking.to_dict()
+    schema = json.loads((DATA / "schemas/rank.schema.json").read_text())
+    jsonschema.validate(document, schema)
+    assert len(truck_ranking) == len(document["ranking"])
+    for row, mine in zip(document["ranking"], truck_ranking, strict=True):
+        for key, value in row.items():
+            given = getattr(mine, key)
+            assert given == mine[key]
+            if isinstance(value, (str, int, float, type(None))):
+                assert given == value
+    declared = set(crashrank.RankedCandidate.__annotations__)
+    assert declared <= set(schema["$defs"]["candidate"]["properties"])
+    assert truck_ranking.best.delta_v_mps.ego == document["ranking"][0]["delta_v_mps"]["ego"]
+    assert truck_ranking.best is not None
+    assert truck_ranking[-1].rank == 5
+    assert [c.rank for c in truck_ranking[:2]] == [1, 2]
+    assert truck_ranking.named("brake in lane").candidate == "brake in lane"
+    with pytest.raises(AttributeError):
+        truck_ranking.best.no_such_key  # noqa: B018
+    with pytest.raises(AttributeError):
+        truck_ranking.best.score = 0.0
+    assert pickle.loads(pickle.dumps(truck_ranking.best)) == truck_ranking.best
+
+
+def test_tables_have_a_row_for_each_candidate(truck_ranking):
+    pyarrow = pytest.importorskip("pyarrow")
+    pandas = pytest.importorskip("pandas")
+    table = truck_ranking.to_arrow()
+    assert isinstance(table, pyarrow.Table)
+    assert table.column("candidate").to_pylist() == [c.candidate for c in truck_ranking]
+    assert table.column("score").to_pylist() == [c.score for c in truck_ranking]
+    assert table.schema.metadata[b"measure_unit"] == b"persons"
+    partial = crashrank.rank(DATA / "scenarios/oncoming_truck.json", work_budget=0)
+    assert partial.to_arrow().schema.equals(table.schema)
+    assert partial.to_arrow().column("score").null_count == len(partial)
+    frame = truck_ranking.to_pandas()
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame.columns) == table.column_names
+    assert frame.attrs["scenario"] == truck_ranking.scenario
+
+
+def test_the_report_is_that_of_the_command(tmp_path, truck_ranking):
+    truck_ranking.report(tmp_path / "mine.html")
+    path = DATA / "scenarios/oncoming_truck.json"
+    run_command("rank", path, "--report", tmp_path / "theirs.html")
+    mine, theirs = ((tmp_path / name).read_text() for name in ("mine.html", "theirs.html"))
+    different = [
+        (a, b) for a, b in zip(mine.split("\n"), theirs.split("\n"), strict=True) if a != b
+    ]
+    assert len(different) <= 3  # the time that it took
+    inside = truck_ranking._repr_html_()
+    assert inside.startswith('<iframe sandbox="allow-scripts"')
+    assert "allow-same-origin" not in inside
+    with pytest.raises(crashrank.NotFoundError) as error:
+        truck_ranking.report(tmp_path / "none/here.html")
+    assert error.value.file.endswith("none/here.html")
+
+
+def test_plots_show_the_candidates(tmp_path, truck_ranking):
+    pytest.importorskip("matplotlib")
+    figure = truck_ranking.plot()
+    plan, scores = figure.axes
+    assert truck_ranking.best.candidate in plan.get_title()
+    assert len(scores.get_yticklabels()) == len(truck_ranking)
+    assert plan.get_xlabel() == "x [m]"
+    figure.savefig(tmp_path / "plot.png")
+    assert (tmp_path / "plot.png").stat().st_size > 10_000
+    assert (
+        "no contact"
+        in crashrank.rank(DATA / "scenarios/room_to_spare.json", work_budget=200_000)
+        .plot(top=3)
+        .axes[0]
+        .get_title()
+    )
+    with pytest.raises(crashrank.UsageError):
+        truck_ranking.plot(candidate="none")
+
+
+def test_progress_is_told_and_may_end_the_ranking():
+    path = DATA / "scenarios/crossing_traffic.json"
+    told = []
+
+    def stop(done, candidates):
+        told.append((done, candidates))
+        return done < 3
+
+    partial = crashrank.rank(path, workers=2, progress=stop)
+    assert not partial.complete
+    assert not partial.interrupted
+    assert any(c.score is None and c.score_interval[1] > 0 for c in partial)
+    assert told == sorted(told)
+    assert {candidates for _, candidates in told} == {len(partial)}
+    assert any("candidates are evaluated" in warning for warning in partial.warnings)
+
+    def fail(*_):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        crashrank.rank(path, progress=fail)
+
+
+INTERRUPTED = """
+import sys, time, crashrank
+scenario = crashrank.Scenario.load(sys.argv[1]).load_models()
+print("ready", flush=True)
+ranking = crashrank.rank(scenario, workers=2, **eval(sys.argv[2]))
+print(ranking.interrupted, ranking.complete, len(ranking), flush=True)
+"""
+
+
+@pytest.mark.parametrize("budget", ["{}", "{'deadline_s': 60.0}"])
+def test_ctrl_c_ends_with_the_partial_answer(budget):
+    path = DATA / "scenarios/motorway_pile_up.json"
+    words = [sys.executable, "-c", INTERRUPTED, path, budget]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "ready\n"
+        time.sleep(1.0)
+        sent = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        line = child.stdout.readline()
+        took = time.monotonic() - sent
+    assert line == "True False 225\n"
+    print(f"ended {took:.3f} s after Ctrl-C")
+
+
+def test_threads_share_a_scenario():
+    scenario = crashrank.Scenario.load(DATA / "scenarios/oncoming_truck.json")
+    answers = []
+    threads = [
+        threading.Thread(target=lambda: answers.append(crashrank.rank(scenario).to_dict()))
+        for _ in range(6)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(answers) == 6
+    assert all(without_times(answer) == without_times(answers[0]) for answer in answers)
+
+
+def test_bodies_in_memory_are_ranked():
+    vertices, faces = box_arrays()
+    car = crashrank.Model(vertices * [4, 1.8, 1.5] - [1, 0.9, 0], faces)
+    scenario = crashrank.Scenario(
+        {
+            "scenario_version": 1,
+            "models": {"car": {"kind": "car"}},
+            "ego": {"model": "car", "speed_mps": np.float32(15)},
+            "actors": [{"name": "other", "model": "car", "pose": {"x_m": 12}}],
+            "candidates": {"listed": [{"name": "go"}], "grid": False},
+        },
+        models={"car": car},
+    )
+    assert scenario.actors == ("other",)
+    assert scenario.candidates[0] == "go"
+    ranking = crashrank.rank(scenario)
+    # 12 m between origins, 4 m of length: the surfaces are 8 m apart.
+    assert ranking.named("go").time_of_impact_s == pytest.approx(8 / 15, abs=1e-3)
+    assert str(ROOT) not in json.dumps(ranking.to_dict())

@@ -1,0 +1,28 @@
+#include "crashrank/rank/anytime/ranker.hpp"
+
+#include <limits>
+#include <vector>
+
+namespace crashrank {
+
+Result<RankResult> rank_within(const Scenario& scenario, View<const Model> models,
+                               const RankOptions& options, const RankBudget& budget) {
+  if (scenario.ego.model >= models.size()) {
+    return make_error(ErrorCode::usage, "there is not one model for each of the scenario's");
+  }
+  const double ego_length_m =
+      static_cast<double>(models[scenario.ego.model].mesh.bounds().extent().x());
+  const Result<std::vector<Candidate>> candidates = make_candidates(scenario, ego_length_m);
+  if (!candidates) return candidates.error();
+  RankerOptions prepared;
+  prepared.rank = options;
+  prepared.limits.candidates = candidates->size();
+  prepared.limits.actors = scenario.actors.size();
+  prepared.limits.triangles = std::numeric_limits<std::size_t>::max();
+  Result<Ranker> ranker = Ranker::prepare(scenario, models, prepared);
+  if (!ranker) return ranker.error();
+  const RankerAnswer answer = ranker->rank(*candidates, budget);
+  return ranker->explain(*candidates, answer, budget.cancel);
+}
+
+}  // namespace crashrank
