@@ -14,4 +14,5 @@ NB_MODULE(_core, module) {
   bind_queries(module);
   bind_scenarios(module);
   bind_rankings(module);
+  bind_rankers(module);
 }

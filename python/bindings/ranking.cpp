@@ -59,6 +59,11 @@ RankResult rank_now(const Situation& situation, RankOptions& how, const Budget& 
     budget.work = within.work;
     budget.first_place_only = within.first_place_only;
     budget.cancel = &progress.cancel;
+    budget.known = &progress.done;
+    const Box bounds = situation.models()[situation.scenario().ego.model].mesh.bounds();
+    progress.all =
+        value_of(make_candidates(situation.scenario(), static_cast<double>(bounds.extent().x())))
+            .size();
     return value_of(rank_within(situation.scenario(), situation.models(), how, budget));
   }
   how.on_progress = [&progress](std::size_t evaluated, std::size_t candidates) {
@@ -74,11 +79,10 @@ std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const R
   auto ranked = std::make_shared<Ranked>();
   ranked->situation = situation;
   Progress progress;
-  bool loaded = false;
   ranked->interrupted = run_waiting(progress, report, [&] {
     situation->load();
-    loaded = true;
-    RankOptions how = options_of(request, situation->scenario());
+    ranked->scenario = situation->scenario();
+    RankOptions how = options_of(request, ranked->scenario);
     ranked->warnings = situation->warnings();
     if (progress.cancel) return;
     ranked->result = rank_now(*situation, how, within, progress);
@@ -98,16 +102,14 @@ std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const R
 
 std::string json_of(const Ranked& ranked) {
   const nb::gil_scoped_release unlocked;
-  return ranking_json(ranked.situation->scenario(), ranked.situation->models(), ranked.result,
-                      ranked.warnings);
+  return ranking_json(ranked.scenario, ranked.situation->models(), ranked.result, ranked.warnings);
 }
 
 std::string html_of(const Ranked& ranked, std::size_t drawn) {
   const nb::gil_scoped_release unlocked;
   HtmlReportOptions options;
   options.drawn = drawn;
-  return html_report(ranked.situation->scenario(), ranked.situation->models(), ranked.result,
-                     options);
+  return html_report(ranked.scenario, ranked.situation->models(), ranked.result, options);
 }
 
 /// x, y (m) and heading (rad) in the world, by motion and time.
@@ -135,7 +137,7 @@ PathArray candidate_paths(const Ranked& ranked, const GivenTimes& times) {
 }
 
 PathArray actor_paths(const Ranked& ranked, const GivenTimes& times) {
-  const Scenario likeliest = likeliest_future(ranked.situation->scenario());
+  const Scenario likeliest = likeliest_future(ranked.scenario);
   std::vector<Motion> motions;
   for (const ScenarioActor& actor : likeliest.actors) {
     motions.push_back(value_of(make_motion(actor)));
@@ -145,7 +147,7 @@ PathArray actor_paths(const Ranked& ranked, const GivenTimes& times) {
 
 /// Of the model of an actor, or of the ego for -1: what is seen from above.
 nb::ndarray<nb::numpy, double, nb::shape<-1, 2>> outline_of(const Ranked& ranked, long actor) {
-  const Scenario& scenario = ranked.situation->scenario();
+  const Scenario& scenario = ranked.scenario;
   const std::size_t model =
       actor < 0 ? scenario.ego.model : scenario.actors.at(static_cast<std::size_t>(actor)).model;
   std::vector<double> corners = outline_corners(ranked.situation->models()[model].mesh);
@@ -165,7 +167,7 @@ void bind_rankings(nb::module_& module) {
            "The same by actor, in the likeliest future.")
       .def("outline", &outline_of, nb::arg("actor"), "Seen from above, body coordinates, m.")
       .def_prop_ro(
-          "horizon_s", [](const Ranked& self) { return self.situation->scenario().horizon_s; },
+          "horizon_s", [](const Ranked& self) { return self.scenario.horizon_s; },
           "How far contacts were searched for, s.")
       .def_ro("interrupted", &Ranked::interrupted, "Whether Ctrl-C ended it.");
   module.def(

@@ -27,7 +27,8 @@ RankOptions options_of(const RankRequest& request, const Scenario& scenario);
 
 /// A ranking with what it was made of.
 struct Ranked {
-  SharedSituation situation;
+  SharedSituation situation;  ///< whose models it was made with
+  Scenario scenario;          ///< as it was ranked
   RankResult result;
   std::vector<std::string> warnings;  ///< of the meshes, and of how the ranking ended
   bool interrupted = false;

@@ -75,6 +75,7 @@ bool run_waiting(Progress& progress, const nb::object& report, const std::functi
         interrupted = error.matches(PyExc_KeyboardInterrupt);
         if (!interrupted) raised.emplace(std::move(error));
       }
+      if (progress.cancel && progress.on_cancel) progress.on_cancel();
     }
     unlocked.reset();
     if (raised) throw nb::python_error(*raised);

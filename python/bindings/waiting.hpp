@@ -19,6 +19,7 @@ struct Progress {
   std::atomic<bool> cancel{false};
   std::atomic<std::size_t> done{0};
   std::atomic<std::size_t> all{0};  ///< 0: nothing to report yet
+  std::function<void()> on_cancel;  ///< called once `cancel` is set; may be empty
 };
 
 /// Runs `work` on a thread of its own. The calling thread, which holds the interpreter's lock at

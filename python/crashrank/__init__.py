@@ -30,6 +30,7 @@ from ._errors import (
 )
 from ._model import Model, Part, load_model
 from ._parts import Actor, Body, Candidate, Ego, Pose, TimedPose
+from ._ranker import Answer, AnsweredCandidate, Ranker
 from ._ranking import RankedCandidate, Ranking, rank
 from ._record import Record
 from ._scenario import Scenario
@@ -44,6 +45,8 @@ if "CRASHRANK_IMPORTER" not in _os.environ and _importer.is_file():
 
 __all__ = [
     "Actor",
+    "Answer",
+    "AnsweredCandidate",
     "ArgumentTypeError",
     "BadInputError",
     "Body",
@@ -59,6 +62,7 @@ __all__ = [
     "Part",
     "Pose",
     "RankedCandidate",
+    "Ranker",
     "Ranking",
     "Record",
     "Scenario",

@@ -76,21 +76,24 @@ struct CRASHRANK_HIDDEN Ranker::State {
   std::array<std::uint32_t, StepRounds::most_steps> chosen{};
   std::vector<Motion> coming;  ///< of the actors, while they are copied
   Motion room;                 ///< of a displaced candidate
+  std::size_t known = 0;       ///< candidates whose score is known, of this call
 
   /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
   /// of work or time.
-  bool take_over(std::size_t steps, std::uint64_t budget, std::uint64_t& work) noexcept {
+  bool take_over(std::size_t steps, const RankBudget& budget, std::uint64_t& work) noexcept {
     bool in_time = true;
     for (std::size_t i = 0; i < steps; ++i) {
-      const bool affordable = work < budget;
+      const bool affordable = work < budget.work;
       const StepRounds::Done done = rounds.done(i);
       if (affordable && done.state != nullptr) {
+        if (done.state->told.known && !states[chosen[i]].told.known) ++known;
         states[chosen[i]] = *done.state;
         work += done.end.work;
       }
       in_time = in_time && affordable && done.state != nullptr && done.end.finished;
       race.put_back(chosen[i], states);
     }
+    if (budget.known != nullptr) budget.known->store(known, std::memory_order_relaxed);
     return in_time && !rounds.expired();
   }
 
@@ -115,7 +118,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
       }
       rounds.run(states, chosen.data(), steps, std::numeric_limits<double>::infinity());
       begin += static_cast<std::uint32_t>(steps);
-      going = take_over(steps, budget.work, effort.work);
+      going = take_over(steps, budget, effort.work);
     }
     const auto seen = Watch::Clock::now();
     effort.bounds_s = seconds_between(start, seen);
@@ -128,7 +131,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
         continue;
       }
       rounds.run(states, chosen.data(), steps, limit);
-      going = take_over(steps, budget.work, effort.work);
+      going = take_over(steps, budget, effort.work);
     }
     effort.refining_s = seconds_between(seen, Watch::Clock::now());
   }
@@ -139,6 +142,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
       detail::begin_refining(scene, bounds, asked[i], i, room, states[i]);
     }
     race.begin(asked.size());
+    known = 0;
   }
 
   /// Of the first `all` states. Touches nothing that workers do.

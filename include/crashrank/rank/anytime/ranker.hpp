@@ -48,6 +48,9 @@ struct RankBudget {
   /// Ends soon after this is set, from any thread, with what is known by then; null: by nothing.
   /// Looked at wherever the clock is. Has to stay until the Ranker's next call or its end.
   const std::atomic<bool>* cancel = nullptr;
+  /// Set to the number of candidates whose score is known, after each round of steps, for others to
+  /// read meanwhile; null: nowhere.
+  std::atomic<std::size_t>* known = nullptr;
 };
 
 /// How far a candidate was followed.
