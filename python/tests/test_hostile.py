@@ -59,7 +59,7 @@ def arrays(draw):
             array = np.frombuffer(bytearray(array.tobytes()), dtype=array.dtype).reshape(
                 array.shape
             )
-        elif change == 6 and array.ndim:
+        elif change == 6 and array.ndim and array.shape[0]:
             array = np.broadcast_to(array[:1], (3, *array.shape[1:]))
     return array
 
