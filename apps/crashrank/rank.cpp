@@ -345,8 +345,8 @@ void add_rank(CLI::App& app, Action& action) {
           "--deadline-ms", options->deadline_ms,
           "Answer within this time, in what is known by then; counted from the call, "
           "meshes and trees being ready; ranges of what is not known are varied after it, and of a "
-          "complete answer alone; polygons, area and intrusion end the candidate that they have "
-          "begun [0 to 1e9, default: none]")
+          "complete answer alone; polygons and area end the candidate that they have begun "
+          "[0 to 1e9, default: none]")
       ->type_name("MS")
       ->check(number_from(0.0, 1e9, "milliseconds"));
   add_count(*command, "--work-budget", options->work_budget,

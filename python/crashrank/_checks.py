@@ -108,6 +108,8 @@ def guarded_array(make: Callable[[], NDArray[Any]], name: str) -> NDArray[Any]:
 
 def as_array(value: object, name: str, kinds: str, what: str) -> NDArray[Any]:
     """Return a plain numpy array of one of these kinds of numbers; copies nothing it need not."""
+    if np.ma.is_masked(value):
+        raise usage(name, "has masked values", "fill or leave them out")
     array = guarded_array(lambda: np.asarray(value), name)
     if array.dtype.kind not in kinds or array.dtype.hasobject:
         raise wrong_type(name, f"is an array of {array.dtype}", f"give an array of {what}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import os
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -294,4 +295,15 @@ def _to_json(plain: dict[str, Any]) -> str:
     try:
         return json.dumps(plain, allow_nan=False)
     except ValueError:
-        raise bad_input("", "the scenario holds a number that is not finite") from None
+        raise bad_input(_not_finite(plain), "is not finite", "give a number") from None
+
+
+def _not_finite(plain: Any, place: str = "") -> str:
+    """Return the key of the first number that is not finite, empty without one."""
+    if isinstance(plain, dict):
+        members = ((f"{place}.{key}" if place else key, member) for key, member in plain.items())
+    elif isinstance(plain, list):
+        members = ((f"{place}[{i}]", member) for i, member in enumerate(plain))
+    else:
+        return place if isinstance(plain, float) and not math.isfinite(plain) else ""
+    return next((found for key, member in members if (found := _not_finite(member, key))), "")

@@ -16,7 +16,7 @@ namespace crashrank {
 struct ImportLimits {
   std::size_t file_bytes = std::size_t{512} << 20;    ///< of the mesh, and of each file it names
   std::size_t memory_bytes = std::size_t{900} << 20;  ///< address space of the importing process
-  double seconds = 4.0;                  ///< processor time; wall time may be three times as long
+  double seconds = 4.0;                  ///< processor time; wall time may be 15 times as long
   double seconds_per_mebibyte = 0.5;     ///< added to `seconds` for the size of the file
   std::size_t triangles = 20'000'000;    ///< of the whole file
   std::size_t vertices = 60'000'000;     ///< of the whole file

@@ -1,5 +1,6 @@
 #include "rank/anytime/guess.hpp"
 
+#include "rank/crash_chain.hpp"
 #include "rank/measure_table.hpp"
 
 #include <algorithm>
@@ -8,16 +9,20 @@
 namespace crashrank::detail {
 namespace {
 
-/// Half its square times the ego's mass is the closing energy of a first contact whose crash is
-/// taken for the harm of at least one person, m/s: what a light first contact leaves of the speed
-/// goes on to further ones. A choice: of none, 1, 1.5 and 2 persons the one with the least regret
-/// over the shipped scenes (bench/rank).
+/// Half its square times the ego's mass is the energy of a first contact whose crash is taken to
+/// harm at least the people in one of the two bodies, m/s: what a light first contact leaves of the
+/// speed goes on to further ones. A choice.
 constexpr double one_person_mps = 30.0;
 
 /// Share of the closing velocity that a body of this mass takes on from one of the other.
 double share_of(double own_kg, double other_kg) {
   if (std::isinf(own_kg)) return 0.0;
   return std::isinf(other_kg) ? 1.0 : other_kg / (own_kg + other_kg);
+}
+
+/// The weighted people in or on a body.
+double people_on(const Scene& scene, std::size_t body) {
+  return people_weight(exposure_of(scene, body, {}), scene.harm.weights);
 }
 
 SideEffect side_of(const Scene& scene, std::size_t body, const Motion& motion, double time_s,
@@ -36,26 +41,42 @@ SideEffect side_of(const Scene& scene, std::size_t body, const Motion& motion, d
   return side;
 }
 
+/// How much of the closing velocity the two bodies lose against each other: all that is along the
+/// normal, of the rest what friction takes. Without a normal one lies inside the other: all.
+Eigen::Vector3d stopped_part(const Contact& first, double friction) {
+  const double normal_mps = first.closing.dot(first.normal);
+  if (!(normal_mps > 0.0)) return first.closing;
+  const Eigen::Vector3d along = normal_mps * first.normal;
+  const Eigen::Vector3d aside = first.closing - along;
+  const double slip_mps = aside.norm();
+  const double most_mps = friction * normal_mps;
+  return slip_mps > most_mps ? Eigen::Vector3d(along + (most_mps / slip_mps) * aside)
+                             : first.closing;
+}
+
 }  // namespace
 
 double guess_score(const Scene& scene, const Motion& ego, const Motion& other, const Contact& first,
                    Tally& room) {
   const double own_kg = scene.ego.mass_kg;
   const double other_kg = scene.actors[first.actor].mass_kg;
+  const Eigen::Vector3d stopped = stopped_part(first, scene.plain.friction);
   ContactEffect effect;
   effect.begin_s = effect.end_s = first.time_of_impact_s;
-  effect.closing_mps = first.closing_speed_mps;
-  effect.dissipated_j = effect.closing_energy_j = first.closing_energy_j;
-  effect.sides[0] = side_of(scene, ego_body, ego, first.time_of_impact_s,
-                            -share_of(own_kg, other_kg) * first.closing);
+  effect.closing_mps = stopped.norm();
+  effect.dissipated_j = closing_energy_j(own_kg, other_kg, effect.closing_mps);
+  effect.closing_energy_j = first.closing_energy_j;
+  effect.sides[0] =
+      side_of(scene, ego_body, ego, first.time_of_impact_s, -share_of(own_kg, other_kg) * stopped);
   effect.sides[1] = side_of(scene, first.actor, other, first.time_of_impact_s,
-                            share_of(other_kg, own_kg) * first.closing);
+                            share_of(other_kg, own_kg) * stopped);
   room.begin();
   room.add(scene, effect, scene.plain);
   const double score = room.score(scene);
   if (!measure_row(scene.measure).counts_people) return score;
   const double utmost_j = 0.5 * own_kg * one_person_mps * one_person_mps;
-  return std::max(score, first.closing_energy_j / utmost_j);
+  const double people = std::max(people_on(scene, ego_body), people_on(scene, first.actor));
+  return std::max(score, people * effect.dissipated_j / utmost_j);
 }
 
 }  // namespace crashrank::detail

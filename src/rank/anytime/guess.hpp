@@ -6,8 +6,9 @@
 namespace crashrank::detail {
 
 /// What a crash that is not simulated yet is taken for: the score of its first contact alone, as if
-/// both bodies were points that stick together; harm is no less than in proportion to the closing
-/// energy. A guess, no bound: glancing contacts are milder, and further ones come on top.
+/// both bodies were points that stop each other along the normal and rub on each other across it;
+/// harm is no less than in proportion to the energy of that. A guess, no bound: further contacts
+/// come on top. 0 for what points do not have, intrusion.
 double guess_score(const Scene& scene, const Motion& ego, const Motion& other, const Contact& first,
                    Tally& room);
 

@@ -425,6 +425,7 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
       if (told.known && !watch.expired()) {
         full = detail::evaluate(s.scene, candidates[told.candidate], scratch, result.work);
       } else {
+        full.feasible = told.feasible;
         full.collides = told.collides;
         full.score_interval = told.interval;
         if (told.stage >= RankStage::searched) full.score_estimate = told.estimate;

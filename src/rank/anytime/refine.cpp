@@ -165,6 +165,17 @@ Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch:
   return first_contact(q.scene, ego, hit.actor, q.scene.futures.plans[hit.plan].motion, hit.impact);
 }
 
+/// What the crash that begins with a contact is taken for; `most` where a first contact alone says
+/// nothing of the measure.
+double guess_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit, double most,
+                Scratch& scratch) {
+  if (scored_by_damage(q.scene.measure)) return most;
+  const double guess = guess_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
+                                   first_contact_of(q, ego, hit), scratch.tally);
+  const bool says_nothing = !(guess > 0.0) && !measure_row(q.scene.measure).counts_people;
+  return says_nothing ? most : guess;
+}
+
 /// Keeps the contacts of the last search that are the first of a future of the group, in their
 /// order, and what the crashes that begin with them are taken for.
 void keep_firsts(const RefineQuery& q, const FutureGroup& group, const Motion& ego, Refined& state,
@@ -178,10 +189,7 @@ void keep_firsts(const RefineQuery& q, const FutureGroup& group, const Motion& e
       FutureScore& future = state.futures[f];
       if (future.first != FutureScore::no_contact || !futures.has(f, hit.plan)) continue;
       if (guess < 0.0) {
-        guess = scored_by_damage(q.scene.measure)
-                    ? state.most
-                    : guess_score(q.scene, ego, futures.plans[hit.plan].motion,
-                                  first_contact_of(q, ego, hit), scratch.tally);
+        guess = guess_of(q, ego, hit, state.most, scratch);
         state.firsts.push_back(hit);
       }
       future.first = index;

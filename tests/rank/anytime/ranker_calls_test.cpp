@@ -53,8 +53,9 @@ struct Ready {
   }
 };
 
-constexpr std::array<Measure, 4> without_allocation{Measure::harm, Measure::delta_v,
-                                                    Measure::energy, Measure::closing_energy};
+constexpr std::array<Measure, 5> without_allocation{Measure::harm, Measure::delta_v,
+                                                    Measure::energy, Measure::closing_energy,
+                                                    Measure::intrusion};
 
 TEST(RankerCalls, NothingIsAllocatedFromTheFirstCallOn) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

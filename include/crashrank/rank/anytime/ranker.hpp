@@ -70,9 +70,10 @@ struct RankedCandidate {
   double score = 0.0;                   ///< where it is known
   ScoreInterval interval;               ///< holds the final score, whatever was left undone
   /// What the score is taken for where it is not known, within the interval: futures that are not
-  /// simulated yet count as their first contact would if both bodies were points that stick
-  /// together. Before the stage `searched` the upper end. No bound. Once all candidates are
-  /// searched, it decides the order among those not known, before that the upper end does.
+  /// simulated yet count as their first contact would if both bodies were points that stop each
+  /// other along its normal. Before the stage `searched` the upper end. No bound. Once all
+  /// candidates are searched, it decides the order among those not known, before that the upper end
+  /// does.
   double estimate = 0.0;
   /// From the stage `searched` on: that the ego touches somebody in a future.
   double collision_probability = 0.0;
@@ -129,8 +130,8 @@ CRASHRANK_API Result<std::vector<Motion>> plan_motions(const Scenario& scenario)
 /// the energy there is can do.
 ///
 /// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls are those by
-/// which it wakes and awaits its own workers. Except: measures `polygons`, `area` and
-/// `closing-energy`, whose last stage allocates.
+/// which it wakes and awaits its own workers. Except: measures `polygons` and `area`,
+/// whose last stage allocates.
 ///
 /// At its deadline a call returns without waiting for workers in the middle of a step: they leave
 /// it at their next look at the clock, behind the caller's back, reading nothing of the caller's
