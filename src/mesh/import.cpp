@@ -135,10 +135,10 @@ Error broken_off(detail::ChildProcess& child, double seconds, std::size_t memory
   const std::string how = child.finish();
   const auto whole_seconds = [](double value) { return number(std::ceil(value)); };
   if (child.signal() == SIGXCPU) {
-    return make_error(ErrorCode::limit_exceeded,
-                      "reading it takes more than " + whole_seconds(seconds) +
-                          " s of processor time",
-                      "the file is damaged or too large; simplify it");
+    return make_error(
+        ErrorCode::limit_exceeded,
+        "reading it takes more than " + whole_seconds(seconds) + " s of processor time",
+        "the file is damaged or too large; simplify it");
   }
   if (child.timed_out()) {
     return make_error(ErrorCode::limit_exceeded,

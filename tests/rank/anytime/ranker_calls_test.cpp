@@ -53,9 +53,8 @@ struct Ready {
   }
 };
 
-constexpr std::array<Measure, 5> without_allocation{Measure::harm, Measure::delta_v,
-                                                    Measure::energy, Measure::closing_energy,
-                                                    Measure::intrusion};
+constexpr std::array<Measure, 5> without_allocation{
+    Measure::harm, Measure::delta_v, Measure::energy, Measure::closing_energy, Measure::intrusion};
 
 TEST(RankerCalls, NothingIsAllocatedFromTheFirstCallOn) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
