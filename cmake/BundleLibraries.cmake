@@ -12,8 +12,9 @@ if(missing)
 endif()
 
 # The licence text of a system file: that of the Debian package that owns it, and the common texts
-# that it refers to.
-function(install_licence file name)
+# that it refers to. `what` says what of it is in the wheel; a line for README.txt is added to the
+# caller's `contents`.
+function(install_licence file name what)
   file(REAL_PATH "${file}" real)
   set(failed TRUE)
   foreach(path "${file}" "${real}")
@@ -32,6 +33,8 @@ function(install_licence file name)
     message(WARNING "no licence text of ${name} (${file}) is found: the wheel lacks it")
     return()
   endif()
+  execute_process(COMMAND dpkg-query -W -f "\${Version}" "${owner}" OUTPUT_VARIABLE version)
+  set(contents "${contents}  ${name}.txt: ${what}, from the package ${owner} ${version}\n" PARENT_SCOPE)
   file(COPY_FILE "${text}" "${folder}/licences/${name}.txt")
   file(READ "${text}" content)
   string(REGEX MATCHALL "/usr/share/common-licenses/[A-Za-z0-9.-]*[A-Za-z0-9]" common "${content}")
@@ -50,6 +53,7 @@ endforeach()
 
 # Names of their own, so that a process that has another version of one of them loaded does not take
 # that in its place.
+set(contents "")
 set(renamed "")
 foreach(library ${libraries})
   get_filename_component(name "${library}" NAME)
@@ -59,7 +63,7 @@ foreach(library ${libraries})
   file(COPY_FILE "${real}" "${folder}/lib/${own_name}")
   list(APPEND renamed --replace-needed "${name}" "${own_name}")
   list(APPEND files "${folder}/lib/${own_name}")
-  install_licence("${library}" "${plain}")
+  install_licence("${library}" "${plain}" "lib/${own_name}")
 endforeach()
 foreach(file ${files})
   get_filename_component(name "${file}" NAME)
@@ -76,5 +80,13 @@ endforeach()
 foreach(entry ${compiled_in})
   string(REGEX REPLACE "=.*" "" name "${entry}")
   string(REGEX REPLACE "^[^=]*=" "" file "${entry}")
-  install_licence("${file}" "${name}")
+  install_licence("${file}" "${name}" "compiled in")
 endforeach()
+file(WRITE "${folder}/licences/README.txt" "Licence texts of what this folder's programs and module are made of, beside crashrank's own.
+
+${contents}  nanobind.txt, robin_map.txt: compiled into the module
+
+The others are the copyright files of whole Debian source packages: parts of those that are not shipped here,
+their tests and packaging among them, may have licences of their own. common-*.txt are the full texts that these files
+refer to, whether or not a part under that licence is shipped.
+")

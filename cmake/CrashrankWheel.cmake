@@ -19,6 +19,9 @@ if(CRASHRANK_THREE_JS)
   list(APPEND compiled_in "three.js=${CRASHRANK_THREE_JS}")
 endif()
 file(GLOB nanobind_licence ${NB_DIR}/../nanobind-*.dist-info/licenses/LICENSE)
+if(NOT nanobind_licence)
+  message(FATAL_ERROR "nanobind's licence text is not beside ${NB_DIR}")
+endif()
 install(FILES ${nanobind_licence} DESTINATION ${package}/licences RENAME nanobind.txt
   COMPONENT python)
 # robin_map, inside nanobind, has its licence at the head of its headers alone.

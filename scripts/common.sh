@@ -17,11 +17,11 @@ step() { printf '\n== %s\n' "$*"; }
 home_compiler() { [ "$(g++ -dumpversion)" = 12 ]; }
 
 # python_environment FOLDER REQUIREMENTS...: a virtual environment with these packages, made anew where
-# they changed.
+# they or the interpreter changed.
 python_environment() {
   local folder=$1 stamp
   shift
-  stamp=$(cat "$@" | sha256sum | cut -c1-16)
+  stamp=$({ "${PYTHON:-python3}" --version; cat "$@"; } | sha256sum | cut -c1-16)
   if [ ! -e "$folder/$stamp" ]; then
     rm -rf "$folder"
     "${PYTHON:-python3}" -m venv "$folder"

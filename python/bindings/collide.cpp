@@ -44,36 +44,62 @@ Pose read_pose(const Given<double, nb::shape<4, 4>>& given) {
   return value_of(std::move(pose));
 }
 
-/// One for each thread that asks, kept between its calls.
-ModelWorkspace& workspace_for(const Body& a, const Body& b) {
-  thread_local ModelWorkspace workspace;
-  workspace.prepare(a.model(), b.model());
-  return workspace;
+/// What each thread that asks keeps between its calls.
+struct Scratch {
+  ModelWorkspace workspace;
+  std::vector<Pair> pairs;
+};
+
+Scratch& scratch_for(const Body& a, const Body& b) {
+  thread_local Scratch scratch;
+  scratch.workspace.prepare(a.model(), b.model());
+  return scratch;
 }
 
-/// Calls `body(index)` for every index below `count`, on `workers` threads, the calling one alone
-/// for one. Looks at the signals now and then. The interpreter's lock is not held.
-template <class Function>
-void for_each_index(std::size_t count, std::uint32_t workers, const Function& body) {
-  Interrupts interrupts;
-  if (workers <= 1) {
-    for (std::size_t i = 0; i < count; ++i) {
-      body(i);
-      if (i % 4 == 3) interrupts.look();  // a clock costs 20 ns, a query 1 us or more
+/// Tests of boxes and triangles, in eights, between two readings of the clock: a small part of
+/// `look_every`, and so many that a reading costs nothing beside them.
+constexpr std::uint64_t tests_between_looks = 10'000;
+
+/// Queries at a run of poses on the calling thread, which does not hold the interpreter's lock;
+/// `query(index, scratch)` returns its result. Looks at the signals now and then where `interrupts`
+/// is not null.
+template <class Query>
+void run_queries(const Body& a, const Body& b, std::size_t begin, std::size_t end,
+                 Interrupts* interrupts, const Query& query) {
+  Scratch& scratch = scratch_for(a, b);
+  std::uint64_t tests = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const CollideResult result = query(i, scratch);
+    tests += result.work.bv_tests + result.work.primitive_tests;
+    if (interrupts != nullptr && tests >= tests_between_looks) {
+      tests = 0;
+      interrupts->look();
     }
-    return;
   }
+}
+
+/// Queries at all poses, on `workers` threads, the calling one alone for one. The interpreter's
+/// lock is not held.
+template <class Query>
+void run_all_queries(const Body& a, const Body& b, std::size_t count, std::uint32_t workers,
+                     const Query& query) {
+  Interrupts interrupts;
+  if (workers <= 1) return run_queries(a, b, 0, count, &interrupts, query);
   PoolOptions options;
   options.workers = workers;
   WorkerPool pool = value_of(WorkerPool::start(options));
-  // Blocks grow until one takes a while: few enough that starting them costs nothing, short enough
+  // Rounds grow until one takes a while: few enough that starting them costs nothing, short enough
   // that signals are seen.
-  std::size_t block = std::size_t{64} * workers;
+  const std::size_t most_runs = std::size_t{8} * workers;
+  std::size_t round = most_runs;
   for (std::size_t begin = 0; begin < count;) {
-    const std::size_t size = std::min(block, count - begin);
+    const std::size_t size = std::min(round, count - begin);
+    const std::size_t runs = std::min(most_runs, size);
     const auto start = Clock::now();
-    check(pool.for_each(size, [&](std::size_t i, std::uint32_t) { body(begin + i); }));
-    if (Clock::now() - start < look_every / 4) block *= 2;
+    check(pool.for_each(runs, [&](std::size_t run, std::uint32_t) {
+      run_queries(a, b, begin + size * run / runs, begin + size * (run + 1) / runs, nullptr, query);
+    }));
+    if (Clock::now() - start < look_every / 4) round *= 2;
     begin += size;
     interrupts.look();
   }
@@ -85,7 +111,7 @@ PairArray collide_once(const Body& a, const Body& b, const Given<double, nb::sha
   std::vector<std::int32_t> flat;
   {
     const nb::gil_scoped_release unlocked;
-    collide(a.model(), b.model(), pose, pairs, workspace_for(a, b));
+    collide(a.model(), b.model(), pose, pairs, scratch_for(a, b).workspace);
     std::sort(pairs.begin(), pairs.end());
     flat.reserve(2 * pairs.size());
     for (const Pair& pair : pairs) {
@@ -104,10 +130,11 @@ TouchArray collide_any(const Body& a, const Body& b, const GivenPoses& given,
     const nb::gil_scoped_release unlocked;
     CollideOptions options;
     options.any = true;
-    for_each_index(poses.size(), workers, [&](std::size_t i) {
-      thread_local std::vector<Pair> pairs;
-      touch[i] =
-          collide(a.model(), b.model(), poses[i], pairs, workspace_for(a, b), options).intersecting;
+    run_all_queries(a, b, poses.size(), workers, [&](std::size_t i, Scratch& scratch) {
+      const CollideResult result =
+          collide(a.model(), b.model(), poses[i], scratch.pairs, scratch.workspace, options);
+      touch[i] = result.intersecting;
+      return result;
     });
   }
   bool* const data = touch.get();
@@ -125,10 +152,12 @@ std::pair<PairArray, OffsetArray> collide_all(const Body& a, const Body& b, cons
   {
     const nb::gil_scoped_release unlocked;
     std::vector<std::vector<Pair>> found(poses.size());
-    for_each_index(poses.size(), workers, [&](std::size_t i) {
-      collide(a.model(), b.model(), poses[i], found[i], workspace_for(a, b));
-      std::sort(found[i].begin(), found[i].end());
-      found[i].shrink_to_fit();
+    run_all_queries(a, b, poses.size(), workers, [&](std::size_t i, Scratch& scratch) {
+      const CollideResult result =
+          collide(a.model(), b.model(), poses[i], scratch.pairs, scratch.workspace);
+      std::sort(scratch.pairs.begin(), scratch.pairs.end());
+      found[i] = scratch.pairs;
+      return result;
     });
     for (std::size_t i = 0; i < found.size(); ++i) {
       offsets[i + 1] = offsets[i] + static_cast<std::int64_t>(found[i].size());

@@ -25,17 +25,12 @@ using Indices = nb::ndarray<nb::numpy, std::int64_t, nb::shape<-1>>;
 std::shared_ptr<Answered> rank_session(const std::shared_ptr<Session>& session,
                                        const std::optional<GivenPaths>& paths,
                                        const std::optional<GivenTimes>& times,
-                                       const std::vector<std::string>& names, double deadline_s,
-                                       std::uint64_t work, bool first_place_only,
-                                       const nb::object& report) {
+                                       const std::vector<std::string>& names,
+                                       const RankBudget& budget, const nb::object& report) {
   std::optional<PosedCandidates> posed;
   if (paths) posed = PosedCandidates::copy(*paths, *times, names);
-  RankBudget budget;
-  budget.deadline_s = deadline_s;
-  budget.work = work;
-  budget.first_place_only = first_place_only;
   Progress progress;
-  if (deadline_s <= short_deadline_s && report.is_none()) {
+  if (budget.deadline_s <= short_deadline_s && report.is_none()) {
     const nb::gil_scoped_release unlocked;
     return session->rank(posed, budget, progress);
   }
@@ -252,20 +247,14 @@ void bind_rankers(nb::module_& module) {
       .def("close", &Session::close, nb::call_guard<nb::gil_scoped_release>());
   module.def(
       "make_session",
-      [](SharedSituation situation, std::string measure, std::string risk, std::string infeasible,
-         std::string profile, unsigned workers, std::size_t futures, std::size_t most_candidates) {
-        const RankRequest request{std::move(measure), std::move(risk), std::move(infeasible),
-                                  std::move(profile), workers,         futures};
+      [](SharedSituation situation, const RankRequest& request, std::size_t most_candidates) {
         const nb::gil_scoped_release unlocked;
         return std::make_shared<Session>(std::move(situation), request, most_candidates);
       },
-      nb::arg("situation"), nb::arg("measure"), nb::arg("risk"), nb::arg("infeasible"),
-      nb::arg("profile"), nb::arg("workers"), nb::arg("futures"), nb::arg("most_candidates"),
-      "Prepares a Ranker.");
+      nb::arg("situation"), nb::arg("request"), nb::arg("most_candidates"), "Prepares a Ranker.");
   module.def("rank_session", &rank_session, nb::arg("session"), nb::arg("paths").noconvert().none(),
-             nb::arg("times_s").noconvert().none(), nb::arg("names"), nb::arg("deadline_s"),
-             nb::arg("work_budget"), nb::arg("first_place_only"), nb::arg("progress").none(),
-             "Ranks within a budget.");
+             nb::arg("times_s").noconvert().none(), nb::arg("names"), nb::arg("budget"),
+             nb::arg("progress").none(), "Ranks within a budget.");
   module.def("explain_session", &explain_session, nb::arg("session"), nb::arg("answered"),
              "The ranking in full, off the clock.");
 }

@@ -4,7 +4,6 @@
 #include "error.hpp"
 #include "waiting.hpp"
 
-#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/profile.hpp"
@@ -39,25 +38,16 @@ namespace {
 
 using PathArray = nb::ndarray<nb::numpy, double, nb::shape<-1, -1, 3>>;
 
-struct Budget {
-  double deadline_s = std::numeric_limits<double>::infinity();
-  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
-  bool first_place_only = false;
-
-  bool bounded() const {
-    return std::isfinite(deadline_s) || first_place_only ||
-           work != std::numeric_limits<std::uint64_t>::max();
-  }
-};
+bool bounded(const RankBudget& budget) {
+  return std::isfinite(budget.deadline_s) || budget.first_place_only ||
+         budget.work != std::numeric_limits<std::uint64_t>::max();
+}
 
 /// Ranks; the interpreter's lock is not held. Throws Failure.
-RankResult rank_now(const Situation& situation, RankOptions& how, const Budget& within,
+RankResult rank_now(const Situation& situation, RankOptions& how, const RankBudget& within,
                     Progress& progress) {
-  if (within.bounded()) {
-    RankBudget budget;
-    budget.deadline_s = within.deadline_s;
-    budget.work = within.work;
-    budget.first_place_only = within.first_place_only;
+  if (bounded(within)) {
+    RankBudget budget = within;
     budget.cancel = &progress.cancel;
     budget.known = &progress.done;
     const Box bounds = situation.models()[situation.scenario().ego.model].mesh.bounds();
@@ -75,7 +65,7 @@ RankResult rank_now(const Situation& situation, RankOptions& how, const Budget& 
 }
 
 std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const RankRequest& request,
-                                       const Budget& within, const nb::object& report) {
+                                       const RankBudget& within, const nb::object& report) {
   auto ranked = std::make_shared<Ranked>();
   ranked->situation = situation;
   Progress progress;
@@ -95,7 +85,7 @@ std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const R
   if (ranked->interrupted || (progress.cancel && !ranked->result.complete)) {
     ranked->warnings.push_back(ranking_progress(ranked->result));
   } else if (!ranked->result.complete && !(within.first_place_only && ranked->result.proved)) {
-    ranked->warnings.push_back(why_partial(ranked->result, within.bounded()));
+    ranked->warnings.push_back(why_partial(ranked->result, bounded(within)));
   }
   return ranked;
 }
@@ -170,21 +160,19 @@ void bind_rankings(nb::module_& module) {
           "horizon_s", [](const Ranked& self) { return self.scenario.horizon_s; },
           "How far contacts were searched for, s.")
       .def_ro("interrupted", &Ranked::interrupted, "Whether Ctrl-C ended it.");
-  module.def(
-      "rank",
-      [](const SharedSituation& situation, std::string measure, std::string risk,
-         std::string infeasible, std::string profile, unsigned workers, std::size_t futures,
-         double deadline_s, std::uint64_t work_budget, bool first_place_only,
-         const nb::object& progress) {
-        const RankRequest request{std::move(measure), std::move(risk), std::move(infeasible),
-                                  std::move(profile), workers,         futures};
-        return rank_situation(situation, request, {deadline_s, work_budget, first_place_only},
-                              progress);
-      },
-      nb::arg("situation"), nb::arg("measure"), nb::arg("risk"), nb::arg("infeasible"),
-      nb::arg("profile"), nb::arg("workers"), nb::arg("futures"), nb::arg("deadline_s"),
-      nb::arg("work_budget"), nb::arg("first_place_only"), nb::arg("progress").none(),
-      "Ranks the candidates of a scenario.");
+  nb::class_<RankRequest>(module, "RankRequest", "What is asked of every ranking.")
+      .def(nb::init<std::string, std::string, std::string, std::string, unsigned, std::size_t>(),
+           nb::arg("measure"), nb::arg("risk"), nb::arg("infeasible"), nb::arg("profile"),
+           nb::arg("workers"), nb::arg("futures"));
+  nb::class_<RankBudget>(module, "RankBudget", "Where one ranking ends early.")
+      .def(
+          "__init__",
+          [](RankBudget* self, double deadline_s, std::uint64_t work, bool first_place_only) {
+            new (self) RankBudget{deadline_s, work, first_place_only};
+          },
+          nb::arg("deadline_s"), nb::arg("work_budget"), nb::arg("first_place_only"));
+  module.def("rank", &rank_situation, nb::arg("situation"), nb::arg("request"), nb::arg("budget"),
+             nb::arg("progress").none(), "Ranks the candidates of a scenario.");
   module.attr("max_sampled_futures") = max_sampled_futures;
 }
 

@@ -2,10 +2,12 @@
 
 #include "scenario.hpp"
 
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
 
 #include <nanobind/nanobind.h>
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>

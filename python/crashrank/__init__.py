@@ -16,6 +16,7 @@ import os as _os
 from pathlib import Path as _Path
 
 from . import _core
+from ._answer import Answer, AnsweredCandidate
 from ._collide import collide, collide_all, collide_any, pairs_hash, pose_matrix
 from ._errors import (
     ArgumentTypeError,
@@ -30,7 +31,7 @@ from ._errors import (
 )
 from ._model import Model, Part, load_model
 from ._parts import Actor, Body, Candidate, Ego, Pose, TimedPose
-from ._ranker import Answer, AnsweredCandidate, Ranker
+from ._ranker import Ranker
 from ._ranking import RankedCandidate, Ranking, rank
 from ._record import Record
 from ._scenario import Scenario

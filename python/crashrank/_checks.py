@@ -24,7 +24,7 @@ def as_path(value: object, name: str) -> str:
         path = os.fsdecode(os.fspath(value))  # type: ignore[call-overload]
         path.encode()
     except TypeError:
-        raise wrong_type(name, f"is a {type(value).__name__}, not a path") from None
+        raise wrong_type(name, f"is a {type(value).__name__}, not a path", "give a path") from None
     except UnicodeError:
         raise usage(name, "is a path that is not UTF-8", "rename the file") from None
     if "\0" in path or not path:
@@ -35,11 +35,13 @@ def as_path(value: object, name: str) -> str:
 def as_text(value: object, name: str) -> str:
     """Return a text that can be encoded."""
     if not isinstance(value, str):
-        raise wrong_type(name, f"is a {type(value).__name__}, not a string")
+        raise wrong_type(name, f"is a {type(value).__name__}, not a string", "give a string")
     try:
         value.encode()
     except UnicodeError:
-        raise usage(name, "holds half of a character pair") from None
+        raise usage(
+            name, "holds half of a character pair", "give text that UTF-8 can hold"
+        ) from None
     return str(value)
 
 
@@ -51,11 +53,11 @@ def as_number(value: object, name: str, unit: str = "") -> float:
 def as_real(value: object, name: str) -> float:
     """Return a number that may be infinite, but not NaN."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
-        raise wrong_type(name, f"is a {type(value).__name__}, not a number")
+        raise wrong_type(name, f"is a {type(value).__name__}, not a number", "give a number")
     try:
         number = float(value)
     except (OverflowError, ValueError):
-        raise usage(name, "is beyond a double") from None
+        raise usage(name, "is beyond a double", "give a number below 1.8e308") from None
     if math.isnan(number):
         raise usage(name, "is not a number", "give a number")
     return number
@@ -70,7 +72,7 @@ def _finite(number: float, name: str, unit: str) -> float:
 def as_count(value: object, name: str, lowest: int, highest: int) -> int:
     """Return an integer in a range."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
-        raise wrong_type(name, f"is a {type(value).__name__}, not an integer")
+        raise wrong_type(name, f"is a {type(value).__name__}, not an integer", "give an integer")
     number = int(value)
     if not lowest <= number <= highest:
         raise usage(name, f"is {number}", f"give an integer from {lowest} to {highest}")
@@ -80,7 +82,7 @@ def as_count(value: object, name: str, lowest: int, highest: int) -> int:
 def as_flag(value: object, name: str) -> bool:
     """Return a bool."""
     if not isinstance(value, (bool, np.bool_)):
-        raise wrong_type(name, f"is a {type(value).__name__}, not a bool")
+        raise wrong_type(name, f"is a {type(value).__name__}, not a bool", "give True or False")
     return bool(value)
 
 
@@ -90,7 +92,7 @@ def as_triple(value: object, name: str) -> tuple[float, float, float]:
     if array.shape != (3,):
         raise usage(name, f"has the shape {array.shape}", "give three numbers")
     if not bool(np.isfinite(array).all()):
-        raise usage(name, "holds a number that is not finite")
+        raise usage(name, "holds a number that is not finite", "give finite numbers")
     return float(array[0]), float(array[1]), float(array[2])
 
 
@@ -101,9 +103,11 @@ def guarded_array(make: Callable[[], NDArray[Any]], name: str) -> NDArray[Any]:
     except Error:
         raise
     except MemoryError:
-        raise OutOfMemoryError("out_of_memory", "", name, "does not fit into memory") from None
+        raise OutOfMemoryError(
+            "out_of_memory", "", name, "does not fit into memory", "split it"
+        ) from None
     except Exception as error:
-        raise wrong_type(name, f"cannot be read as an array: {error}") from error
+        raise wrong_type(name, f"cannot be read as an array: {error}", "give an array") from error
 
 
 def as_array(value: object, name: str, kinds: str, what: str) -> NDArray[Any]:

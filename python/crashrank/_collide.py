@@ -17,7 +17,9 @@ MAX_PAIRS = 500_000_000
 
 def _as_model(value: object, name: str) -> _core.Body:
     if not isinstance(value, Model):
-        raise wrong_type(name, f"is a {type(value).__name__}, not a crashrank.Model")
+        raise wrong_type(
+            name, f"is a {type(value).__name__}, not a crashrank.Model", "see load_model"
+        )
     return value._body
 
 
@@ -120,7 +122,7 @@ def pairs_hash(pairs: ArrayLike) -> str:
         raise bad_input("pairs", f"has the shape {array.shape}", "give the shape (n, 2)")
     check_size(array.shape[0], MAX_PAIRS, "pairs", "rows")
     if array.size and (int(array.min()) < -(2**31) or int(array.max()) >= 2**31):
-        raise bad_input("pairs", "holds an index beyond int32")
+        raise bad_input("pairs", "holds an index beyond int32", "give pairs of `collide`")
     return _core.pairs_hash(contiguous(array, np.int32, "pairs"))
 
 

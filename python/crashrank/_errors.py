@@ -9,6 +9,17 @@ from typing import ParamSpec, TypeVar
 P = ParamSpec("P")
 R = TypeVar("R")
 
+# Where the library knows nothing more particular.
+_REMEDIES = {
+    "usage": "see the function's help for what it takes",
+    "bad_input": "correct the input there",
+    "not_found": "check the path and its permissions",
+    "limit_exceeded": "give less, or split it",
+    "out_of_budget": "allow more time or work",
+    "out_of_memory": "free memory or give less; nothing was kept, and the call may be repeated",
+    "internal": "report it with the call, its input and crashrank.__version__",
+}
+
 
 class Error(Exception):
     """Base class of all errors that crashrank raises.
@@ -25,12 +36,13 @@ class Error(Exception):
     reason : str
         What is wrong.
     remedy : str
-        What to do about it; empty where nothing is known.
+        What to do about it.
     """
 
     def __init__(
         self, code: str, file: str = "", place: str = "", reason: str = "", remedy: str = ""
     ) -> None:
+        remedy = remedy or _REMEDIES.get(code, _REMEDIES["internal"])
         super().__init__(code, file, place, reason, remedy)
         self.code = code
         self.file = file
@@ -41,7 +53,7 @@ class Error(Exception):
     def __str__(self) -> str:
         """Return "FILE: PLACE: REASON; REMEDY", absent members left out."""
         head = "".join(part + ": " for part in (self.file, self.place) if part)
-        return head + self.reason + ("; " + self.remedy if self.remedy else "")
+        return f"{head}{self.reason}; {self.remedy}"
 
 
 class UsageError(Error, ValueError):
@@ -91,19 +103,26 @@ def make_error(code: str, file: str, place: str, reason: str, remedy: str) -> Er
     return _CLASSES.get(code, InternalError)(code, file, place, reason, remedy)
 
 
-def usage(place: str, reason: str, remedy: str = "") -> UsageError:
+def usage(place: str, reason: str, remedy: str) -> UsageError:
     """Return the error for an argument of that name whose value has no meaning."""
     return UsageError("usage", "", place, reason, remedy)
 
 
-def wrong_type(place: str, reason: str, remedy: str = "") -> ArgumentTypeError:
+def wrong_type(place: str, reason: str, remedy: str) -> ArgumentTypeError:
     """Return the error for an argument of that name that has the wrong type."""
     return ArgumentTypeError("usage", "", place, reason, remedy)
 
 
-def bad_input(place: str, reason: str, remedy: str = "") -> BadInputError:
+def bad_input(place: str, reason: str, remedy: str) -> BadInputError:
     """Return the error for input that is not acceptable."""
     return BadInputError("bad_input", "", place, reason, remedy)
+
+
+def no_candidate(name: str) -> UsageError:
+    """Return the error for the name of a candidate that a ranking does not have."""
+    return usage(
+        "candidate", f"there is no candidate {name!r}", "see the members `candidate` of the ranking"
+    )
 
 
 def checked_call(function: Callable[P, R]) -> Callable[P, R]:

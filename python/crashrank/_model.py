@@ -265,7 +265,9 @@ def _as_parts(value: object, faces: int) -> list[tuple[str, int, int]]:
         pairs = list(value.items() if isinstance(value, Mapping) else value)  # type: ignore[call-overload]
         named = [(name, count) for name, count in pairs]
     except (TypeError, ValueError):
-        raise wrong_type("parts", "are no pairs of a name and a number of triangles") from None
+        raise wrong_type(
+            "parts", "are no pairs of a name and a number of triangles", "give a dict"
+        ) from None
     check_size(len(named), MAX_PARTS, "parts", "names")
     parts: list[tuple[str, int, int]] = []
     first = 0
@@ -273,7 +275,11 @@ def _as_parts(value: object, faces: int) -> list[tuple[str, int, int]]:
     for i, (name, count) in enumerate(named):
         text = as_text(name, f"parts[{i}]")
         if text in names or not text or len(text.encode()) > 256:
-            raise bad_input(f"parts[{i}]", "has no name, a long one or that of another part")
+            raise bad_input(
+                f"parts[{i}]",
+                "has no name, a long one or that of another part",
+                "give different names of 1 to 256 bytes",
+            )
         names.add(text)
         size = as_count(count, f"parts[{i}]", 0, faces)
         parts.append((text, first, size))
@@ -311,5 +317,5 @@ def _from_scene(scene: Any) -> tuple[Any, Any, list[tuple[str, int]]]:
         count += len(turned)
         parts.append((str(node), len(corners)))
     if not faces:
-        raise bad_input("vertices", "is a scene without a mesh")
+        raise bad_input("vertices", "is a scene without a mesh", "add a mesh to it")
     return np.concatenate(vertices), np.concatenate(faces), parts

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import usage
+from ._errors import no_candidate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,14 +35,14 @@ def plot(ranking: Ranking, ranked: _core.Ranked, candidate: str | None, top: int
     from ._tables import missing
 
     try:
-        from matplotlib.figure import Figure as NewFigure
+        from ._figure import NotebookFigure
     except ImportError:
         raise missing("matplotlib", "notebook") from None
     names = [each.candidate for each in ranking]
     if candidate is not None and candidate not in names:
-        raise usage("candidate", f"there is no candidate {candidate!r}")
+        raise no_candidate(candidate)
     index = 0 if candidate is None else names.index(candidate)
-    figure = NewFigure(figsize=(12, 4.8), layout="constrained")
+    figure = NotebookFigure(figsize=(12, 4.8), layout="constrained")
     plan, scores = figure.subplots(1, 2, width_ratios=(3, 2))
     _draw_plan(plan, ranking, ranked, index)
     _draw_scores(scores, ranking, min(top, len(ranking)))

@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 from . import _core
-from ._checks import as_count, as_flag, as_path, as_real, as_text
-from ._errors import NotFoundError, checked_call, usage, wrong_type
+from ._checks import as_count, as_path
+from ._errors import NotFoundError, checked_call, no_candidate
+from ._options import as_budget, as_progress, as_request
 from ._record import Record, wrap
 from ._scenario import Scenario, as_scenario
 
@@ -18,45 +19,54 @@ if TYPE_CHECKING:
     import pyarrow
     from matplotlib.figure import Figure
 
-NO_LIMIT = 2**64 - 1
-
 
 class RankedCandidate(Record):
     """One candidate of a ranking. Attributes are named as in the JSON answer.
 
     Distances in m, times in s from the decision, speeds in m/s, angles in degrees. None where a
-    value is not known or does not exist. Further attributes: ``at_horizon``, ``crowded``,
-    ``demand``, ``futures``, ``grazes``, ``numerical_interval``, ``origin``, ``overtaken_share``,
-    ``people``, ``places``, ``sampling_error``, ``separable_from_next``; see
-    ``data/schemas/rank.schema.json``.
+    value is not known or does not exist. ``data/schemas/rank.schema.json`` says what each is.
     """
 
     __slots__ = ()
 
-    if TYPE_CHECKING:
-        rank: int
-        candidate: str
-        score: float | None
-        score_interval: tuple[float, float]
-        feasible: bool | None
-        collides: bool | None
-        collision_probability: float | None
-        other: str | None
-        time_of_impact_s: float | None
-        closing_speed_mps: float | None
-        delta_v_mps: Record | None
-        pdof_deg: Record | None
-        contacts: tuple[Record, ...]
-        damaged_triangles: Record | None
-        damaged_area_m2: Record | None
-        damaged_parts: Record | None
-        tied_with: tuple[str, ...]
-        grip_demand: float | None
-        leaves_road: Record | None
-        least_distance_m: float | None
-        least_time_gap_s: float | None
-        acceleration_mps2: float
-        curvature_per_m: float
+    rank: int
+    candidate: str
+    tied_with: tuple[str, ...]
+    feasible: bool | None
+    grip_demand: float | None
+    demand: Record | None
+    leaves_road: Record | None
+    least_distance_m: float | None
+    nearest: str | None
+    least_time_gap_s: float | None
+    soonest: str | None
+    at_horizon: Record | None
+    score: float | None
+    score_interval: tuple[float, float]
+    score_estimate: float | None
+    numerical_interval: tuple[float, float] | None
+    sampling_error: float | None
+    collision_probability: float | None
+    people: tuple[Record, ...]
+    futures: tuple[Record, ...]
+    places: tuple[int, int]
+    separable_from_next: bool | None
+    overtaken_share: float | None
+    collides: bool | None
+    contacts: tuple[Record, ...]
+    crowded: bool
+    other: str | None
+    time_of_impact_s: float | None
+    closing_speed_mps: float | None
+    delta_v_mps: Record | None
+    pdof_deg: Record | None
+    damaged_triangles: Record | None
+    damaged_area_m2: Record | None
+    damaged_parts: Record | None
+    grazes: tuple[Record, ...]
+    origin: str
+    acceleration_mps2: float
+    curvature_per_m: float
 
 
 class Ranking(Sequence[RankedCandidate]):
@@ -71,15 +81,23 @@ class Ranking(Sequence[RankedCandidate]):
     _ranked: _core.Ranked
     _document: dict[str, Any]
 
-    if TYPE_CHECKING:
-        scenario: str
-        measure: str
-        measure_unit: str
-        complete: bool
-        proved: bool
-        in_race: tuple[str, ...]
-        warnings: tuple[str, ...]
-        elapsed_s: float
+    scenario: str
+    measure: str
+    measure_unit: str
+    harm: Record | None
+    stability: Record
+    futures: Record
+    infeasible: str
+    dropped: tuple[str, ...]
+    complete: bool
+    proved: bool
+    in_race: tuple[str, ...]
+    elapsed_s: float
+    warnings: tuple[str, ...]
+    effort: Record
+    ego: Record
+    actors: tuple[Record, ...]
+    work: Record
 
     def __init__(self, ranked: _core.Ranked) -> None:
         self._ranked = ranked
@@ -123,14 +141,13 @@ class Ranking(Sequence[RankedCandidate]):
         """Whether Ctrl-C ended the ranking: `complete` is then false."""
         return self._ranked.interrupted
 
+    @checked_call
     def named(self, candidate: str) -> RankedCandidate:
         """Return the candidate of that name. Raises `UsageError` where there is none."""
         for row in self._document["ranking"]:
             if row["candidate"] == candidate:
                 return RankedCandidate(row)
-        raise usage(
-            "candidate", f"there is no candidate {candidate!r}", "see [c.candidate for c in …]"
-        )
+        raise no_candidate(candidate)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the answer as ``crashrank rank --json`` prints it: plain dicts and lists."""
@@ -177,6 +194,7 @@ class Ranking(Sequence[RankedCandidate]):
                 "not_found", file, "", f"cannot be written: {error.strerror}", "choose another file"
             ) from error
 
+    @checked_call
     def plot(self, *, candidate: str | None = None, top: int = 12) -> Figure:
         """Draw the plan of one candidate, and scores with intervals; needs matplotlib.
 
@@ -275,20 +293,11 @@ def rank(
     Ranking
     """
     given = as_scenario(scenario, base, allow)
-    if progress is not None and not callable(progress):
-        raise wrong_type("progress", f"is a {type(progress).__name__}, not callable")
     return Ranking(
         _core.rank(
             given._situation,
-            "" if measure is None else as_text(measure, "measure"),
-            "" if risk is None else as_text(risk, "risk"),
-            as_text(infeasible, "infeasible"),
-            "" if profile is None else as_path(profile, "profile"),
-            as_count(workers, "workers", 1, _core.max_workers),
-            as_count(futures, "futures", 1, _core.max_sampled_futures),
-            float("inf") if deadline_s is None else as_real(deadline_s, "deadline_s"),
-            NO_LIMIT if work_budget is None else as_count(work_budget, "work_budget", 0, NO_LIMIT),
-            as_flag(first_place_only, "first_place_only"),
-            progress,
+            as_request(measure, workers, risk, infeasible, profile, futures),
+            as_budget(deadline_s, work_budget, first_place_only),
+            as_progress(progress),
         )
     )

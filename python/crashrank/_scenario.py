@@ -13,12 +13,16 @@ import numpy as np
 
 from . import _core
 from ._checks import as_path, as_text
-from ._errors import UsageError, bad_input, checked_call, wrong_type
+from ._errors import BadInputError, UsageError, bad_input, checked_call, wrong_type
 from ._model import Model
 from ._parts import Body
 
 _IN_MEMORY = "in memory"
 _JSON_FILE = "scenario.json"
+_GIVE_BASE = (
+    "without base= paths are relative to the current folder: give base=, the folder that they are "
+    "relative to, or allow=, a list of folders in which meshes may lie"
+)
 
 
 class Scenario:
@@ -48,17 +52,16 @@ class Scenario:
         For keys and values that are not accepted; ``place`` is the key path.
     """
 
-    __slots__ = ("__weakref__", "_json", "_situation")
+    __slots__ = ("__weakref__", "_situation")
 
     _situation: _core.Situation
-    _json: str | None
 
     @checked_call
     def __init__(
         self,
         document: Mapping[str, Any],
         *,
-        base: object = ".",
+        base: object = None,
         models: Mapping[str, Model] | None = None,
         allow: Iterable[object] = (),
     ) -> None:
@@ -73,6 +76,7 @@ class Scenario:
         self._read(_to_json(plain), base, bodies, allow)
 
     @classmethod
+    @checked_call
     def load(cls, path: object, *, allow: Iterable[object] = ()) -> Scenario:
         """Read a scenario file.
 
@@ -85,28 +89,29 @@ class Scenario:
             Further folders in which meshes may lie.
         """
         scenario = cls.__new__(cls)
-        scenario._json = None
         scenario._situation = _core.read_scenario_file(as_path(path, "path"), _as_paths(allow), {})
         return scenario
 
     @classmethod
+    @checked_call
     def from_json(
         cls,
-        text: str,
+        text: str | bytes,
         *,
-        base: object = ".",
+        base: object = None,
         models: Mapping[str, Model] | None = None,
         allow: Iterable[object] = (),
     ) -> Scenario:
-        """Read a scenario from its JSON text; parameters as of the class."""
+        """Read a scenario from its JSON text, bytes in UTF-8; parameters as of the class."""
         scenario = cls.__new__(cls)
-        given = as_text(text, "text")
+        given = as_text(_decoded(text) if isinstance(text, bytes) else text, "text")
         if models:
             return cls(_parse(given), base=base, models=models, allow=allow)
         scenario._read(given, base, {}, allow)
         return scenario
 
     @classmethod
+    @checked_call
     def build(
         cls,
         *,
@@ -114,7 +119,7 @@ class Scenario:
         ego: Any,
         actors: Iterable[Any] = (),
         candidates: Iterable[Any] | Mapping[str, Any] | None = None,
-        base: object = ".",
+        base: object = None,
         allow: Iterable[object] = (),
         **more: Any,
     ) -> Scenario:
@@ -166,9 +171,14 @@ class Scenario:
     def _read(
         self, text: str, base: object, bodies: dict[str, _core.Body], allow: Iterable[object]
     ) -> None:
-        self._json = text
-        file = os.path.join(as_path(base, "base"), _JSON_FILE)
-        self._situation = _core.read_scenario_text(text, file, _as_paths(allow), bodies)
+        folder = "." if base is None else as_path(base, "base")
+        file = os.path.join(folder, _JSON_FILE)
+        try:
+            self._situation = _core.read_scenario_text(text, file, _as_paths(allow), bodies)
+        except BadInputError as error:
+            if base is None and "lies outside" in error.reason:
+                raise bad_input(error.place, error.reason, _GIVE_BASE) from None
+            raise
 
     @property
     def name(self) -> str:
@@ -215,9 +225,9 @@ def as_scenario(value: object, base: object, allow: Iterable[object]) -> Scenari
     if isinstance(value, Scenario):
         return value
     if isinstance(value, Mapping):
-        return Scenario(value, base="." if base is None else base, allow=allow)
-    if isinstance(value, str) and value.lstrip()[:1] == "{":
-        return Scenario.from_json(value, base="." if base is None else base, allow=allow)
+        return Scenario(value, base=base, allow=allow)
+    if isinstance(value, (str, bytes)) and value.lstrip()[:1] in ("{", b"{"):
+        return Scenario.from_json(value, base=base, allow=allow)
     if isinstance(value, (str, bytes, os.PathLike)):
         return Scenario.load(value, allow=allow)
     raise wrong_type(
@@ -233,16 +243,27 @@ def _as_paths(values: Iterable[object]) -> list[str]:
     except TypeError as error:
         if isinstance(error, UsageError):
             raise
-        raise wrong_type("allow", f"is a {type(values).__name__}, not a list of folders") from None
+        raise wrong_type(
+            "allow", f"is a {type(values).__name__}, not a list", "give a list of folders"
+        ) from None
+
+
+def _decoded(text: bytes) -> str:
+    try:
+        return text.decode()
+    except UnicodeDecodeError as error:
+        raise bad_input(
+            f"byte {error.start + 1}", "is not UTF-8", "encode the scenario's text in UTF-8"
+        ) from None
 
 
 def _parse(text: str) -> dict[str, Any]:
     try:
         document = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise bad_input("", f"is no JSON: {error}") from None
+        raise bad_input("", f"is not JSON: {error}", "give a scenario as JSON") from None
     if not isinstance(document, dict):
-        raise bad_input("", "is no JSON object")
+        raise bad_input("", "is not a JSON object", "give a scenario as JSON")
     return document
 
 
@@ -251,13 +272,17 @@ def _as_bodies(models: object, document: dict[str, Any]) -> dict[str, _core.Body
     if models is None:
         return {}
     if not isinstance(models, Mapping):
-        raise wrong_type("models", f"is a {type(models).__name__}, not a mapping of names")
+        raise wrong_type(
+            "models", f"is a {type(models).__name__}, not a mapping", "give Models by name"
+        )
     entries = document.get("models")
     bodies: dict[str, _core.Body] = {}
     for key, model in models.items():
         name = as_text(key, "models")
         if not isinstance(model, Model):
-            raise wrong_type(f"models.{name}", f"is a {type(model).__name__}, not a Model")
+            raise wrong_type(
+                f"models.{name}", f"is a {type(model).__name__}", "give a crashrank.Model"
+            )
         if isinstance(entries, dict) and isinstance(entries.get(name), dict):
             entries[name]["mesh"] = _IN_MEMORY
         bodies[name] = model._body
@@ -288,7 +313,11 @@ def _to_plain(value: Any, depth: int = 0) -> Any:
         return as_path(value, "a path of the scenario")
     if value is None or isinstance(value, (str, bool, int, float)):
         return value
-    raise wrong_type("", f"a {type(value).__name__} cannot stand in a scenario")
+    raise wrong_type(
+        "",
+        f"a {type(value).__name__} cannot stand in a scenario",
+        "give dicts, lists, strings, numbers, or classes of crashrank",
+    )
 
 
 def _to_json(plain: dict[str, Any]) -> str:

@@ -1,5 +1,6 @@
 """Every error is a crashrank.Error that says where, what and what to do; nothing prints."""
 
+import json
 import pickle
 
 import crashrank
@@ -94,6 +95,15 @@ CALLS = {
     "scenario of sets": (lambda: crashrank.rank({"models": {1, 2}}), "usage"),
     "scenario of numbers": (lambda: crashrank.rank({1: 2}), "usage"),
     "broken JSON": (lambda: crashrank.rank("{nonsense"), "bad_input"),
+    "JSON as bytes": (lambda: crashrank.rank(b" {}"), "bad_input"),
+    "JSON in Latin-1": (lambda: crashrank.rank('{"name": "ü"}'.encode("latin-1")), "bad_input"),
+    "text of a number": (lambda: crashrank.Scenario.from_json(3), "usage"),
+    "no text": (lambda: crashrank.Scenario.from_json(), "usage"),
+    "nothing to build": (lambda: crashrank.Scenario.build(), "usage"),
+    "no file": (lambda: crashrank.Scenario.load(), "usage"),
+    "base of a number": (lambda: crashrank.Scenario({}, base=3), "usage"),
+    "Ranker of nothing": (lambda: crashrank.Ranker(), "usage"),
+    "Ranker of a number": (lambda: crashrank.Ranker(3), "usage"),
     "measure": (
         lambda: crashrank.rank(DATA / "scenarios/oncoming_truck.json", measure="x"),
         "usage",
@@ -139,6 +149,7 @@ def test_what_is_wrong_is_said(name, capfd):
     error = caught.value
     assert code in (error.code, "*")
     assert error.reason
+    assert error.remedy
     assert all(isinstance(text, str) for text in (error.file, error.place, error.remedy))
     assert error.reason in str(error)
     assert capfd.readouterr() == ("", "")
@@ -182,7 +193,7 @@ def test_cyclic_and_deep_scenarios_are_refused():
         crashrank.Scenario.from_json("[" * 100_000)
 
 
-def test_meshes_outside_the_folder_are_refused(tmp_path):
+def test_meshes_outside_the_folder_are_refused(tmp_path, monkeypatch):
     document = {
         "scenario_version": 1,
         "models": {"a": {"mesh": "../../etc/passwd.obj", "kind": "car"}},
@@ -191,3 +202,26 @@ def test_meshes_outside_the_folder_are_refused(tmp_path):
     with pytest.raises(crashrank.BadInputError) as caught:
         crashrank.Scenario(document, base=tmp_path)
     assert caught.value.place == "models.a.mesh"
+    assert "base=" not in caught.value.remedy
+    monkeypatch.chdir(tmp_path)
+    for given in (document, json.dumps(document), json.dumps(document).encode()):
+        with pytest.raises(crashrank.BadInputError) as caught:
+            crashrank.rank(given)
+        assert caught.value.place == "models.a.mesh"
+        assert "base=" in caught.value.remedy
+
+
+def test_latin_1_is_told_as_such(tmp_path):
+    text = '{\n "name": "München"}'.encode("latin-1")
+    (tmp_path / "scenario.json").write_bytes(text)
+    with pytest.raises(crashrank.BadInputError, match="UTF-8") as caught:
+        crashrank.rank(tmp_path / "scenario.json")
+    assert caught.value.place == "line 2, column 12"
+    with pytest.raises(crashrank.BadInputError, match="UTF-8") as caught:
+        crashrank.rank(text)
+    assert caught.value.place == "byte 14"
+
+
+def test_errors_without_a_remedy_get_that_of_their_code():
+    for code in ("usage", "bad_input", "not_found", "limit_exceeded", "out_of_budget", "other"):
+        assert crashrank.Error(code, reason="x").remedy

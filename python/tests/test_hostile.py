@@ -120,6 +120,7 @@ def test_any_arguments(name, a, b, c):
     except crashrank.Error as error:
         assert error.code != "internal", error
         assert error.reason
+        assert error.remedy
 
 
 JSON = st.recursive(

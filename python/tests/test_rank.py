@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -116,8 +117,6 @@ def test_attributes_are_named_as_in_the_answer(truck_ranking):
             assert given == mine[key]
             if isinstance(value, (str, int, float, type(None))):
                 assert given == value
-    declared = set(crashrank.RankedCandidate.__annotations__)
-    assert declared <= set(schema["$defs"]["candidate"]["properties"])
     assert truck_ranking.best.delta_v_mps.ego == document["ranking"][0]["delta_v_mps"]["ego"]
     assert truck_ranking.best is not None
     assert truck_ranking[-1].rank == 5
@@ -128,6 +127,39 @@ def test_attributes_are_named_as_in_the_answer(truck_ranking):
     with pytest.raises(AttributeError):
         truck_ranking.best.score = 0.0
     assert pickle.loads(pickle.dumps(truck_ranking.best)) == truck_ranking.best
+
+
+KINDS = {"number": "float", "integer": "int", "boolean": "bool", "string": "str", "null": "None"}
+
+
+def kinds_in_schema(entry, definitions):
+    """Return the Python types of a member: all arrays are "tuple", all objects "Record"."""
+    if "$ref" in entry:
+        return kinds_in_schema(definitions[entry["$ref"].removeprefix("#/$defs/")], definitions)
+    if "oneOf" in entry:
+        return set().union(*(kinds_in_schema(one, definitions) for one in entry["oneOf"]))
+    kinds = entry.get("type", "string" if "enum" in entry else None)
+    return {
+        KINDS.get(kind, "tuple" if kind == "array" else "Record")
+        for kind in ([kinds] if isinstance(kinds, str) else kinds)
+    }
+
+
+def kinds_declared(annotation):
+    return {re.sub(r"\[.*\]", "", kind) for kind in annotation.split(" | ")}
+
+
+def test_declared_types_are_those_of_the_schema():
+    schema = json.loads((DATA / "schemas/rank.schema.json").read_text())
+    definitions = schema["$defs"]
+    for kind, members in (
+        (crashrank.RankedCandidate, definitions["candidate"]["properties"]),
+        (crashrank.Ranking, {k: v for k, v in schema["properties"].items() if k != "ranking"}),
+    ):
+        declared = {k: v for k, v in kind.__annotations__.items() if not k.startswith("_")}
+        assert {key: kinds_declared(text) for key, text in declared.items()} == {
+            key: kinds_in_schema(entry, definitions) for key, entry in members.items()
+        }
 
 
 def test_tables_have_a_row_for_each_candidate(truck_ranking):
@@ -173,6 +205,7 @@ def test_plots_show_the_candidates(tmp_path, truck_ranking):
     assert plan.get_xlabel() == "x [m]"
     figure.savefig(tmp_path / "plot.png")
     assert (tmp_path / "plot.png").stat().st_size > 10_000
+    assert figure._repr_png_().startswith(b"\x89PNG")
     assert (
         "no contact"
         in crashrank.rank(DATA / "scenarios/room_to_spare.json", work_budget=200_000)

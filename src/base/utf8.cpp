@@ -28,13 +28,13 @@ CodePoint decode_utf8(std::string_view text) noexcept {
   return {value, length, true};
 }
 
-bool is_utf8(std::string_view text) noexcept {
-  while (!text.empty()) {
-    const CodePoint point = decode_utf8(text);
-    if (!point.valid) return false;
-    text.remove_prefix(point.bytes);
+std::size_t first_invalid_utf8(std::string_view text) noexcept {
+  for (std::size_t at = 0; at < text.size();) {
+    const CodePoint point = decode_utf8(text.substr(at));
+    if (!point.valid) return at;
+    at += point.bytes;
   }
-  return true;
+  return std::string_view::npos;
 }
 
 }  // namespace crashrank::detail

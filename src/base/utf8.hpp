@@ -16,6 +16,11 @@ struct CodePoint {
 /// U+10FFFF are not UTF-8 (RFC 3629).
 CodePoint decode_utf8(std::string_view text) noexcept;
 
-bool is_utf8(std::string_view text) noexcept;
+/// Index of the first byte that is not UTF-8; npos where there is none.
+std::size_t first_invalid_utf8(std::string_view text) noexcept;
+
+inline bool is_utf8(std::string_view text) noexcept {
+  return first_invalid_utf8(text) == std::string_view::npos;
+}
 
 }  // namespace crashrank::detail

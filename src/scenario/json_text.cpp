@@ -1,5 +1,7 @@
 #include "scenario/json_text.hpp"
 
+#include "base/utf8.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -120,6 +122,14 @@ Result<json> parse_json(const std::string& text) {
                    line_and_column(text, error.byte),
                    "this is not JSON, which begins with {",
                    "give a JSON file here, not a mesh or a model file"};
+    }
+    const std::size_t invalid = first_invalid_utf8(text);
+    if (invalid < error.byte) {
+      return Error{ErrorCode::bad_input,
+                   {},
+                   line_and_column(text, invalid + 1),
+                   "this byte is not UTF-8",
+                   "save the text in UTF-8"};
     }
     return Error{ErrorCode::bad_input,
                  {},

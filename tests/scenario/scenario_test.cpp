@@ -276,8 +276,17 @@ TEST(Scenario, TextThatIsNoJsonNamesLineAndColumn) {
   EXPECT_EQ(error_of("{} x").place, "line 1, column 4");
   EXPECT_EQ(error_of("{\"a\": 1,}").place, "line 1, column 9");
   EXPECT_EQ(error_of("{// no\n}").place, "line 1, column 2");
-  EXPECT_EQ(error_of("{\"a\": \"\xff\"}").place.substr(0, 6), "line 1");
   EXPECT_EQ(error_of("[]").reason, "is array, not an object");
+}
+
+TEST(Scenario, TextInLatin1NamesTheByteThatIsNotUtf8) {
+  for (const char* const text :
+       {"{\n \"name\": \"M\xfcnchen\"}", "{\n \"name\": \"M\xff\"}", "{\n \"name\": \"M\xc3\"}"}) {
+    const Error error = error_of(text);
+    EXPECT_EQ(error.reason, "this byte is not UTF-8");
+    EXPECT_EQ(error.place, "line 2, column 12");
+  }
+  EXPECT_EQ(error_of("{\"a\": }  \"\xfc\"").reason, "this is not JSON");
 }
 
 TEST(Scenario, ANumberBeyondADoubleNamesItsKey) {
