@@ -7,8 +7,8 @@
 #include "bench/timing.hpp"
 #include "bench/workload.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
-#include "crashrank/tree/validate.hpp"
+#include "crashrank/model/model.hpp"
+#include "crashrank/tree/build.hpp"
 #include "model/file_bytes.hpp"
 #include "model/model_layout.hpp"
 

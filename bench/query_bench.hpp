@@ -5,8 +5,8 @@
 
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -10,11 +10,11 @@
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
-#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/internal/report/table.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,7 @@
 #include "tree_arguments.hpp"
 
 #include "crashrank/internal/report/escape.hpp"
-#include "crashrank/mesh/stated_mass.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/scenario/scenario.hpp"
 
 #include <fmt/format.h>

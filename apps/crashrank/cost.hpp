@@ -2,7 +2,7 @@
 
 #include "engine.hpp"
 
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 
 namespace crashrank::cli {
 

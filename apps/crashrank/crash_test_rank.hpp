@@ -2,10 +2,10 @@
 
 #include "crashrank/base/result.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 namespace crashrank::cli {
 

@@ -5,7 +5,6 @@
 
 #include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/internal/report/escape.hpp"
-#include "crashrank/report/damage_model.hpp"
 #include "crashrank/report/picture.hpp"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <cstddef>
 #include <string>

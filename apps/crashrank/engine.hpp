@@ -3,7 +3,7 @@
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/collide/pair.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <CLI/CLI.hpp>
 

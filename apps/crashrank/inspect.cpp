@@ -7,7 +7,7 @@
 #include "crashrank/internal/report/escape.hpp"
 #include "crashrank/internal/report/table.hpp"
 #include "crashrank/mesh/import.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 #include "report/orientation.hpp"
 
 #include <fmt/format.h>

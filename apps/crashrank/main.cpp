@@ -6,7 +6,7 @@
 #include "options.hpp"
 
 #include "base/nearest_word.hpp"
-#include "crashrank/base/library_version.hpp"
+#include "crashrank/base/version.hpp"
 
 #include <algorithm>
 #include <exception>

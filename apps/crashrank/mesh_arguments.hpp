@@ -4,7 +4,7 @@
 
 #include "crashrank/base/result.hpp"
 #include "crashrank/mesh/import.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <CLI/CLI.hpp>
 

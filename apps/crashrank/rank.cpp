@@ -8,16 +8,14 @@
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
-#include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/scenario/scenario_models.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <algorithm>
 #include <cmath>

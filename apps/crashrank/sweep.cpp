@@ -10,9 +10,9 @@
 #include "sweep_plot.hpp"
 #include "tree_arguments.hpp"
 
-#include "crashrank/dispatch/study/sweep.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 #include "crashrank/internal/report/table.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <fmt/format.h>
 

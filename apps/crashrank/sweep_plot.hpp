@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/dispatch/study/sweep.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 
 #include <string>
 

@@ -11,7 +11,7 @@
 
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/crash/contact_law.hpp"
-#include "crashrank/rank/harm.hpp"
+#include "crashrank/internal/rank/harm.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include <CLI/CLI.hpp>

@@ -2,8 +2,8 @@
 
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/motion/motion.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <Eigen/Core>
 

@@ -1,6 +1,6 @@
 #include "common.hpp"
 
-#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/model/make_model.hpp"
 

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "crashrank/dispatch/dispatcher.hpp"
-#include "crashrank/dispatch/study/recording.hpp"
-#include "crashrank/dispatch/study/replay.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/dispatch/study/study.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <cstdint>
 #include <string>

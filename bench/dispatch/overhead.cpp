@@ -1,5 +1,5 @@
 #include "common.hpp"
-#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
 #include "dispatch/core.hpp"

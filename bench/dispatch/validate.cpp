@@ -1,5 +1,5 @@
 #include "common.hpp"
-#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 #include "peer.hpp"
 
 #include <cstdio>

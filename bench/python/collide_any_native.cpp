@@ -4,7 +4,7 @@
 // matrices and of the queries, then how many poses touch.
 
 #include "crashrank/collide/wide_collide.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -3,7 +3,7 @@
 #include "interrupts.hpp"
 #include "model.hpp"
 
-#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "base/convex_hull.hpp"
 #include "crashrank/mesh/import.hpp"
-#include "crashrank/mesh/shell_properties.hpp"
-#include "crashrank/mesh/transform.hpp"
+#include "crashrank/mesh/properties.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/scenario/scenario.hpp"
 

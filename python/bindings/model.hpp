@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <nanobind/nanobind.h>
 

@@ -1,7 +1,7 @@
 #include "error.hpp"
 #include "model.hpp"
 
-#include "crashrank/base/library_version.hpp"
+#include "crashrank/base/version.hpp"
 
 #include <nanobind/nanobind.h>
 

@@ -4,9 +4,8 @@
 #include "error.hpp"
 #include "waiting.hpp"
 
-#include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
-#include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>

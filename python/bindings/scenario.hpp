@@ -2,8 +2,8 @@
 
 #include "model.hpp"
 
+#include "crashrank/model/model.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <memory>
 #include <mutex>

@@ -1,7 +1,5 @@
 #include "crashrank/base/version.hpp"
 
-#include "crashrank/base/library_version.hpp"
-
 namespace crashrank {
 
 const char* library_version() noexcept { return CRASHRANK_VERSION_STRING; }

@@ -3,12 +3,11 @@
 #include "crashrank/crashrank.h"
 
 #include "crashrank/base/result.hpp"
-#include "crashrank/crash/after_contact.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "crashrank/crash/injury.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/scenario/measure.hpp"
-#include "crashrank/vehicle/body_kind.hpp"
-#include "crashrank/vehicle/surface.hpp"
+#include "crashrank/scenario/harm_options.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 
 #include <cstdint>
 #include <string>

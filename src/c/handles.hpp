@@ -7,10 +7,9 @@
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/internal/report/escape.hpp"
-#include "crashrank/mesh/stated_mass.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -39,7 +38,7 @@ struct crashrank_models {
 struct crashrank_query {
   crashrank::ModelWorkspace workspace;
   std::vector<crashrank::Pair> pairs;
-  std::vector<crashrank_pair> told;  ///< the same, as the caller knows them
+  std::vector<crashrank_pair> told;  ///< the same, in the caller's type
 };
 
 struct crashrank_scenario {
@@ -73,7 +72,7 @@ inline crashrank_status status_of(ErrorCode code) {
   }
 }
 
-/// Tells the caller about an error; allocates nothing, so that it can tell of lost memory.
+/// Reports an error to the caller; allocates nothing, so that it can report lost memory.
 inline crashrank_status refuse(crashrank_status status, const char* message,
                                crashrank_error* error) noexcept {
   if (error == nullptr) return status;

@@ -3,7 +3,7 @@
 #include "c/enums.hpp"
 #include "c/handles.hpp"
 #include "c/sized.hpp"
-#include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 #include "scenario/scenario_check.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "crashrank/mesh/import.hpp"
 #include "c/handles.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/scenario/scenario_models.hpp"
 
 #include <utility>

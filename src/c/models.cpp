@@ -1,8 +1,8 @@
 #include "c/handles.hpp"
 
-#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "crashrank/base/library_version.hpp"
+#include "crashrank/base/version.hpp"
 #include "crashrank/crashrank.h"
 
 int32_t crashrank_abi_version() { return CRASHRANK_ABI_VERSION; }

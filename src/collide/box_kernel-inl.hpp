@@ -122,7 +122,7 @@ public:
     push(start);
     while (waiting_ != 0) {
       const WideTask task = stack_[--waiting_];
-      // Which pair is met first is the same on every target: boxes by which the order of tasks is
+      // Which pair is found first is the same on every target: boxes by which the order of tasks is
       // chosen are rounded alike, and `collide_clusters` lists triangles in an order of its own.
       if (query_.any) {
         step<true>(task);
@@ -225,7 +225,7 @@ private:
       push(a_rows ? WideTask{row, col, row_lanes, col_lanes}
                   : WideTask{col, row, col_lanes, row_lanes});
     };
-    // A cluster's box is not looked at again: all clusters that meet one inner node go with it.
+    // A cluster's box is not tested again: all clusters that overlap one inner node go with it.
     for (std::uint64_t left = met.cluster_node; left != 0;) {
       const std::size_t c = static_cast<std::size_t>(__builtin_ctzll(left)) & 7U;
       const std::uint32_t child = other.child[c];

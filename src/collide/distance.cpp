@@ -1,4 +1,4 @@
-#include "crashrank/collide/distance.hpp"
+#include "crashrank/collide/collide.hpp"
 
 #include "collide/box_gap.hpp"
 #include "collide/triangle_distance.hpp"

@@ -91,7 +91,7 @@ private:
   }
 
   /// Closest points of two segments p + s·d, q + t·e. Nearly parallel ones have a closest pair at
-  /// an end, which is told by the four projections in place of a cancelled determinant.
+  /// an end, which the four projections show in place of a cancelled determinant.
   void offer_segments(const Point& p, const Point& d, const Point& q, const Point& e, Point& x,
                       Point& y) const {
     const double dd = d.squaredNorm();

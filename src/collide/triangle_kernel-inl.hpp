@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace crashrank::detail::HWY_NAMESPACE {
 
-/// A cluster made ready. A's keeps its coordinates; B's is carried into A's frame and stands
+/// A prepared cluster. A's keeps its coordinates; B's is transformed to A's frame and is given
 /// relative to `place`, so that the rounding of its corners follows its own size and not its
 /// distance from A's origin.
 struct alignas(64) Prepared {

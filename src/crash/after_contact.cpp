@@ -1,4 +1,4 @@
-#include "crashrank/crash/after_contact.hpp"
+#include "crashrank/crash/contact_law.hpp"
 
 #include <array>
 

@@ -1,6 +1,4 @@
-#include "crashrank/crash/cdc.hpp"
-
-#include "crashrank/crash/pdof.hpp"
+#include "crashrank/crash/contact_law.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 #include "crash/contact_run.hpp"
-#include "crashrank/crash/pdof.hpp"
+#include "crashrank/crash/contact_law.hpp"
 
 #include <algorithm>
 

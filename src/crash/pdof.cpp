@@ -1,4 +1,4 @@
-#include "crashrank/crash/pdof.hpp"
+#include "crashrank/crash/contact_law.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crash/planar_body.hpp"
-#include "crashrank/crash/after_contact.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include <Eigen/Core>

@@ -22,7 +22,7 @@
 namespace crashrank::detail {
 
 /// Lets one thread sleep until something is done or a time has come; std::atomic cannot wait for a
-/// time. Others ring after what may have made it done: one load where nobody sleeps.
+/// time. Others ring after what may have made it done: one load if no thread sleeps.
 class Alarm {
 public:
   using Clock = std::chrono::steady_clock;

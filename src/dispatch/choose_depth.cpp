@@ -20,11 +20,11 @@ TreeCut choose_cut(View<const DispatchQuery> queries, std::uint32_t workers,
   const double worth_it = fast ? 160e3 : 40e3;
   if (!(triangles > worth_it)) return cut;
   if (by_work) {
-    // A dozen jobs a thread even out at the end; smaller ones cost more to hand over. Before, a
+    // A dozen jobs a thread even out at the end; smaller ones cost more to send. Before, a
     // job may take half of what each thread's share of all later queries is.
     const double seconds = triangles * (fast ? 0.8e-9 : 4.5e-9);
     const double sharers = std::max(4U, workers + 1);
-    // Many queries need not be cut deeply, and a depth has its price: the table of who holds what.
+    // Many queries need not be cut deeply, and a depth has a cost: the table of parts by core.
     const double deepest = 12.0 - std::log2(static_cast<double>(queries.size()));
     cut.depth = static_cast<std::uint32_t>(std::clamp(std::round(deepest), 5.0, 12.0));
     cut.job_seconds = static_cast<float>(std::clamp(seconds / (12.0 * sharers), 3e-6, 20e-6));

@@ -4,7 +4,7 @@
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
-#include "crashrank/dispatch/pair_lists.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
 #include "dispatch/part_store.hpp"
@@ -37,7 +37,7 @@ struct Job {
 
 /// What is sent to a core en masse: parts to copy first, then jobs, with the poses they need.
 struct Batch {
-  struct Core* core = nullptr;  ///< to whom it goes
+  struct Core* core = nullptr;  ///< that it is sent to
   std::vector<Fetch> fetches;
   std::vector<QueryFrame> frames;
   std::vector<Job> jobs;

@@ -1,5 +1,5 @@
 #include "dispatch/dispatcher_state.hpp"
-#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
 

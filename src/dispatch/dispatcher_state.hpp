@@ -2,7 +2,7 @@
 
 #include "base/hidden.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
-#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
 #include "dispatch/choose_depth.hpp"
 #include "dispatch/core.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "crashrank/dispatch/dispatcher.hpp"
-#include "crashrank/dispatch/part_index.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/collide/pair.hpp"
-#include "crashrank/dispatch/part_index.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
 

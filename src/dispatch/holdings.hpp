@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/dispatch/part_index.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "crashrank/dispatch/pair_lists.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -23,7 +23,7 @@ void PairLists::gather_sorted(std::size_t query, std::vector<Pair>& pairs) const
 
 void PairLists::begin(std::size_t workers, std::size_t queries) {
   found_.resize(workers + 1);  // the last one is for sorting
-  for (detail::FoundPairs& found : found_) {
+  for (FoundPairs& found : found_) {
     found.pairs.clear();
     found.runs.clear();
   }
@@ -34,8 +34,8 @@ void PairLists::begin(std::size_t workers, std::size_t queries) {
 
 void PairLists::finish() {
   std::size_t total = 0;
-  for (const detail::FoundPairs& found : found_) {
-    for (const detail::PairRun& run : found.runs) {
+  for (const FoundPairs& found : found_) {
+    for (const PairRun& run : found.runs) {
       counts_[run.query] += run.count;
       ++first_run_[run.query + 1];
     }
@@ -43,8 +43,8 @@ void PairLists::finish() {
   }
   std::partial_sum(first_run_.begin(), first_run_.end(), first_run_.begin());
   runs_.resize(total);
-  for (const detail::FoundPairs& found : found_) {
-    for (const detail::PairRun& run : found.runs) runs_[first_run_[run.query]++] = run;
+  for (const FoundPairs& found : found_) {
+    for (const PairRun& run : found.runs) runs_[first_run_[run.query]++] = run;
   }
   // Each start has moved on to the next query's.
   std::copy_backward(first_run_.begin(), first_run_.end() - 1, first_run_.end());
@@ -63,7 +63,7 @@ void PairLists::begin_sort() {
 }
 
 void PairLists::sort_query(std::size_t query) {
-  const detail::PairRun& sorted = sorted_runs_[query];
+  const PairRun& sorted = sorted_runs_[query];
   Pair* const first = found_[sorted.worker].pairs.data() + sorted.first;
   Pair* to = first;
   for_each_run(query, [&](View<const Pair> run) { to = std::copy(run.begin(), run.end(), to); });

@@ -1,4 +1,4 @@
-#include "crashrank/dispatch/part_index.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
 
 #include <algorithm>
 

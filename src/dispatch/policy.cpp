@@ -119,7 +119,7 @@ public:
     return {chosen, core};
   }
 
-  /// The last few microseconds of work, while nobody is at work, are done before anybody could be
+  /// The last few microseconds of work, if no worker is busy, end before a worker could be
   /// woken.
   bool caller_takes(const Placement& at) const noexcept override {
     if (!at.all_found) return false;

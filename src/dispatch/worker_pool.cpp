@@ -28,7 +28,7 @@ namespace crashrank {
 
 namespace {
 
-/// A place for a task. The worker may look at it while the owner, who has taken the task back, puts
+/// A slot for a task. The worker may read it while the owner, which has recalled the task, writes
 /// the next one there: what it saw then counts for nothing.
 class Place {
 public:
@@ -96,7 +96,7 @@ struct CRASHRANK_HIDDEN WorkerPool::State {
   std::atomic<std::int64_t> spin_ns{0};
   std::int64_t usual_spin_ns = 0;
   alignas(64) std::atomic<std::uint32_t> finished{0};
-  detail::Alarm owner_alarm;  ///< for an owner who waits until a time
+  detail::Alarm owner_alarm;  ///< for an owner that waits until a time
   alignas(64) std::atomic<bool> stop{false};
   std::atomic<bool> failed{false};
   std::mutex failure_lock;

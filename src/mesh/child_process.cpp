@@ -211,7 +211,7 @@ bool ChildProcess::read(void* data, std::size_t size) {
 }
 
 // Waits until the deadline, then kills. Where the caller's process ignores SIGCHLD, or reaps
-// children it does not know, the status goes to nobody; the id is then no longer ours to signal.
+// children it does not know, no one gets the status; the id must then not be signalled.
 void ChildProcess::reap() {
   if (pid_ < 0) return;
   bool killed = false;

@@ -54,7 +54,7 @@ public:
   std::string finish();
 
   bool timed_out() const noexcept { return timed_out_; }
-  /// The signal that ended it, 0 if none did or nobody knows; after `finish`.
+  /// The signal that ended it, 0 if none did or it is unknown; valid after `finish`.
   int signal() const noexcept { return signal_; }
 
 private:

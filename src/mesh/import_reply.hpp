@@ -16,7 +16,7 @@ enum class Reply {
 /// Fetches exactly so many bytes of an answer, or returns false.
 using ReadBytes = std::function<bool(void* data, std::size_t size)>;
 
-/// Reads the importer's answer and believes none of it unchecked: a parser that a file has taken
+/// Reads the importer's reply and checks all of it before use: a parser that a file has taken
 /// over can write anything. Counts are held against the limits before memory is asked for.
 Reply read_reply(const ReadBytes& read, const ImportLimits& limits, ImportedMesh& imported,
                  Error& failure);

@@ -1,4 +1,4 @@
-#include "crashrank/mesh/quality.hpp"
+#include "crashrank/mesh/properties.hpp"
 
 #include "mesh/degenerate.hpp"
 

@@ -10,8 +10,8 @@ namespace crashrank::detail {
 /// code points beyond U+10FFFF included).
 std::size_t utf8_length(std::string_view text);
 
-/// One printable line of a stranger's text: control characters, and bytes that are not UTF-8, as
-/// \xNN; cut after `limit` bytes.
+/// One printable line of a text that is not trusted: control characters, and bytes that are not
+/// UTF-8, as \xNN; cut after `limit` bytes.
 std::string printable(std::string_view text, std::size_t limit = 400);
 
 /// `printable` between single quotation marks.

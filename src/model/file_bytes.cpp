@@ -82,13 +82,13 @@ Result<FileBytes> copy(const std::string& path, const Descriptor& file, std::siz
     const ssize_t got = ::read(file.number(), bytes + have, size - have);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return file_error(ErrorCode::internal, path, "cannot read: " + why());
-    if (got == 0) break;  // it shrank meanwhile: its head tells that something is missing
+    if (got == 0) break;  // it shrank meanwhile: the size in its header shows that
     have += static_cast<std::size_t>(got);
   }
   return FileBytes{{bytes, have}, std::shared_ptr<const void>(std::move(memory))};
 }
 
-/// Writes everything, and hands it to the disk.
+/// Writes everything and flushes it to the disk.
 bool put(const Descriptor& file, View<const unsigned char> bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {

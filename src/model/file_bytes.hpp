@@ -2,7 +2,7 @@
 
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-#include "crashrank/tree/validate.hpp"
+#include "crashrank/model/make_model.hpp"
 #include "model/model_layout.hpp"
 
 #include <algorithm>
@@ -211,7 +211,7 @@ Result<LoadedModel> decode_model(View<const unsigned char> bytes,
   model.profile = read_profile(header, bytes, at[section_pieces]);
 
   if (Status status = check_stored(loaded.stored); !status) return with_remedy(status.error());
-  // Read only: the columns would copy what they borrow for anybody who could change it.
+  // Constant: mutable access would make the columns copy what they borrow.
   const Model& read = model;
   if (Status status = validate(read); !status) return with_remedy(status.error());
   if (model.profile == nullptr) {

@@ -1,7 +1,7 @@
 #include "base/crc32c.hpp"
 #include "base/utf8.hpp"
 #include "crashrank/internal/base/guarded.hpp"
-#include "crashrank/tree/validate.hpp"
+#include "crashrank/model/make_model.hpp"
 #include "model/model_layout.hpp"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ Status check_parts(const TriangleMesh& mesh) {
 }
 
 Status check_vertices(const TriangleMesh& mesh) {
-  // A float is finite when its exponent is not all ones: the largest of all magnitudes tells.
+  // A float is finite if its exponent is not all ones: the largest magnitude decides for all.
   std::uint32_t largest = 0;
   for (const Eigen::Vector3f& vertex : mesh.vertices) {
     std::array<std::uint32_t, 3> bits;

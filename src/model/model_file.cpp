@@ -1,4 +1,4 @@
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include "crashrank/internal/base/guarded.hpp"
 #include "model/file_bytes.hpp"

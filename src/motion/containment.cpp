@@ -56,7 +56,7 @@ private:
     return (high[u_] - low[u_]) * (origin_[v_] - low[v_]) < (high[v_] - low[v_]) * (u - low[u_]);
   }
 
-  /// Where the line meets the triangle's plane.
+  /// Where the line intersects the triangle's plane.
   double height_of(const std::array<Vector3d, 3>& corner) const {
     const Vector3d e = corner[1] - corner[0];
     const Vector3d f = corner[2] - corner[0];
@@ -94,7 +94,7 @@ double winding_number(const AabbTree& tree, const Vector3d& point) {
   return sum / (2.0 * std::numbers::pi);
 }
 
-/// Whether some corner of `inner`, carried by `to_outer`, is inside `outer`.
+/// True if a corner of `inner`, transformed by `to_outer`, is inside `outer`.
 bool any_inside(const AabbTree& inner, const AabbTree& outer, const Pose& to_outer) {
   constexpr std::size_t samples = 16;
   const Box& box = outer.nodes[0].box;

@@ -2,7 +2,7 @@
 
 #include "collide/box_gap.hpp"
 #include "collide/triangle_distance.hpp"
-#include "crashrank/collide/distance.hpp"
+#include "crashrank/collide/collide.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
@@ -89,11 +89,11 @@ ImpactSearch::ImpactSearch(const AabbTree& a, const Motion& motion_a, const Aabb
   place_knots(from);
 }
 
-/// Between knots a pair of boxes is carried on along its tangent; the knots are so close that this
-/// gives away no more than a few millimetres of clearance, which is less than the smallest boxes of
-/// a vehicle. Kinks are knots too, up to the very end: no pair of boxes is carried over a kink, and
-/// where one is left out, for want of room, all that is left of the work falls to pairs of
-/// triangles.
+/// Between knots a pair of boxes is extrapolated along its tangent; the knots are so close that
+/// this gives away no more than a few millimetres of clearance, which is less than the smallest
+/// boxes of a vehicle. Kinks are knots too, up to the very end: no pair of boxes is extrapolated
+/// over a kink, and where one is left out, for want of room, all that is left of the work falls to
+/// pairs of triangles.
 void ImpactSearch::place_knots(double from) {
   constexpr double clearance = 0.004;
   constexpr double fewest = 16;
@@ -197,7 +197,7 @@ double ImpactSearch::open_until(const Node& na, const Node& nb, const Knot& k, d
                                         [&](const Vector3d& n) { return n.dot(v_b) + spread; }));
   }
   // How far along their closing velocity the boxes are from overlapping, or into it: not a bound,
-  // but it tells which of two pairs meets sooner where both overlap.
+  // but it orders two pairs of which both overlap by time.
   const double speed = v.norm();
   guess = s.time;
   if (speed > 0.0) {
@@ -254,7 +254,7 @@ Meeting ImpactSearch::follow(std::uint32_t slot_a, std::uint32_t slot_b, double 
       }
       next = std::min(t + seconds, s.horizon);
     }
-    // A gap that cannot be carried on although it is wider than `stop_m` is so by rounding alone.
+    // A gap that cannot be advanced although it is wider than `stop_m` is so by rounding alone.
     if (next <= t) {
       meeting.time = t;
       meeting.slot_a = slot_a;

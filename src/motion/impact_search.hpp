@@ -30,7 +30,7 @@ struct Knot {
   double spin_b = 0.0;
 };
 
-/// Two slots that meet at a time.
+/// Two slots that touch at a time.
 struct Meeting {
   double time = std::numeric_limits<double>::infinity();
   std::uint32_t slot_a = 0;
@@ -38,9 +38,9 @@ struct Meeting {
   TriangleGap gap;  ///< in A's frame at that time
 };
 
-/// When two surfaces count as met, and what has to be proved of all times before.
+/// When two surfaces count as in contact, and what has to be proved of all times before.
 struct Thresholds {
-  double stop_m = 0.0;   ///< met when this close
+  double stop_m = 0.0;   ///< in contact at this distance, m
   double prove_m = 0.0;  ///< proved apart by more than this; below `stop_m`
 };
 
@@ -55,7 +55,7 @@ struct SearchMemory {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     double free_until = 0.0;
-    double guess = 0.0;  ///< when they may meet: for the order of the search only
+    double guess = 0.0;  ///< when they may touch: for the order of the search only
   };
   std::vector<Entry> stack;
   std::vector<double> times;
@@ -71,7 +71,7 @@ public:
 
   /// The first meeting in [from, until], `time` infinite when there is none. `known` is a meeting
   /// that the caller has already: nothing later is looked for. When the steps run out, `exhausted`
-  /// is set and nothing meets before `proved_until`.
+  /// is set and no surfaces touch before `proved_until`.
   Meeting first(double from, const Thresholds& thresholds, const Meeting& known = {});
 
   /// The first meeting of one pair of slots in [from, before); gives up once the pair is seen

@@ -47,8 +47,8 @@ Eigen::Matrix3d yawed(const Eigen::Matrix3d& rotation, double angle) {
 }
 
 // Poses are accepted up to 1e-6 off a rotation, which 100 m away is as much as the tolerance of a
-// contact; what is a rotation to rounding keeps its bits. A mirrored or scaled pose has no heading
-// that could be told: the motion is not finite, which whoever ranks with it refuses.
+// contact; what is a rotation to rounding keeps its bits. A mirrored or scaled pose has no heading:
+// the motion is then not finite, and rankings refuse it.
 Pose rigid(const Pose& pose) {
   const double error = rigidity_error(pose);
   if (error <= 1e-12) return pose;

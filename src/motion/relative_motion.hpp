@@ -28,7 +28,7 @@ struct RelativeState {
   Eigen::Vector3d omega_b = Eigen::Vector3d::Zero();
   /// No point of A accelerates against a point of B by more than this until the horizon, m/s².
   double acceleration = 0.0;
-  double margin = 0.0;  ///< more than poses and carried corners are off by rounding, m
+  double margin = 0.0;  ///< above the rounding of poses and transformed corners, m
 };
 
 inline double point_acceleration(const MotionBound& bound, double radius) {
@@ -36,7 +36,7 @@ inline double point_acceleration(const MotionBound& bound, double radius) {
          (bound.angular_radps * bound.angular_radps + bound.angular_radps2) * radius;
 }
 
-/// No chain of operations from a motion's parameters to a carried corner is longer than 64, and
+/// No chain of operations from a motion's parameters to a corner is longer than 64, and
 /// none of its terms exceeds this, so that 64 u of it bounds their rounding. A position is its
 /// start and a way that may cancel: the start is at most as far as the present place and the way
 /// together. An angle of w·t radians is off by up to u·w·t, and moves a corner by that times its

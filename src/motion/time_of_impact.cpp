@@ -6,7 +6,6 @@
 
 #include "collide/triangle_distance.hpp"
 #include "crashrank/collide/collide.hpp"
-#include "crashrank/collide/distance.hpp"
 #include "crashrank/internal/base/products.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/collide/traverse.hpp"
@@ -68,7 +67,7 @@ Sphere sphere_around(const AabbTree& tree) {
 }
 
 /// A time in [from, until] before which two bodies' bounding spheres stay apart by `less` and more:
-/// the end when they never meet.
+/// the end if they never touch.
 double spheres_apart_until(const AabbTree& a, const Motion& motion_a, const AabbTree& b,
                            const Motion& motion_b, double from, double until, double less,
                            ImpactWork& work) {
@@ -92,7 +91,7 @@ double spheres_apart_until(const AabbTree& a, const Motion& motion_a, const Aabb
     const double distance = apart.norm();
     const double margin = 0x1p-46 * (center_a.cwiseAbs().sum() + center_b.cwiseAbs().sum() + reach);
     const double gap = distance - reach - margin;
-    // Once the spheres are nearly in touch, the boxes tell more than many small steps.
+    // Once the spheres nearly touch, the boxes give a better bound than many small steps.
     if (gap <= 0.02 * reach) return t;
     const Vector3d n = apart / distance;
     const double closing = n.dot(velocity_of_point(velocity_a, pose_a.translation, center_a) -

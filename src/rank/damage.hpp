@@ -2,7 +2,7 @@
 
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/crash/contact_law.hpp"
-#include "crashrank/dispatch/pair_lists.hpp"
+#include "crashrank/dispatch/dispatcher.hpp"
 #include "rank/passed.hpp"
 #include "rank/scene.hpp"
 #include "rank/triangle_set.hpp"

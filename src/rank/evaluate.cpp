@@ -1,6 +1,6 @@
 #include "rank/evaluate.hpp"
 
-#include "rank/anytime/bounds.hpp"
+#include "rank/bounds.hpp"
 #include "rank/combine_futures.hpp"
 #include "rank/ego_motion.hpp"
 #include "rank/hits.hpp"

@@ -1,8 +1,6 @@
 #include "rank/evaluate_on_workers.hpp"
 
 #include "crashrank/dispatch/dispatcher.hpp"
-#include "crashrank/dispatch/pair_lists.hpp"
-#include "crashrank/dispatch/part_index.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/progress.hpp"
 

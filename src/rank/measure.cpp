@@ -1,13 +1,10 @@
-#include "crashrank/scenario/measure.hpp"
-
 #include "rank/measure_table.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-namespace crashrank {
-namespace detail {
+namespace crashrank::detail {
 namespace {
 
 double no_contact(const ContactEffect& /*effect*/) { return 0.0; }
@@ -16,10 +13,6 @@ double no_body(double before, const BodyEvent& /*last*/, bool /*is_ego*/) { retu
 
 constexpr MeasureRow polygons{
     Measure::polygons,
-    "polygons",
-    "triangles",
-    "damaged triangles of all bodies",
-    false,
     false,
     false,
     [](const BodyDamage& whole) { return static_cast<double>(whole.triangles.size()); },
@@ -29,16 +22,11 @@ constexpr MeasureRow polygons{
     [](const Utmost& u, const HarmWeights&) { return u.triangles; }};
 
 constexpr MeasureRow area{
-    Measure::area, "area",  "m2",    "damaged surface of all bodies",
-    false,         false,   false,   [](const BodyDamage& whole) { return whole.area_m2; },
+    Measure::area, false,   false,   [](const BodyDamage& whole) { return whole.area_m2; },
     no_contact,    no_side, no_body, [](const Utmost& u, const HarmWeights&) { return u.area_m2; }};
 
 constexpr MeasureRow closing_energy{
     Measure::closing_energy,
-    "closing-energy",
-    "J",
-    "kinetic energy that the crash could turn into damage",
-    false,
     false,
     false,
     nullptr,
@@ -48,8 +36,7 @@ constexpr MeasureRow closing_energy{
     [](const Utmost& u, const HarmWeights&) { return u.contacts * u.closing_energy_j; }};
 
 constexpr MeasureRow delta_v{
-    Measure::delta_v, "delta-v", "m/s", "the own vehicle's change of velocity", true, true, false,
-    nullptr, no_contact, no_side,
+    Measure::delta_v, true, false, nullptr, no_contact, no_side,
     [](double before, const BodyEvent& last, bool is_ego) {
       return is_ego ? before + last.size_mps() : before;
     },
@@ -59,10 +46,6 @@ constexpr MeasureRow delta_v{
     }};
 
 constexpr MeasureRow energy{Measure::energy,
-                            "energy",
-                            "J",
-                            "energy turned into damage",
-                            true,
                             true,
                             false,
                             nullptr,
@@ -73,10 +56,6 @@ constexpr MeasureRow energy{Measure::energy,
 
 constexpr MeasureRow intrusion{
     Measure::intrusion,
-    "intrusion",
-    "m",
-    "depth of the crush in passengers' cages",
-    true,
     false,
     false,
     nullptr,
@@ -87,10 +66,6 @@ constexpr MeasureRow intrusion{
 
 constexpr MeasureRow harm{
     Measure::harm,
-    "harm",
-    "persons",
-    "people hurt, as weighted",
-    true,
     true,
     true,
     nullptr,
@@ -122,26 +97,4 @@ const MeasureRow& measure_row(Measure measure) noexcept {
   return rows[static_cast<std::size_t>(measure)];
 }
 
-}  // namespace detail
-
-const char* measure_name(Measure measure) noexcept { return detail::measure_row(measure).name; }
-
-const char* measure_unit(Measure measure) noexcept { return detail::measure_row(measure).unit; }
-
-const char* measure_meaning(Measure measure) noexcept {
-  return detail::measure_row(measure).meaning;
-}
-
-bool needs_crash(Measure measure) noexcept { return detail::measure_row(measure).needs_crash; }
-
-Result<Measure> measure_from_name(const std::string& name) {
-  std::string known;
-  for (const detail::MeasureRow& row : detail::rows) {
-    if (name == row.name) return row.measure;
-    known += (known.empty() ? "" : ", ") + std::string(row.name);
-  }
-  return make_error(ErrorCode::usage, "there is no measure \"" + name + "\"",
-                    "choose one of " + known);
-}
-
-}  // namespace crashrank
+}  // namespace crashrank::detail

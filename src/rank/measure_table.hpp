@@ -1,7 +1,7 @@
 #pragma once
 
-#include "crashrank/rank/harm.hpp"
-#include "crashrank/scenario/measure.hpp"
+#include "crashrank/internal/rank/harm.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 #include "rank/tally.hpp"
 
 namespace crashrank::detail {
@@ -18,14 +18,11 @@ struct Utmost {
   double contacts = 0.0;  ///< of one scene
 };
 
-/// All there is to know of one measure. A score is the sum over its terms: those of bodies' damage
-/// alone, or those of contacts, of their sides and of bodies.
+/// How one measure is computed; `measure_name` and its neighbours have what users read of it. A
+/// score is the sum over its terms: those of bodies' damage alone, or those of contacts, of their
+/// sides and of bodies.
 struct MeasureRow {
   Measure measure = Measure::polygons;
-  const char* name = "";
-  const char* unit = "";
-  const char* meaning = "";    ///< for a sentence, without an article
-  bool needs_crash = true;     ///< scoring it takes a simulation beyond first contact
   bool has_samples = true;     ///< what is not known is varied
   bool counts_people = false;  ///< a body's term is a risk, to be weighted by its people
   /// Of a body's damage from all contacts; null where damage does not count.

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rank/anytime/watch.hpp"
 #include "rank/evaluate.hpp"
+#include "rank/watch.hpp"
 
 #include <cstdint>
 

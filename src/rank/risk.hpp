@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/scenario/risk.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 
 #include <optional>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/scenario/road.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "rank/scene.hpp"
 #include "rank/stop_check.hpp"
 

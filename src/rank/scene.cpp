@@ -2,6 +2,7 @@
 
 #include "crash/scene_run.hpp"
 #include "crashrank/crash/injury.hpp"
+#include "crashrank/internal/rank/harm.hpp"
 #include "rank/join_fixed.hpp"
 #include "rank/measure_table.hpp"
 

@@ -1,7 +1,7 @@
 #include "rank/tally.hpp"
 
 #include "crash/rebound.hpp"
-#include "crashrank/crash/pdof.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "rank/measure_table.hpp"
 
 #include <algorithm>

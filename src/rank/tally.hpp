@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/crash/contact_law.hpp"
+#include "crashrank/internal/rank/harm.hpp"
 #include "rank/scene.hpp"
 
 #include <Eigen/Core>

@@ -1,7 +1,6 @@
 #include "rank/tell_contacts.hpp"
 
-#include "crashrank/crash/cdc.hpp"
-#include "crashrank/crash/pdof.hpp"
+#include "crashrank/crash/contact_law.hpp"
 #include "rank/adjoin.hpp"
 
 #include <algorithm>

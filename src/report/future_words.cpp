@@ -1,6 +1,6 @@
 #include "report/future_words.hpp"
 
-#include "crashrank/scenario/measure.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 
 #include <fmt/format.h>
 

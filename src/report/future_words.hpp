@@ -9,8 +9,8 @@ namespace crashrank::detail {
 
 /// What a reader has to know of the futures that a ranking is of, one sentence each, names as they
 /// are; empty where there is one future: how many there are and where they come from, of which of
-/// them contacts are told, by how much a sample's scores are open, and how the candidates compare
-/// against the likeliest future alone where another one would be first.
+/// them contacts are reported, by how much a sample's scores are open, and how the candidates
+/// compare against the likeliest future alone where another one would be first.
 std::vector<std::string> future_words(const RankResult& result);
 
 /// The score of a candidate in the likeliest future; its score where there is one future.

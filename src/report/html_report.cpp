@@ -1,7 +1,6 @@
-#include "crashrank/report/html_report.hpp"
+#include "crashrank/report/ranking.hpp"
 
 #include "crashrank/internal/report/escape.hpp"
-#include "crashrank/report/ranking.hpp"
 #include "report/base64.hpp"
 #include "report/contact_table.hpp"
 #include "report/damage_summary.hpp"

@@ -44,7 +44,7 @@ std::string leaving_words(const CandidateResult& ranked) {
 
 std::string passing_words(const Scenario& scenario, const CandidateResult& ranked) {
   std::string words = ranked.grazes.empty() ? "nothing" : "nothing, but grazes";
-  // Of a candidate that touches somebody in another future both are 0.
+  // Both are 0 for a candidate that has a contact in another future.
   if (ranked.collision_probability > 0.0) return words;
   if (ranked.nearest) {
     words += fmt::format(", {:.2f} m from {}", *ranked.least_distance_m,

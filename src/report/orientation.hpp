@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/mesh/transform.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>
 
@@ -24,7 +24,7 @@ inline std::string file_axis(const Eigen::Vector3d& unit) {
 }
 
 /// Guesses the axes of a mesh with a vehicle's proportions whose length does not lie along x. The
-/// extents are those that `transform` led to. Which end is the front cannot be told from them: the
+/// extents are those that `transform` led to. They do not show which end is the front: the
 /// opposite of `forward` may be meant.
 inline std::optional<Orientation> guess_orientation(const Eigen::Vector3d& extent_m,
                                                     const ImportTransform& transform) {

@@ -61,7 +61,7 @@ public:
     return fmt::format("<polygon class='{}' points='{}'/>\n", css_class, path(world));
   }
 
-  // A wedge where the front is, so that a plan tells which way a body looks.
+  // A wedge at the front shows the heading of a body.
   std::string nose(const Outline& outline, const Pose& pose) const {
     double front = outline.front().x();
     double middle = 0.0;

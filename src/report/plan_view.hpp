@@ -2,9 +2,9 @@
 
 #include "base/convex_hull.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <Eigen/Core>
 

@@ -160,7 +160,7 @@ void add_damage(Json& entry, const DamageSummary& first, const DamageSummary& se
   entry["damaged_parts"] = both(Json(first.parts), Json(second.parts), keys);
 }
 
-/// Corners of a region in body coordinates, null where the surfaces do not meet.
+/// Corners of a region in body coordinates, null if the surfaces do not intersect.
 Json region(const Box& box) {
   if (box.empty()) return nullptr;
   return {{"min", vector(box.min.cast<double>())}, {"max", vector(box.max.cast<double>())}};

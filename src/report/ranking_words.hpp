@@ -1,9 +1,9 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <cstddef>
 #include <string>
@@ -43,7 +43,7 @@ std::vector<FurtherPair> further_pairs(const CandidateResult& ranked);
 std::string further_words(const Scenario& scenario, const CandidateResult& ranked,
                           const FurtherContact& contact);
 
-/// Where contacts between others hurt somebody, one sentence a pair for the first `shown` rows,
+/// Where contacts between others injure people, one sentence a pair for the first `shown` rows,
 /// names as they are: "brake in lane: saloon is pushed into pedestrian at 1.24 s (harm 0.31)", with
 /// the time of the pair's first contact and the harm of all. At most 12, and how many more there
 /// are. Empty unless the measure is harm.

@@ -17,7 +17,7 @@ struct Viewer {
   Eigen::Vector3f eye = Eigen::Vector3f::Zero();
   float pixels = 1.0F;  ///< pixels a unit of tangent (perspective) or a metre (parallel)
   bool parallel = false;
-  float middle_x = 0.0F;  ///< pixel that the view axis meets
+  float middle_x = 0.0F;  ///< pixel on the view axis
   float middle_y = 0.0F;
 
   /// x and y in pixels, y down; z grows towards the viewer and is linear across a plane's picture.

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -17,7 +17,7 @@ struct SceneView {
 };
 
 /// What a candidate's pictures show, the ego first: all bodies that are hit, each where its first
-/// contact finds it. Without a contact the ego at the end of its plan and who is near it then.
+/// contact finds it. Without a contact the ego at the end of its plan and the bodies near it then.
 std::vector<SceneView> scene_views(const Scenario& scenario, View<const Model> models,
                                    const RankResult& result, std::size_t place);
 

@@ -36,7 +36,7 @@ std::string place_text(const CandidateResult& ranked);
 /// 2 and 3 not separable (their order turns round in 38 % of 129 samples)".
 std::vector<std::string> not_separable_words(const RankResult& result, std::size_t shown);
 
-/// What harm was counted with: model, every weight, who is where, ranges. Lines without a break.
+/// Options of the harm: model, every weight, numbers of people, ranges. Lines without a break.
 std::vector<std::string> harm_words(const HarmOptions& harm);
 
 }  // namespace crashrank::detail

@@ -11,7 +11,7 @@ using Eigen::Vector2d;
 /// Poses that are differenced are at least so far apart. Longer hides peaks, shorter shows the
 /// rounding of the poses: a centimetre gives up to 0.2 m/s² here.
 constexpr double least_apart_s = 0.3;
-/// Below this the ratio of yaw rate to speed tells nothing of the steering.
+/// Below this the ratio of yaw rate to speed does not give the steering.
 constexpr double least_steered_mps = 1.0;
 /// Limits below this are those of a vehicle that cannot do it at all: a demand stays finite.
 constexpr double least_limit = 0.1;
@@ -188,7 +188,7 @@ double spacing_of(double before_s, double after_s) {
   return std::max(smaller > 0.0 ? std::min(larger, 2.0 * smaller) : larger, shortest_s);
 }
 
-/// Chords of so wide a turn tell nothing of it.
+/// Chords of so wide a turn do not give it.
 bool is_too_wide(const Window& window) {
   constexpr double widest_rad = 0.8;
   return std::abs(angle_between(window.last.heading_rad, window.middle.heading_rad)) > widest_rad ||

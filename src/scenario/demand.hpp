@@ -1,7 +1,6 @@
 #pragma once
 
 #include "crashrank/scenario/candidate.hpp"
-#include "crashrank/scenario/demand.hpp"
 #include "crashrank/scenario/scenario.hpp"
 
 #include <Eigen/Core>

@@ -18,7 +18,7 @@ std::size_t characters(const std::string& utf8) {
   }));
 }
 
-/// One printable line of a stranger's text, cut between characters.
+/// One printable line of a text that is not trusted, cut between characters.
 std::string printable(std::string_view text, std::size_t most_bytes) {
   std::string shown;
   while (!text.empty()) {

@@ -12,7 +12,7 @@
 
 namespace crashrank::detail {
 
-/// Reads one JSON object with every key accounted for. The first trouble met stays in the Status
+/// Reads one JSON object and refuses unknown keys. The first error stays in the Status
 /// shared by a whole document; once it is there, reads return what they were given as default, so
 /// that callers need to look once, at the end.
 class JsonObject {

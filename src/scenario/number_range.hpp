@@ -17,7 +17,7 @@ struct NumberRange {
   }
 };
 
-/// A number as short text that still tells it from its neighbours in a message.
+/// A number as short text with nine digits.
 inline std::string number_text(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", number);

@@ -1,4 +1,4 @@
-#include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 
 #include "crashrank/internal/base/guarded.hpp"
 #include "scenario/json_object.hpp"

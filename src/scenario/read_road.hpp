@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/scenario/road.hpp"
+#include "crashrank/scenario/scenario.hpp"
 #include "scenario/json_object.hpp"
 
 namespace crashrank::detail {

@@ -1,4 +1,4 @@
-#include "crashrank/scenario/risk.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 
 #include "scenario/number_range.hpp"
 

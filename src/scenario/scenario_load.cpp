@@ -21,7 +21,7 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return end == folder.end() || (std::next(end) == folder.end() && end->empty());
 }
 
-// In a folder where everybody may write, a marker says nothing about what its owner wants.
+// In a folder that all users may write to, a marker does not show the owner's intent.
 bool anybody_writes(const fs::path& folder) {
   std::error_code error;
   const fs::perms permissions = fs::status(folder, error).permissions();

@@ -2,8 +2,8 @@
 
 #include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
-#include "crashrank/vehicle/body_kind.hpp"
+#include "crashrank/model/model.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 #include "scenario/number_range.hpp"
 
 #include <cmath>

@@ -28,7 +28,7 @@ Result<std::string> read_text_file(const std::string& file, std::size_t most_byt
   if (!in) {
     return Error{ErrorCode::not_found, file, {}, "cannot be read", "check its permissions"};
   }
-  // One byte more than is allowed tells a file that is too large, even one that grows meanwhile.
+  // One byte more than is allowed detects a file that is too large, even one that grows meanwhile.
   std::string text;
   std::string block(std::size_t{64} << 10, '\0');
   while (in && text.size() <= most_bytes) {

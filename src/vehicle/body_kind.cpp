@@ -1,4 +1,4 @@
-#include "crashrank/vehicle/body_kind.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 
 #include <algorithm>
 #include <cmath>

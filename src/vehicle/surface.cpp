@@ -1,4 +1,4 @@
-#include "crashrank/vehicle/surface.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 
 #include <array>
 #include <utility>

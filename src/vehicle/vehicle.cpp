@@ -1,7 +1,7 @@
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include "crashrank/internal/base/guarded.hpp"
-#include "crashrank/mesh/stated_mass.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "crashrank/base/column.hpp"
+#include "crashrank/base/view.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "crashrank/crashrank.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <gtest/gtest.h>
 

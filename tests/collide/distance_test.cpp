@@ -1,8 +1,7 @@
-#include "crashrank/collide/distance.hpp"
+#include "crashrank/collide/collide.hpp"
 
 #include "base/random.hpp"
 #include "collide/triangle_distance.hpp"
-#include "crashrank/collide/collide.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/tree/build.hpp"
 #include "oracle/triangle_oracle.hpp"

@@ -1,4 +1,4 @@
-#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair.hpp"
 
 #include <gtest/gtest.h>
 

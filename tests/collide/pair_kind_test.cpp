@@ -1,6 +1,5 @@
-#include "crashrank/collide/pair_kind.hpp"
-
 #include "crashrank/collide/collide.hpp"
+
 #include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/tree/build.hpp"
 

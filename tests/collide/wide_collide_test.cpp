@@ -3,7 +3,7 @@
 
 #include "crashrank/collide/wide_collide.hpp"
 
-#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/internal/tree/wide_tree.hpp"
 #include "crashrank/model/make_model.hpp"

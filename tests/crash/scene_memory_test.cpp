@@ -4,8 +4,8 @@
 #include "campaign.hpp"
 #include "crash/contact_checks.hpp"
 #include "crash/scene_cases.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <gtest/gtest.h>
 

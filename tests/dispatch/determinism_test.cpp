@@ -1,6 +1,6 @@
 #include "dispatch/sample_bodies.hpp"
 
-#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair.hpp"
 
 #include <gtest/gtest.h>
 

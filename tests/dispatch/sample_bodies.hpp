@@ -5,7 +5,7 @@
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <algorithm>
 #include <cmath>

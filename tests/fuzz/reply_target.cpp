@@ -1,7 +1,7 @@
 // The importer's answer: a parser that a file has taken over can write anything.
 
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 #include "fuzz/target.hpp"
 #include "mesh/import_protocol.hpp"
 #include "mesh/import_reply.hpp"

@@ -1,4 +1,4 @@
-#include "crashrank/mesh/shell_properties.hpp"
+#include "crashrank/mesh/properties.hpp"
 
 #include <gtest/gtest.h>
 

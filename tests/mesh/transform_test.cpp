@@ -1,4 +1,4 @@
-#include "crashrank/mesh/transform.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/tree/build.hpp"
 #include "model/model_layout.hpp"
 #include "tree/sample_meshes.hpp"

@@ -1,4 +1,5 @@
-#include "crashrank/tree/validate.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/tree/build.hpp"
 #include "model/model_file_checks.hpp"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,8 @@
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/validate.hpp"
 #include "model/model_file_checks.hpp"
 
 #include <gtest/gtest.h>

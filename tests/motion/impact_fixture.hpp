@@ -2,7 +2,6 @@
 
 #include "base/random.hpp"
 #include "crashrank/collide/collide.hpp"
-#include "crashrank/collide/distance.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 #include "tree/shapes.hpp"
 

@@ -2,7 +2,7 @@
 // to fail once: the answer is a typed error, nothing stays allocated, and the same call then works.
 
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/tree/build.hpp"

@@ -1,4 +1,4 @@
-#include "crashrank/rank/harm.hpp"
+#include "crashrank/internal/rank/harm.hpp"
 
 #include "base/random.hpp"
 #include "rank/scenes.hpp"

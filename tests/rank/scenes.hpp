@@ -1,9 +1,9 @@
 #pragma once
 
 #include "crashrank/model/make_model.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "crashrank/mesh/profile.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 
 #include "oracle/shipped_models.hpp"
 #include "rank/scenes.hpp"

@@ -1,3 +1,4 @@
+#include "crashrank/internal/rank/harm.hpp"
 #include "rank/scenes.hpp"
 
 #include <gtest/gtest.h>

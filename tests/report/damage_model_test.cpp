@@ -1,4 +1,4 @@
-#include "crashrank/report/damage_model.hpp"
+#include "crashrank/report/picture.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,4 @@
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/report/html_report.hpp"
 #include "crashrank/report/ranking.hpp"
 
 #include "told_ranking.hpp"

@@ -1,4 +1,4 @@
-#include "crashrank/report/html_report.hpp"
+#include "crashrank/report/ranking.hpp"
 
 #include "told_ranking.hpp"
 

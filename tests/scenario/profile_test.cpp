@@ -1,4 +1,4 @@
-#include "crashrank/scenario/profile.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 
 #include "rank/scenes.hpp"
 

@@ -1,8 +1,8 @@
 #include "crashrank/scenario/scenario_models.hpp"
 
-#include "crashrank/mesh/shell_properties.hpp"
+#include "crashrank/mesh/properties.hpp"
 #include "crashrank/model/make_model.hpp"
-#include "crashrank/model/model_file.hpp"
+#include "crashrank/model/model.hpp"
 #include "mesh/scratch_dir.hpp"
 #include "rank/scenes.hpp"
 

@@ -1,8 +1,8 @@
 // Meshes made to break a builder: no stack may overflow, no build may run away, every tree is
 // valid.
 
+#include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"
-#include "crashrank/tree/validate.hpp"
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "crashrank/tree/build.hpp"
+#include "crashrank/model/make_model.hpp"
 
-#include "crashrank/tree/validate.hpp"
 #include "tree/sample_meshes.hpp"
 
 #include <gtest/gtest.h>

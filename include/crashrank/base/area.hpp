@@ -15,16 +15,16 @@ namespace crashrank {
 /// last corner is joined with the first) and turn either way.
 struct Area {
   std::vector<Eigen::Vector2d> outer;               ///< its border, at least three corners
-  std::vector<std::vector<Eigen::Vector2d>> holes;  ///< what is cut out of it
+  std::vector<std::vector<Eigen::Vector2d>> holes;  ///< regions that are excluded
 };
 
-/// Whether the area is sound: rings of at least three corners, finite, of which no two edges of the
-/// area cross or touch but neighbours in their common corner. `place` names it in errors. Errors:
-/// bad_input naming the ring and its edges. O(corners²).
+/// Checks that an area is valid: rings of at least three finite corners, of which no two edges of
+/// the area cross or touch except neighbours in their common corner. `place` names it in errors.
+/// Errors: bad_input naming the ring and its edges. O(corners²).
 CRASHRANK_API Status check_area(const Area& area, const std::string& place);
 
-/// Whether a point lies in at least one of the areas. Of areas with a common edge each of its
-/// points belongs to exactly one. Points on a border count as in or out by rounding alone.
+/// Returns true if a point lies in at least one of the areas. Points of an edge that two areas
+/// share belong to exactly one of them. Points on a border count as inside or outside by rounding.
 /// O(corners).
 CRASHRANK_API bool holds(View<const Area> areas, const Eigen::Vector2d& point_m) noexcept;
 

@@ -3,7 +3,6 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/version.hpp"
 #include "crashrank/base/view.hpp"
-#include "crashrank/internal/base/products.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -19,8 +18,8 @@ struct Pose {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< the body's origin in the world, m
 };
 
-/// Carries a float32 vertex with the one operation order that every exact answer refers to:
-/// ((r00·x + r01·y) + r02·z) + tx, each operation rounded to double, never fused.
+/// Transforms a float32 vertex in the operation order that every exact answer refers to: ((r00·x +
+/// r01·y) + r02·z) + tx, each operation rounded to double, never fused.
 inline Eigen::Vector3d carry(const Pose& pose, const Eigen::Vector3f& vertex) {
   const double x = vertex.x();
   const double y = vertex.y();
@@ -33,26 +32,16 @@ inline Eigen::Vector3d carry(const Pose& pose, const Eigen::Vector3f& vertex) {
 }
 
 /// The pose that applies `inner` first, then `outer`.
-inline Pose compose(const Pose& outer, const Pose& inner) {
-  return {detail::multiply(outer.rotation, inner.rotation),
-          detail::rotate(outer.rotation, inner.translation) + outer.translation};
-}
+inline Pose compose(const Pose& outer, const Pose& inner);
 
 /// The pose that undoes this one: world to body.
-inline Pose inverse(const Pose& pose) {
-  const Eigen::Matrix3d back = pose.rotation.transpose();
-  return {back, -detail::rotate(back, pose.translation)};
-}
+inline Pose inverse(const Pose& pose);
 
 /// Pose of body B in the frame of body A, from both poses in the world.
-inline Pose relative(const Pose& a_in_world, const Pose& b_in_world) {
-  const Eigen::Matrix3d back = a_in_world.rotation.transpose();
-  return {detail::multiply(back, b_in_world.rotation),
-          detail::rotate(back, b_in_world.translation - a_in_world.translation)};
-}
+inline Pose relative(const Pose& a_in_world, const Pose& b_in_world);
 
-/// R = Rz(yaw)·Ry(pitch)·Rx(roll), then the translation. Metres and radians. Goes through libm:
-/// bits may differ between machines, which matrices never do.
+/// R = Rz(yaw)·Ry(pitch)·Rx(roll), then the translation. Metres and radians. Uses sine and cosine
+/// of libm: bits may differ between machines, those of matrices do not.
 inline Pose pose_from_angles(const Eigen::Vector3d& translation, double yaw, double pitch,
                              double roll) {
   const double cy = std::cos(yaw);
@@ -79,12 +68,12 @@ inline double rigidity_error(const Pose& pose) {
   return (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
 }
 
-/// Poses further than this from a rigid motion are refused as bad input.
+/// Poses that deviate more from a rigid motion are refused as bad input.
 inline constexpr double max_rigidity_error = 1e-6;
 
-/// Reads a row-major 4x4 matrix. Refuses numbers that are not finite, a last row other than
-/// 0 0 0 1, mirrors, and anything off a rigid motion by more than `max_rigidity_error`. The entries
-/// are kept as they are, bit for bit.
+/// Reads a row-major 4x4 matrix. Errors: bad_input for numbers that are not finite, a last row
+/// other than 0 0 0 1, mirrored axes, and a deviation from a rigid motion above
+/// `max_rigidity_error`. The entries keep their bits.
 inline Result<Pose> pose_from_matrix(View<const double> row_major) {
   if (row_major.size() != 16) {
     return make_error(ErrorCode::bad_input, "a pose needs 16 numbers, a row-major 4x4 matrix");
@@ -113,3 +102,5 @@ inline Result<Pose> pose_from_matrix(View<const double> row_major) {
 }
 
 }  // namespace crashrank
+
+#include "crashrank/internal/base/pose-inl.hpp"

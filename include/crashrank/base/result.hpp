@@ -7,9 +7,9 @@
 
 namespace crashrank {
 
-/// What kind of trouble an Error is. The CLI maps the kinds to its exit codes.
+/// The kind of an Error. The program maps kinds to exit codes.
 enum class ErrorCode {
-  usage,           ///< the caller asked for something that has no meaning (exit code 2)
+  usage,           ///< the arguments contradict each other or are out of range (exit code 2)
   bad_input,       ///< a file, mesh, scenario or pose is not acceptable (3)
   not_found,       ///< a file or program is missing or unreadable (3)
   limit_exceeded,  ///< input larger than a stated limit (3)
@@ -18,16 +18,16 @@ enum class ErrorCode {
   out_of_memory,   ///< an allocation failed; nothing was kept, and the call may be repeated (4)
 };
 
-/// A failure told so that a person can mend it: where, what, and what to do about it.
+/// A failure: where it occurred, what is wrong, and what the user can do about it.
 struct Error {
-  ErrorCode code = ErrorCode::internal;  ///< what kind of trouble
+  ErrorCode code = ErrorCode::internal;  ///< the kind of failure
   std::string file;                      ///< file concerned, empty where none is
   std::string place;   ///< element, line or key in the file, empty where the whole file is meant
   std::string reason;  ///< what is wrong, a clause without a full stop
-  std::string remedy;  ///< what to do about it, empty where nothing is known
+  std::string remedy;  ///< what the user can do about it, empty where nothing is known
 
-  /// "FILE: PLACE: REASON; REMEDY" on one line, absent members left out. Names inside are as they
-  /// came: escape before showing them in HTML or on a terminal.
+  /// "FILE: PLACE: REASON; REMEDY" on one line, absent members left out. Names in it are not
+  /// escaped: escape before showing it in HTML or on a terminal.
   std::string message() const {
     std::string text;
     for (const std::string* head : {&file, &place}) {
@@ -49,8 +49,8 @@ inline Error out_of_memory() noexcept {
   return Error{ErrorCode::out_of_memory, {}, {}, "out of memory", {}};
 }
 
-/// A value or an Error (std::expected comes with C++23 only). Reading the one that is not there is
-/// a broken invariant of the caller and asserts.
+/// A value or an Error (std::expected needs C++23). Reading the one that is absent is an error of
+/// the caller and asserts.
 template <class T> class [[nodiscard]] Result {
 public:
   /// Success.
@@ -63,12 +63,12 @@ public:
   /// The same.
   explicit operator bool() const noexcept { return ok(); }
 
-  /// The value, which has to be there.
+  /// The value, which has to be present.
   T& value() & {
     assert(ok());
     return *std::get_if<0>(&state_);
   }
-  /// The value, which has to be there.
+  /// The value, which has to be present.
   const T& value() const& {
     assert(ok());
     return *std::get_if<0>(&state_);
@@ -78,21 +78,21 @@ public:
     assert(ok());
     return std::move(*std::get_if<0>(&state_));
   }
-  /// The value, which has to be there.
+  /// The value, which has to be present.
   T& operator*() & { return value(); }
-  /// The value, which has to be there.
+  /// The value, which has to be present.
   const T& operator*() const& { return value(); }
-  /// The value, which has to be there.
+  /// The value, which has to be present.
   T* operator->() { return &value(); }
-  /// The value, which has to be there.
+  /// The value, which has to be present.
   const T* operator->() const { return &value(); }
 
-  /// The error, which has to be there.
+  /// The error, which has to be present.
   const Error& error() const& {
     assert(!ok());
     return *std::get_if<1>(&state_);
   }
-  /// The error, which has to be there.
+  /// The error, which has to be present.
   Error& error() & {
     assert(!ok());
     return *std::get_if<1>(&state_);

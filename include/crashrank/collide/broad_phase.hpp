@@ -12,15 +12,15 @@
 
 namespace crashrank {
 
-/// Finds which of many boxes overlap without looking at every pair: a balanced binary tree over the
-/// boxes, halved at the median of the longest axis. Bodies on a road line up along one axis or fill
-/// a plane; sorting along a single axis would leave n^1.5 pairs of such a grid to look at.
+/// Finds which of many boxes overlap without testing every pair: a balanced binary tree over the
+/// boxes, split at the median of the longest axis. Bodies on a road form a line or fill a plane;
+/// sorting along a single axis would leave n^1.5 pairs of such a grid to test.
 ///
 /// Boxes are closed: touching ones overlap. An empty box overlaps nothing; none may hold a NaN.
 /// A value; reading from many threads is safe.
 class BroadPhase {
 public:
-  /// Takes the boxes over. O(n log n); allocates only to grow beyond what it held before.
+  /// Copies the boxes and builds the tree. O(n log n); allocates only to grow beyond earlier sizes.
   void build(View<const Box> boxes) {
     boxes_.assign(boxes.begin(), boxes.end());
     order_.clear();
@@ -33,7 +33,7 @@ public:
     split_below_root();
   }
 
-  /// How many boxes it holds.
+  /// Number of boxes.
   std::size_t size() const noexcept { return boxes_.size(); }
 
   /// Calls `found(index)` once for every box that overlaps this one, in an order that only depends

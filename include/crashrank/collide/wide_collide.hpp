@@ -2,9 +2,8 @@
 
 #include "crashrank/base/pose.hpp"
 #include "crashrank/collide/collide.hpp"
-#include "crashrank/collide/pair.hpp"
 #include "crashrank/internal/base/export.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/model/model.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -20,8 +19,8 @@ struct WideTask {
   std::uint32_t b_lanes = 0;  ///< bit i: child i of B's node
 };
 
-/// What a query between models writes to besides its answer; one per thread. It grows with the
-/// deepest trees met and allocates nothing afterwards.
+/// Scratch memory of queries between models; one per thread. It grows with the depth of the trees
+/// and allocates nothing afterwards.
 struct ModelWorkspace {
   CollideWorkspace scalar;     ///< the scalar engine's
   std::vector<WideTask> wide;  ///< tasks still to be done

@@ -2,6 +2,7 @@
 
 #include "crashrank/base/box.hpp"
 #include "crashrank/base/pose.hpp"
+#include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/internal/base/export.hpp"
 #include "crashrank/motion/motion.hpp"
@@ -13,9 +14,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace crashrank {
+
+/// What the wheels of a vehicle do after its first contact.
+enum class AfterContact {
+  brakes,    ///< all undamaged wheels brake with one share of their grip, and steer as before
+  releases,  ///< undamaged wheels roll freely, and steer as before
+  locks,     ///< no wheel turns
+};
+
+/// The name in files: "brakes", "releases", "locks".
+CRASHRANK_API const char* after_contact_name(AfterContact after) noexcept;
+/// Reads a name; the error (usage) lists those there are.
+CRASHRANK_API Result<AfterContact> after_contact_from_name(const std::string& name);
 
 /// The model was checked up to this closing speed, m/s: faster contacts are marked in reports.
 inline constexpr double fastest_contact_mps = 140.0;
@@ -27,7 +41,7 @@ struct ContactBody {
   Velocity velocity;                 ///< of its origin; a body that nothing moves stands
 };
 
-/// Factors on what is not known exactly.
+/// Factors on parameters that are not known exactly.
 struct ContactVariant {
   double friction = 1.0;     ///< times the friction of the pair of surfaces
   double strength = 1.0;     ///< times the resistance of both bodies
@@ -42,7 +56,7 @@ struct ContactOptions {
   double speed_change = 0.05;  ///< share of the closing speed that a step may take
 };
 
-/// What a contact does to one body. World axes unless said otherwise.
+/// Result of a contact for one body. World axes unless stated otherwise.
 struct BodyContact {
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();   ///< on this body, N·s
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();  ///< of the centre of mass, m/s
@@ -79,7 +93,7 @@ struct ContactMotion {
   View<const ContactPoses> all() const noexcept { return {poses.data(), count}; }
 };
 
-/// What a contact does to two bodies.
+/// Result of a contact for both bodies.
 struct ContactOutcome {
   bool acts = false;  ///< the surfaces pressed against each other
   /// The surfaces still moved past each other with more than a fifth of the greatest speed at the
@@ -91,8 +105,8 @@ struct ContactOutcome {
   double dissipated_j = 0.0;  ///< kinetic energy of all before less after, never negative
   double friction_j = 0.0;    ///< part of it that sliding took
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< mean point of the force, world, m
-  BodyContact a;                                      ///< what it does to A
-  BodyContact b;                                      ///< and to B
+  BodyContact a;                                      ///< result for A
+  BodyContact b;                                      ///< result for B
   ContactMotion motion;                               ///< of both while they pressed
   std::uint32_t steps = 0;                            ///< of the integration
   std::uint64_t pieces = 0;  ///< pieces of outlines moved, over all steps: the work done
@@ -159,5 +173,36 @@ CRASHRANK_API ContactOutcome simulate_contact(const ContactBody& a, const Contac
                                               const ContactVariant& variant,
                                               ContactWorkspace& workspace,
                                               const ContactOptions& options = {});
+
+/// Principal direction of force: where a horizontal impulse on a body comes from, seen from above,
+/// degrees clockwise from the body's forward axis, [0, 360). 0 without a horizontal impulse.
+CRASHRANK_API double pdof_deg(const Eigen::Vector3d& impulse_on_body,
+                              const Eigen::Vector3d& forward);
+
+/// Clock direction of a PDOF: 1 to 12 in steps of 30 degrees, each reaching 15 to either side, the
+/// lower edge included.
+CRASHRANK_API int clock_of(double pdof_deg);
+
+/// How far damage reaches in from the face of the body that it is nearest to, counted in the body's
+/// size that way: crush depth as it is measured from outside, m. 0 without damage.
+CRASHRANK_API double damage_depth_m(const Box& region, const Box& body);
+
+/// Where and how a body is deformed, for `cdc_code`; body coordinates, m.
+struct Deformation {
+  double pdof_deg = 0.0;   ///< degrees clockwise from ahead
+  Box region;              ///< of the moved surface
+  Box body;                ///< bounds of the body
+  double depth_m = 0.0;    ///< m
+  bool sideswipe = false;  ///< along the side rather than into it
+};
+
+/// Seven characters after SAE J224: clock direction (01 to 12), area (F, B, L, R, T), place across
+/// or along it (L, C, R or F, P, B, their unions Y and Z, D for all), place in height (A all, E
+/// below the belt, H above the frame, M between, G above the belt, L below the frame), kind (W
+/// wide, N narrower than 0.41 m, S sideswipe) and extent zone 1 to 9. Belt and frame stand at 0.62
+/// and 0.35 of the height; extent zones are ninths of half the length (front, rear), of the width
+/// (sides) or of the height, this project's reading of a standard whose zones follow each car's
+/// windows. Empty without a region.
+CRASHRANK_API std::string cdc_code(const Deformation& deformation);
 
 }  // namespace crashrank

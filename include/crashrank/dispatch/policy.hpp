@@ -11,8 +11,8 @@
 
 namespace crashrank {
 
-/// The schemes by which a job finds its core: four of Wiseman & Grinberg 2016, section 4, and one
-/// of our own.
+/// Policies that assign a job to a core: four of Wiseman & Grinberg 2016, section 4, and one of
+/// this project.
 enum class Policy {
   best_match,       ///< the core that holds most of the job's parts
   random,           ///< any unclaimed core
@@ -27,7 +27,7 @@ enum class Policy {
 CRASHRANK_API View<const Policy> all_policies() noexcept;
 /// "best-match", "random", "lowest", "best-match-load", "late-match".
 CRASHRANK_API const char* policy_name(Policy policy) noexcept;
-/// Errors: usage, naming the ones there are.
+/// Errors: usage, listing the names.
 CRASHRANK_API Result<Policy> policy_from_name(const std::string& name);
 
 /// A job that has no core yet. Bit c of a word stands for core c.
@@ -67,17 +67,17 @@ struct Placement {
   bool is_unclaimed(std::uint32_t core) const noexcept { return ((unclaimed >> core) & 1U) != 0; }
 };
 
-/// Decides where jobs go. Called by the main thread once per job, so an indirect call is cheap
-/// against the rest; keep the members below a microsecond and free of allocation.
+/// Assigns jobs to cores. The main thread calls it once per job, so that the cost of an indirect
+/// call is small; members should take less than a microsecond and allocate nothing.
 class CRASHRANK_API PlacementPolicy {
 public:
   /// A job and its core.
   struct Choice {
     std::uint32_t job = 0;   ///< index in `Placement::jobs`
-    std::uint32_t core = 0;  ///< who does it
+    std::uint32_t core = 0;  ///< the core that runs it
   };
 
-  virtual ~PlacementPolicy() = default;  ///< Ends it.
+  virtual ~PlacementPolicy() = default;  ///< Destroys it.
   /// Before the first job of a dispatch.
   virtual void begin(std::uint32_t cores, std::uint64_t seed) {
     static_cast<void>(cores);
@@ -85,29 +85,29 @@ public:
   }
   /// Jobs that the main thread may find ahead of placing them; 1: each is placed when found.
   virtual std::uint32_t window() const noexcept { return 1; }
-  /// Triangles that are not worth cutting further: a node of no more is a part wherever it stands
-  /// above the distribution depth. 0: all parts lie at that depth, or are leaves above it.
+  /// Number of triangles below which nodes are not divided: a node of no more is a part at any
+  /// depth above the distribution depth. 0: all parts lie at that depth, or are leaves above it.
   virtual std::uint32_t whole_triangles() const noexcept { return 0; }
-  /// Whether the calling thread, which holds every part, may work off jobs where it would wait.
+  /// True if the calling thread, which holds every part, may run jobs where it would wait.
   virtual bool caller_works() const noexcept { return false; }
-  /// Whether to place a job now, though more can be found and the window has room.
+  /// True if a job is to be placed now although more can be found and the window has room.
   virtual bool in_haste(const Placement& at) const noexcept {
     static_cast<void>(at);
     return false;
   }
   /// A job, and a core whose bit is set in `at.unclaimed`.
   virtual Choice choose(const Placement& at) noexcept = 0;
-  /// Whether the calling thread had better work off a job that waits than place it.
+  /// True if the calling thread should run a waiting job rather than place it.
   virtual bool caller_takes(const Placement& at) const noexcept {
     static_cast<void>(at);
     return false;
   }
-  /// Which job the calling thread works off: index in `Placement::jobs`.
+  /// Returns the job that the calling thread runs: index in `Placement::jobs`.
   virtual std::uint32_t choose_for_caller(const Placement& at) const noexcept {
     static_cast<void>(at);
     return 0;
   }
-  /// Whether to send this core's batch although it is not full.
+  /// True if this core's batch is to be sent although it is not full.
   virtual bool send_early(const Placement& at, std::uint32_t core) const noexcept {
     static_cast<void>(at);
     static_cast<void>(core);
@@ -115,9 +115,9 @@ public:
   }
 
 protected:
-  PlacementPolicy() = default;                                   ///< For those who derive from it.
-  PlacementPolicy(const PlacementPolicy&) = default;             ///< For those who derive from it.
-  PlacementPolicy& operator=(const PlacementPolicy&) = default;  ///< For those who derive from it.
+  PlacementPolicy() = default;                                   ///< For derived classes.
+  PlacementPolicy(const PlacementPolicy&) = default;             ///< For derived classes.
+  PlacementPolicy& operator=(const PlacementPolicy&) = default;  ///< For derived classes.
 };
 
 /// Makes one of the policies above.

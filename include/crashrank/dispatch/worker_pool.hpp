@@ -11,24 +11,24 @@
 
 namespace crashrank {
 
-/// One bit per worker in the words that say who holds what.
+/// Limit of the bit masks that have one bit per worker.
 inline constexpr std::uint32_t max_workers = 64;
 
-/// How many threads, and how they wait.
+/// Number of threads, and how they wait.
 struct PoolOptions {
   std::uint32_t workers = 4;  ///< threads beside the caller's, 0 to `max_workers`
   bool pinned = false;        ///< worker i stays on processor i modulo their number
-  /// How long an idle thread looks for work before it sleeps, µs, at most 1000. Negative: 20 where
-  /// there are more processors than workers, 0 elsewhere, where spinning would hold up a worker.
+  /// Time for which an idle thread polls before it sleeps, µs, at most 1000. Negative: 20 where
+  /// there are more processors than workers, 0 elsewhere, where polling would delay a worker.
   std::int32_t spin_us = -1;
 };
 
-/// Threads that are started once and fed by one other thread, the owner, which alone calls the
-/// members. A worker takes tasks in the order posted, one running and one waiting at most; idle
+/// Threads that are started once and get tasks from one other thread, the owner, which alone calls
+/// the members. A worker takes tasks in the order posted, one running and one waiting at most; idle
 /// workers and a waiting owner sleep after a short spin. Nothing is allocated after the start.
 class CRASHRANK_API WorkerPool {
 public:
-  /// What a worker runs. A task that throws ends the thread's task, not the thread: see `failure`.
+  /// A function and its argument. An exception ends the task, not the thread: see `take_failure`.
   struct Task {
     /// Called with `context` and the number of the worker.
     void (*run)(void* context, std::uint32_t worker) = nullptr;
@@ -40,26 +40,26 @@ public:
 
   /// Moves; the threads go along.
   WorkerPool(WorkerPool&& other) noexcept;
-  WorkerPool& operator=(WorkerPool&& other) noexcept;  ///< Moves; ends the threads it had.
-  /// Ends the threads after the task each has in hand; tasks that wait are dropped.
+  WorkerPool& operator=(WorkerPool&& other) noexcept;  ///< Moves; ends the threads of the target.
+  /// Ends the threads after the tasks they run; waiting tasks are dropped.
   ~WorkerPool();
 
   /// Number of workers.
   std::uint32_t size() const noexcept;
-  /// How long idle threads spin before they sleep, s.
+  /// Time for which idle threads poll before they sleep, s.
   double spin_seconds() const noexcept;
-  /// Sets that until the next call, s, at most a millisecond: for a stretch of work in which every
-  /// thread has a processor, so that none need be woken. Negative: back to what it was at the
+  /// Sets that time until the next call, s, at most a millisecond: for work during which
+  /// every thread has a processor, so that none has to be woken. Negative: the value at the
   /// start.
   void set_spin(double seconds) noexcept;
-  /// Wakes a worker that sleeps, so that it spins when its task comes.
+  /// Wakes a sleeping worker, so that it polls when its task arrives.
   void rouse(std::uint32_t worker) noexcept;
-  /// Tasks posted to a worker and neither finished nor taken back: 0, 1 or 2.
+  /// Tasks posted to a worker and neither finished nor recalled: 0, 1 or 2.
   std::uint32_t outstanding(std::uint32_t worker) const noexcept;
-  /// Hands a task over; `outstanding(worker)` has to be below 2.
+  /// Posts a task; `outstanding(worker)` has to be below 2.
   void post(std::uint32_t worker, Task task) noexcept;
-  /// Takes back the oldest task that the worker has not begun, for the owner to run; false where
-  /// there is none.
+  /// Removes the oldest task that the worker has not begun, for the owner to run; false if there is
+  /// none.
   bool recall(std::uint32_t worker, Task& task) noexcept;
   /// Sleeps until a task has finished that had not when `seen` was taken from `finished_tasks()`.
   void wait_beyond(std::uint32_t seen) noexcept;
@@ -67,13 +67,13 @@ public:
   std::uint32_t finished_tasks() const noexcept;
   /// Waits until nothing is outstanding.
   void wait_all() noexcept;
-  /// The same until that time at the latest, whatever the workers are at; true when nothing is
-  /// outstanding. Workers go on with what they have in hand.
+  /// The same until that time at the latest; true when nothing is outstanding. Workers continue the
+  /// tasks they run.
   bool wait_all_until(std::chrono::steady_clock::time_point until) noexcept;
-  /// True after a task threw, until `take_failure`. May be asked at any time, also by workers.
+  /// True after a task threw, until `take_failure`. Any thread may call it at any time.
   bool failed() const noexcept;
-  /// What the first task that threw said, as an Error of kind internal; clears it. Call after
-  /// `wait_all`; success when nothing threw.
+  /// Returns the first exception of a task as an Error of kind internal, and clears it. Call after
+  /// `wait_all`; success if no task threw.
   Status take_failure();
 
   /// Runs `body(index, worker)` once for every index below `count`, on all workers; returns when

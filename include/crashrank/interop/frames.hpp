@@ -1,7 +1,6 @@
 #pragma once
 
 #include "crashrank/base/pose.hpp"
-#include "crashrank/internal/interop/pi.hpp"
 
 #include <Eigen/Core>
 
@@ -11,7 +10,7 @@ namespace crashrank {
 
 // From other programs' frames to the library's and back: x forward, y left, z up, right-handed
 // (ISO 8855, REP-103). Functions without state, safe from any thread, a few ns each; no errors.
-// Axes of mesh files are the importer's affair: ImportTransform.
+// ImportTransform converts the axes of mesh files.
 
 /// Angles of `pose_from_angles`, rad: R = Rz(yaw)·Ry(pitch)·Rx(roll). Yaw to the left, nose down
 /// and left side up are positive.
@@ -53,7 +52,7 @@ inline Pose flip_left_handed(const Pose& pose) {
   return flipped;
 }
 
-/// A place and attitude as CARLA's Transform tells them: m and degrees, left-handed. Yaw to the
+/// Position and attitude of a CARLA Transform: m and degrees, left-handed. Yaw to the
 /// right, nose up and right side down are positive. CARLA's vehicles have their origin elsewhere
 /// than the rear axle: move the model (ImportTransform::origin_m) or the pose.
 struct CarlaTransform {
@@ -66,28 +65,13 @@ struct CarlaTransform {
 };
 
 /// CARLA's yaw rates are degrees to the right; this library's radians to the left.
-inline double yaw_rate_from_carla(double right_dps) { return -right_dps * (detail::pi / 180.0); }
+inline double yaw_rate_from_carla(double right_dps);
 
 /// The pose of a CARLA transform, body to world, in this library's frame.
-inline Pose pose_from_carla(const CarlaTransform& carla) {
-  constexpr double radians = detail::pi / 180.0;
-  return pose_from_angles(flip_left_handed(Eigen::Vector3d(carla.x_m, carla.y_m, carla.z_m)),
-                          -carla.yaw_deg * radians, -carla.pitch_deg * radians,
-                          carla.roll_deg * radians);
-}
+inline Pose pose_from_carla(const CarlaTransform& carla);
 
 /// The CARLA transform of a rigid pose.
-inline CarlaTransform carla_from_pose(const Pose& pose) {
-  constexpr double degrees = 180.0 / detail::pi;
-  const Angles angles = angles_of(pose);
-  const Eigen::Vector3d at = flip_left_handed(pose.translation);
-  return {at.x(),
-          at.y(),
-          at.z(),
-          -angles.pitch * degrees,
-          -angles.yaw * degrees,
-          angles.roll * degrees};
-}
+inline CarlaTransform carla_from_pose(const Pose& pose);
 
 /// Between x forward, y right, z down (aircraft, SAE J670's older frame; as a world: north, east,
 /// down) and this library, whose world is then north, west, up. Both ways, exact; for angular
@@ -112,3 +96,5 @@ inline Eigen::Vector3d from_optical(const Eigen::Vector3d& v) { return {v.z(), -
 inline Eigen::Vector3d to_optical(const Eigen::Vector3d& v) { return {-v.y(), -v.z(), v.x()}; }
 
 }  // namespace crashrank
+
+#include "crashrank/internal/interop/frames-inl.hpp"

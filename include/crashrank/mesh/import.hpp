@@ -2,8 +2,7 @@
 
 #include "crashrank/base/result.hpp"
 #include "crashrank/internal/base/export.hpp"
-#include "crashrank/mesh/quality.hpp"
-#include "crashrank/mesh/transform.hpp"
+#include "crashrank/mesh/properties.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <cstddef>
@@ -12,7 +11,7 @@
 
 namespace crashrank {
 
-/// Bounds on what a stranger's file may cost.
+/// Limits on the size and cost of a file that is not trusted.
 struct ImportLimits {
   std::size_t file_bytes = std::size_t{512} << 20;    ///< of the mesh, and of each file it names
   std::size_t memory_bytes = std::size_t{900} << 20;  ///< address space of the importing process
@@ -27,7 +26,7 @@ struct ImportLimits {
 /// How a file is read.
 struct ImportOptions {
   ImportTransform transform;  ///< from file to body coordinates
-  ImportLimits limits;        ///< what is refused
+  ImportLimits limits;        ///< limits above which a file is refused
   std::string importer;  ///< path of the crashrank-import program; empty: searched as stated below
   /// Path of a header of the installation that the caller was compiled against. A static library
   /// has no place of its own from which it could find the importer, but its headers have: this
@@ -35,15 +34,15 @@ struct ImportOptions {
   std::string header = __FILE__;
 };
 
-/// A mesh with what had to be said about its file.
+/// A mesh and the warnings about its file.
 struct ImportedMesh {
   TriangleMesh mesh;                  ///< the surface
   MeshQuality quality;                ///< what is wrong with it
-  std::size_t dropped_triangles = 0;  ///< faces that named a vertex that is not there
+  std::size_t dropped_triangles = 0;  ///< faces with a vertex index out of range
   std::vector<std::string> warnings;  ///< the file's and the mesh's, one sentence each
 };
 
-/// Reads OBJ, STL, PLY, OFF, glTF/GLB, Collada (.dae), FBX, 3DS or AC3D (.ac), told by the file
+/// Reads OBJ, STL, PLY, OFF, glTF/GLB, Collada (.dae), FBX, 3DS or AC3D (.ac), selected by the file
 /// name's extension.
 ///
 /// Axes stay as the file has them (Collada's up_axis is not applied: say `up`). Lengths are metres
@@ -53,12 +52,12 @@ struct ImportedMesh {
 /// Triangles come in the order nodes depth first, the node's meshes, their faces; polygons are cut
 /// into triangles in place; points and lines are left out; degenerate and duplicate triangles keep
 /// their places. Vertices are those that triangles use, equal positions merged. Each mesh of a node
-/// is a part, named by node, else mesh, else material, else file; a name met again is told apart
-/// by material or mesh where they differ ("body/glass") and by a number otherwise ("wheel.2").
-/// Animation, skinning and textures are not looked at.
+/// is a part, named by node, else mesh, else material, else file; a repeated name is extended by
+/// material or mesh where they differ ("body/glass") and by a number otherwise ("wheel.2").
+/// Animation, skinning and textures are ignored.
 ///
 /// The parser runs in a process of its own, with the limits above, and opens no file outside the
-/// mesh's folder; what comes back is checked before it is believed. That program, crashrank-import,
+/// mesh's folder; its reply is checked before use. That program, crashrank-import,
 /// is `options.importer`, else the environment's CRASHRANK_IMPORTER, else the first that exists of:
 /// beside the running executable, in the installation of that executable, of the shared library,
 /// of `options.header`, and at the prefix that crashrank was configured for.

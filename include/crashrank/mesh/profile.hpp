@@ -36,9 +36,9 @@ inline constexpr std::size_t max_profile_pieces = 2'000'000;
 /// Largest coordinate of a mesh with a profile, each way, m.
 inline constexpr double max_profile_coordinate_m = 1e6;
 
-/// A body's outlines seen from above, one for each height band: what a crash simulation sees of a
-/// mesh. Made once a model; holes in the surface up to two cells (4 cm on bodies over 5 m, less on
-/// small ones) are closed, what lies inside is left out.
+/// A body's outlines seen from above, one for each height band: the crash simulation reads these
+/// instead of the mesh. Made once a model; holes in the surface up to two cells (4 cm on bodies
+/// over 5 m, less on small ones) are closed, what lies inside is left out.
 struct Profile {
   std::vector<OutlinePiece> pieces;                      ///< by rising band
   std::array<std::uint32_t, profile_bands + 1> first{};  ///< of each band, then their number

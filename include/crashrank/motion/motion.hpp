@@ -96,10 +96,10 @@ public:
   Motion(const TurnMotion& turn);
   /// Drives along a circle or a line.
   Motion(const ArcMotion& arc);
-  /// Flies freely.
+  /// Moves freely.
   Motion(const FreeMotion& free);
 
-  /// Stands there for good.
+  /// Rests at a pose.
   static Motion at_rest(const Pose& pose);
 
   /// Poses at strictly increasing times, at least one. Between two of them the origin moves on a
@@ -108,23 +108,23 @@ public:
   /// out of order, not finite, not rigid, or over 1e4 m/s or rad/s away from the one before.
   static Result<Motion> timed(View<const TimedPose> poses);
 
-  /// Becomes such a motion, in the memory that an earlier one was kept in: where it was a timed one
-  /// of as many poses, nothing is allocated. After an error it rests.
+  /// Assigns such a motion and reuses memory: if it was a timed motion of as many poses, nothing is
+  /// allocated. After an error it rests.
   Status become_timed(View<const TimedPose> poses);
 
-  /// Whether it is a timed motion, the one kind whose copies take memory.
+  /// True for a timed motion, the only kind whose copies allocate.
   bool holds_poses() const noexcept { return std::holds_alternative<Timed>(kind_); }
 
-  /// False where a number that it was made from is NaN or infinite (a top speed may be infinite):
-  /// such a body would be nowhere.
+  /// False if a number that it was made from is NaN or infinite (a top speed may be infinite): it
+  /// then has no pose.
   bool is_finite() const noexcept;
 
-  /// Changes it to the motion of a body whose state is off by that much; an error of 0 changes no
-  /// bit. The start, or all poses about the first one, is moved and turned. A body that moves is
-  /// faster by the error of its speed, and its acceleration, steering or yaw rate stays: a negative
-  /// error of more than its speed stops it, none reverses it, and what stands stays. Timed poses
-  /// shift along their headings, stretch by stretch. Errors: none; numbers that are not finite make
-  /// a motion that is not. Linear in the poses; allocates nothing.
+  /// Changes it to the motion of a body whose state has that error; an error of 0 changes no bit.
+  /// The start, or all poses about the first one, is moved and turned. A body that moves is faster
+  /// by the error of its speed, and its acceleration, steering or yaw rate stays: a negative error
+  /// of more than its speed stops it, none reverses it, and a standing body stays at rest. Timed
+  /// poses shift along their headings, stretch by stretch. Errors: none; numbers that are not
+  /// finite make a motion that is not. Linear in the poses; allocates nothing.
   void displace(const StateError& error);
 
   /// Body to world at time t. About 50 ns.
@@ -133,7 +133,7 @@ public:
   /// Velocity at time t, world axes; at a kink the one that follows.
   Velocity velocity_at(double t_s) const;
 
-  /// Both of the above for the price of little more than one.
+  /// Both of the above at little more than the cost of one.
   void state_at(double t_s, Pose& pose, Velocity& velocity) const;
 
   /// Bounds over [from, until].

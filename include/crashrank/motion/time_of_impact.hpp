@@ -11,28 +11,28 @@
 
 namespace crashrank {
 
-/// What two moving bodies do to each other within a stretch of time.
+/// Relation of two moving bodies within an interval of time.
 enum class ImpactState {
   none,         ///< never closer than the tolerance
   grazing,      ///< closer than the tolerance, never touching
   contact,      ///< apart at the start, then touching
   overlapping,  ///< surfaces intersect at the start
   contained,    ///< at the start one lies inside the other, or a part of it does; no surfaces touch
-  undecided,    ///< the step limit was reached first; nothing happens before `time_s`
+  undecided,    ///< the step limit was reached first; no contact before `time_s`
 };
 
-/// How first contact is looked for.
+/// How first contact is searched.
 struct ImpactOptions {
-  double tolerance_m = 1e-4;  ///< surfaces at most this far apart count as met
-  /// Most box pairs and triangle pairs looked at before the answer is `undecided`.
+  double tolerance_m = 1e-4;  ///< surfaces at most this far apart count as in contact
+  /// Number of box pairs and triangle pairs tested before the answer is `undecided`.
   std::uint64_t max_steps = 5'000'000;
   /// The caller knows that the bodies are apart at the start (it asked `initial_state` before, for
   /// instance once for all candidates of one scene): the start is not tested again.
   bool start_is_apart = false;
-  /// Asked every few dozen steps, some 10 µs, with `stop_context`; once it says true the answer
-  /// is `undecided`. May be null.
+  /// Called every few dozen steps, about 10 µs, with `stop_context`; once it returns true the
+  /// answer is `undecided`. May be null.
   bool (*stop)(void* stop_context) = nullptr;
-  void* stop_context = nullptr;  ///< handed to `stop`
+  void* stop_context = nullptr;  ///< argument of `stop`
 };
 
 /// Work done by a query.
@@ -52,7 +52,7 @@ struct ImpactWork {
 
 /// The answer. Points and normal in world coordinates at `time_s`.
 struct Impact {
-  ImpactState state = ImpactState::none;  ///< how the bodies meet
+  ImpactState state = ImpactState::none;  ///< relation of the bodies
 
   /// contact: the first time at which the surfaces are within the tolerance, touching follows while
   ///   they stay so (when they came that close and parted once or more before, see `grazed`, it is
@@ -73,21 +73,21 @@ struct Impact {
 
   ImpactWork work;  ///< done for it
 
-  /// The bodies touch or overlap: something to be ranked. A grazing pass is left to the caller.
+  /// True if the bodies touch or overlap, false for a grazing pass.
   bool hit() const noexcept {
     return state == ImpactState::contact || state == ImpactState::overlapping ||
            state == ImpactState::contained;
   }
 };
 
-/// Memory that queries reuse: one for each thread that asks. It grows to what the deepest trees
-/// asked about need (a stack of one entry a level of either tree, and poses at a few hundred
-/// times); after that no query allocates.
+/// Memory that queries reuse: one for each thread. It grows to the size that the deepest trees need
+/// (a stack of one entry a level of either tree, and poses at a few hundred times); after that no
+/// query allocates.
 class CRASHRANK_API ImpactWorkspace {
 public:
   /// Empty; grows with its first uses.
   ImpactWorkspace();
-  /// Gives its memory back.
+  /// Frees its memory.
   ~ImpactWorkspace();
   /// Moves.
   ImpactWorkspace(ImpactWorkspace&&) noexcept;
@@ -106,20 +106,20 @@ private:
   std::unique_ptr<State> state_;
 };
 
-/// First contact of two moving bodies within [from, until], found without stepping over any: what
-/// is told to be free of contact has been proved so for every instant, not sampled. Each pair of
-/// boxes is carried forward in time by as much as its distance, its closing speed along a
-/// separating direction and a bound on the accelerations prove it apart; pairs that may meet are
-/// opened, soonest first, and pairs proved apart until the best contact known are dropped, so one
-/// descent through both trees answers the whole stretch of time (in place of the repeated distance
-/// queries of conservative advancement; Mirtich 1996; Tang, Kim, Manocha 2009 "C2A").
-/// Rounding is covered by margins as long as coordinates stay below 1e6 m.
-/// Empty trees meet nothing. Times in s, from <= until, both >= 0.
+/// First contact of two moving bodies within [from, until], found without stepping over any: an
+/// interval that is reported as free of contact is proved so at every instant, not sampled. Each
+/// pair of boxes is advanced in time for as long as its distance, its closing speed along a
+/// separating direction and a bound on the accelerations prove it apart; pairs that may touch are
+/// opened, earliest first, and pairs proved apart until the best contact known are dropped, so that
+/// one descent through both trees covers the whole interval (in place of the repeated distance
+/// queries of conservative advancement; Mirtich 1996; Tang, Kim, Manocha 2009 "C2A"). Rounding is
+/// covered by margins as long as coordinates stay below 1e6 m. Empty trees touch nothing. Times in
+/// s, from <= until, both >= 0.
 CRASHRANK_API Impact time_of_impact(const AabbTree& a, const Motion& motion_a, const AabbTree& b,
                                     const Motion& motion_b, double from_s, double until_s,
                                     ImpactWorkspace& workspace, const ImpactOptions& options = {});
 
-/// What two bodies at rest are to each other: `overlapping`, `contained`, `grazing` (closer than
+/// Relation of two bodies at rest: `overlapping`, `contained`, `grazing` (closer than
 /// the tolerance) or `none`. Points and normal in the frame of the two poses.
 CRASHRANK_API Impact initial_state(const AabbTree& a, const Pose& a_in_world, const AabbTree& b,
                                    const Pose& b_in_world, ImpactWorkspace& workspace,

@@ -8,13 +8,11 @@
 #include "crashrank/dispatch/dispatcher.hpp"
 #include "crashrank/dispatch/policy.hpp"
 #include "crashrank/internal/base/export.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
-#include "crashrank/rank/harm.hpp"
 #include "crashrank/scenario/candidate.hpp"
-#include "crashrank/scenario/demand.hpp"
-#include "crashrank/scenario/measure.hpp"
+#include "crashrank/scenario/harm_options.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <Eigen/Core>
 
@@ -30,9 +28,9 @@ namespace crashrank {
 /// Most futures that are drawn.
 inline constexpr std::size_t max_sampled_futures = 10'000;
 
-/// What becomes of candidates that the vehicle cannot follow.
+/// Treatment of candidates that the vehicle cannot follow.
 enum class Infeasible {
-  demote,  ///< they stand behind all feasible ones
+  demote,  ///< they rank behind all feasible ones
   /// They are left out of a complete ranking, unless there is no feasible one; else as `demote`.
   drop,
   keep,  ///< they are ranked like all others
@@ -40,7 +38,7 @@ enum class Infeasible {
 
 /// The name on the command line: "demote", "drop", "keep".
 CRASHRANK_API const char* infeasible_name(Infeasible infeasible) noexcept;
-/// Reads a name; the error (usage) lists those there are.
+/// Errors: usage, listing the names.
 CRASHRANK_API Result<Infeasible> infeasible_from_name(const std::string& name);
 
 /// How candidates are ranked.
@@ -57,7 +55,7 @@ struct RankOptions {
   /// Futures that are drawn where combinations of predictions are too many or states have errors, 1
   /// to `max_sampled_futures`.
   std::size_t sampled_futures = 64;
-  Infeasible infeasible = Infeasible::demote;  ///< what becomes of what the ego cannot follow
+  Infeasible infeasible = Infeasible::demote;  ///< of candidates that the ego cannot follow
   ImpactOptions impact;                        ///< `start_is_apart` is decided inside
   /// Called before each simulation and after each candidate with the number of candidates evaluated
   /// and of all, by all workers, also concurrently; must return within microseconds and not throw.
@@ -66,7 +64,7 @@ struct RankOptions {
   std::function<bool(std::size_t evaluated, std::size_t candidates)> on_progress;
 };
 
-/// What a crash does to one body.
+/// Damage of a crash to one body.
 struct BodyDamage {
   /// Triangles that intersect the other body, or pass through its surface, while the two move as
   /// the simulated contact moves them, in mesh order, rising: see `rank`. A body that lies inside
@@ -74,18 +72,18 @@ struct BodyDamage {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> parts;  ///< indices of the mesh's parts that those belong to, rising
   double area_m2 = 0.0;              ///< of those triangles
-  Box region;  ///< where the surfaces meet, in body coordinates; empty when they do not
+  Box region;  ///< where the surfaces intersect, in body coordinates; empty if they do not
   Pose pose;   ///< body to world at first contact
 };
 
-/// Bounds on a score. Where the score is known: what the ranges of HarmOptions leave open of it
-/// under the chosen risk model (harm, delta-v, energy), equal for the other measures.
+/// Bounds on a score. If the score is known: its range over the ranges of HarmOptions under the
+/// chosen risk model (harm, delta-v, energy); both ends equal for the other measures.
 struct ScoreInterval {
   double lowest = 0.0;   ///< the score is not below
   double highest = 0.0;  ///< nor above
 };
 
-/// What a crash does to one body. Velocities in its own axes before the crash.
+/// Mechanical result of a crash for one body. Velocities in its own axes before the crash.
 struct BodyOutcome {
   double delta_v_mps = 0.0;            ///< magnitude
   double delta_v_x_mps = 0.0;          ///< forward, m/s
@@ -105,16 +103,16 @@ struct BodyOutcome {
   std::string cdc;              ///< collision deformation classification, SAE J224
 };
 
-/// What a contact does to its two bodies, both as the contacts before left them.
+/// Result of a contact for its two bodies, each in the state that earlier contacts left it in.
 struct ContactSeverity {
   /// Harm was evaluated (measures that need it). The changes of velocity are the simulation's in
   /// any case: the same numbers under every measure.
   bool simulated = false;
-  bool slides = false;        ///< past each other rather than into
+  bool slides = false;        ///< the surfaces slide past each other
   double duration_s = 0.0;    ///< of the crush phase, s
   double dissipated_j = 0.0;  ///< turned into damage and heat, J
-  BodyOutcome ego;            ///< what it does to the ego
-  BodyOutcome other;          ///< and to the other
+  BodyOutcome ego;            ///< result for the ego
+  BodyOutcome other;          ///< result for the other
   double harm = 0.0;          ///< persons, as weighted
 };
 
@@ -124,16 +122,16 @@ struct ContactSeverity {
 struct Contact {
   /// Index into Scenario::actors; of joined fixed bodies the one touched first, later the one hit.
   std::size_t actor = 0;
-  ImpactState state = ImpactState::contact;  ///< how the bodies meet
+  ImpactState state = ImpactState::contact;  ///< relation of the bodies
   double time_of_impact_s = 0.0;             ///< from the decision, s
   double gap_m = 0.0;                        ///< between the surfaces then, at most the tolerance
-  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< where they meet, world, m
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< point of contact, world, m
   /// Unit, from the ego towards the other; zero for a body that lies inside another.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d closing = Eigen::Vector3d::Zero();  ///< ego's velocity less the other's there
   /// Its length.
   double closing_speed_mps = 0.0;
-  /// Its share along the normal: what brings the surfaces together. Depends on the facet met first.
+  /// Its component along the normal, m/s. Depends on the facet that is touched first.
   double normal_speed_mps = 0.0;
   /// ½·m₁m₂/(m₁+m₂)·closing_speed²: all that the crash could turn into damage if the bodies stuck
   /// together and their velocities passed through the common centre of mass.
@@ -145,10 +143,10 @@ struct Contact {
   /// contact, in the other body's frame, m. Both bodies' crush together in a square hit; more where
   /// they slide past each other.
   double crush_m = 0.0;
-  /// What it damages of the ego, by fixed bodies that adjoin `actor` and that the ego presses on in
-  /// the same contact included.
+  /// Damage to the ego, including that by fixed bodies that adjoin `actor` and that the ego presses
+  /// on in the same contact.
   BodyDamage ego;
-  BodyDamage other;          ///< and of `actor`
+  BodyDamage other;          ///< damage to `actor`
   ContactSeverity severity;  ///< the crash that begins with it
   std::size_t event = 0;     ///< number of the ego's event that it belongs to, from 1; 0: no force
 };
@@ -200,21 +198,21 @@ struct FutureSummary {
   bool has_state_errors = false;  ///< drawn with errors of positions, headings and speeds
 };
 
-/// What a candidate leads to in futures that do not differ for it: no body that its crash comes
-/// within 5 m of moves otherwise.
+/// Outcome of a candidate in futures that do not differ for it: all bodies within 5 m of its crash
+/// move alike in them.
 struct FutureOutcome {
   double probability = 0.0;        ///< of these futures together; 0: the likeliest, beside a sample
   std::size_t futures = 1;         ///< how many
   bool is_likeliest = false;       ///< the likeliest future is one of them
   double score = 0.0;              ///< in the measure's unit
-  bool collides = false;           ///< the ego touches somebody
-  std::size_t actor = 0;           ///< where it collides: whom first, index into Scenario::actors
+  bool collides = false;           ///< the ego has a contact
+  std::size_t actor = 0;           ///< if it collides: the first body, index into Scenario::actors
   double time_of_impact_s = 0.0;   ///< from the decision
-  double closing_speed_mps = 0.0;  ///< of the points that meet first
+  double closing_speed_mps = 0.0;  ///< of the points that touch first
   std::size_t contacts = 0;        ///< with a force, those between others included
 };
 
-/// What those in or on one body risk.
+/// Risk of the people in or on one body.
 struct PersonRisk {
   std::size_t body = ego_body;  ///< `ego_body`, or an index into Scenario::actors
   double persons = 0.0;         ///< in or on it
@@ -223,7 +221,7 @@ struct PersonRisk {
   double probability = 0.0;
 };
 
-/// A plan that takes a wheel off the road.
+/// The first moment at which a wheel leaves the road.
 struct RoadLeaving {
   double time_s = 0.0;                                ///< from the decision
   double speed_mps = 0.0;                             ///< of the ego then
@@ -237,27 +235,27 @@ struct HorizonState {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< of the body's origin, world, m
 };
 
-/// Nobody further away is looked for, m.
+/// Largest distance that is searched for, m.
 inline constexpr double farthest_clearance_m = 50.0;
 
 /// Distances and time gaps beyond these are no safer: in the order they count alike. A choice.
 inline constexpr double enough_distance_m = 5.0;
 inline constexpr double enough_time_gap_s = 3.0;  ///< s
 
-/// What choosing a candidate leads to. Contacts, damage and grazes are those of the likeliest
+/// Outcome of a candidate. Contacts, damage and grazes are those of the likeliest
 /// future; scores, samples and places are of all futures.
 struct CandidateResult {
   std::size_t candidate = 0;    ///< index into RankResult::candidates
   std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
   ScoreInterval
-      score_interval;  ///< what the score is within; of the samples without numerical ones
-  /// What an absent score is taken for, see RankedCandidate::estimate; absent before the first
-  /// contact is known.
+      score_interval;  ///< contains the score; range over the samples without numerical ones
+  /// Estimate of an absent score, see RankedCandidate::estimate; absent before the first contact is
+  /// known.
   std::optional<double> score_estimate;
   /// Least and greatest of the score and its numerical samples (`is_numerical`); the score alone
   /// where there are none, the score's interval where the score is not known.
   ScoreInterval numerical_interval;
-  bool collides = false;  ///< it touches somebody in the likeliest future
+  bool collides = false;  ///< it has a contact in the likeliest future
   /// The ego's, in the order of their begins: the first, which the exact search found, then those
   /// of the simulated scene that follows from it.
   std::vector<Contact> contacts;
@@ -281,19 +279,19 @@ struct CandidateResult {
   /// Before its first contact in the likeliest future, a wheel leaves the road.
   std::optional<RoadLeaving> leaves_road;
   /// Between the ego's outline and any other's, seen from above and height by height, along the
-  /// plans of all futures until the horizon, m; 0 where it touches somebody in one of them, absent
-  /// where nobody comes nearer than `farthest_clearance_m` and where the score is not known.
+  /// plans of all futures until the horizon, m; 0 if it has a contact in one of them, absent if no
+  /// body comes nearer than `farthest_clearance_m` or the score is not known.
   std::optional<double> least_distance_m;
-  /// The actor that comes so near; absent with that and where it touches somebody.
+  /// The actor at that distance; absent with it and if there is a contact.
   std::optional<std::size_t> nearest;
   /// Post-encroachment time: the least time between the ego and another that moves at one place,
   /// by the rectangles around their outlines, along the plans of all futures until the horizon, s;
-  /// 0 where it touches somebody in one of them, absent where no two ways cross.
+  /// 0 if it has a contact in one of them, absent if no two paths cross.
   std::optional<double> least_time_gap_s;
   /// The actor that is there so soon before or after; absent as `nearest` is.
   std::optional<std::size_t> soonest;
   std::optional<HorizonState>
-      at_horizon;  ///< where it collides with nobody in the likeliest future
+      at_horizon;  ///< state at the horizon, if it has no contact in the likeliest future
   /// Standard error of the score that comes from drawing a sample of futures, as if they were drawn
   /// independently. Absent without a sample, for worst and quantile, for cvar with fewer than 10
   /// drawn futures in its tail, and where the drawn scores do not differ: futures that were not
@@ -341,7 +339,7 @@ struct RankWork {
   ImpactWork impact;                 ///< looking for first contacts
   std::uint64_t damage_queries = 0;  ///< poses at which intersecting triangles were listed
   CollideWork damage;                ///< done by those
-  std::uint64_t paths = 0;           ///< corners whose way through the other body was followed
+  std::uint64_t paths = 0;           ///< corners whose path through the other body was traced
   std::uint64_t crash_steps = 0;     ///< of simulated scenes
   std::uint64_t crash_pieces = 0;    ///< pieces of outlines moved in them
 
@@ -380,7 +378,7 @@ struct RankResult {
   std::vector<HarmSample> samples;
   std::vector<Candidate> candidates;           ///< in the order of `make_candidates`
   std::vector<CandidateResult> ranking;        ///< every candidate but the dropped once, best first
-  Infeasible infeasible = Infeasible::demote;  ///< what became of what the ego cannot follow
+  Infeasible infeasible = Infeasible::demote;  ///< as it was ranked with
   std::vector<std::size_t> dropped;  ///< indices into `candidates`, rising; Infeasible::drop only
   bool complete = true;              ///< every score is known
   bool proved = true;                ///< no other candidate can still take the first place
@@ -392,28 +390,28 @@ struct RankResult {
   FutureSummary futures;               ///< that the candidates were evaluated in
   RankWork work;                       ///< done for all
   double elapsed_s = 0.0;              ///< wall time of the call
-  std::optional<RankerEffort> effort;  ///< where a Ranker told it
+  std::optional<RankerEffort> effort;  ///< of a Ranker's answer
 };
 
-/// Ranks the candidates of a scenario by what they would destroy. `models` belong to
+/// Ranks the candidates of a scenario by the harm or damage of their crashes. `models` belong to
 /// `Scenario::models`, index by index, in body coordinates.
 ///
 /// For every candidate the ego and the actors follow their motions until the horizon. First contact
 /// is found without stepping over any (time_of_impact); a body inside another at the start is a
 /// contact at time 0. From there the crash is simulated (the law of `simulate_contact`), and with
-/// nothing varied every triangle that meets the other body of a contact along the simulated motion,
-/// on which both overlap as rigid ones, is damaged: those that intersect it at one of the recorded
-/// poses (ContactMotion), about every 0.1 m of the way, the greatest compression and the end of the
-/// force among them; and those that it passed through between two poses, a corner's straight way
-/// crossing its surface. So a pole leaves a furrow, and a front that is wholly inside a wall
-/// counts. Bodies that do not press on each other damage the first pair of triangles alone. Where
-/// both bodies give way, the overlap is the sum of both crush depths: each body's damage then
+/// nothing varied every triangle that touches the other body of a contact along the simulated
+/// motion, on which both overlap as rigid ones, is damaged: those that intersect it at one of the
+/// recorded poses (ContactMotion), about every 0.1 m of the way, the greatest compression and the
+/// end of the force among them; and those that it passed through between two poses, a corner's
+/// straight way crossing its surface. So a pole leaves a furrow, and a front that is wholly inside
+/// a wall counts. Bodies that do not press on each other damage the first pair of triangles alone.
+/// Where both bodies give way, the overlap is the sum of both crush depths: each body's damage then
 /// reaches deeper than its own crush.
 ///
 /// The crash of a candidate is one simulated scene: the ego, what it hits, what that is pushed into
 /// and so on press on each other and on the road with their tyres (HarmOptions::after_contact says
 /// what their wheels do), until everything rests, or 3 s after the last force. What is crushed
-/// stays crushed when two bodies meet again. All other bodies keep their plans, do not react and
+/// stays crushed when two bodies touch again. All other bodies keep their plans, do not react and
 /// pass through each other. Where a scene reaches its limits, `CandidateResult::crowded` is set.
 ///
 /// Scores add up over all contacts of the scene, those between others included: `polygons` counts

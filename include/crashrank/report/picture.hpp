@@ -54,10 +54,25 @@ CRASHRANK_API Result<Image> draw_picture(View<const PictureBody> bodies,
 /// shows the damage and the body's length.
 CRASHRANK_API double azimuth_of_damage_deg(const PictureBody& body);
 
-/// Pixels in the colour of damage, however shaded: tells how much of it a view shows.
+/// Returns the number of pixels in the colour of damage, however shaded.
 CRASHRANK_API std::size_t count_damage(const Image& image);
 
 /// The image as a PNG file's bytes. Errors: internal when libpng fails.
 CRASHRANK_API Result<std::string> png(const Image& image);
+
+// A body with its damaged triangles highlighted, as in figure 1 of Wiseman & Grinberg 2016, in
+// formats that every mesh viewer reads. Both return the file's bytes; `damaged` holds indices of
+// triangles, each at most once, in any order, all within the mesh. Linear in the mesh; safe from
+// any thread.
+
+/// glTF 2.0 binary. Each part is a node of its name; its intact and its damaged triangles have a
+/// material each, named "intact" and "damaged". Coordinates stay in body axes under one root node
+/// that turns them into glTF's (y up, z forward). Errors: limit_exceeded above 4 GiB.
+CRASHRANK_API Result<std::string> damage_glb(const TriangleMesh& mesh,
+                                             View<const std::uint32_t> damaged);
+
+/// Binary PLY with coloured vertices, in body coordinates, triangles in the mesh's order. Vertices
+/// that both intact and damaged triangles use stand in it twice, once in each colour.
+CRASHRANK_API std::string damage_ply(const TriangleMesh& mesh, View<const std::uint32_t> damaged);
 
 }  // namespace crashrank

@@ -5,6 +5,7 @@
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/scenario/scenario.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -12,13 +13,35 @@
 
 namespace crashrank {
 
+/// Largest ratio of what a manoeuvre requires to what the vehicle can do, until the first contact.
+/// Above 1 the vehicle cannot follow it: the simulation is then not realistic.
+struct ManoeuvreDemand {
+  /// Horizontal acceleration of the centre of mass over grip times standard gravity, beside the
+  /// road over the grip there.
+  double grip = 0.0;
+  double engine = 0.0;    ///< acceleration along its way over ScenarioEgo::max_acceleration_mps2
+  double brakes = 0.0;    ///< deceleration along its way over what brakes and grip give
+  double steering = 0.0;  ///< steering angle over ScenarioEgo::max_steering_rad
+  double steering_rate = 0.0;  ///< its rate over ScenarioEgo::max_steering_rate_radps
+
+  /// The greatest of them.
+  double greatest() const noexcept {
+    return std::max({grip, engine, brakes, steering, steering_rate});
+  }
+};
+
+/// A demand up to this still counts as feasible for a manoeuvre of timed poses.
+inline constexpr double feasible_posed_demand = 1.1;
+/// And for all others: stated numbers are rounded, as 8 m/s² for a grip of 0.8.
+inline constexpr double feasible_demand = 1.05;
+
 /// Standard gravity, m/s².
 inline constexpr double standard_gravity_mps2 = 9.80665;
 
 /// Where a candidate comes from.
 enum class CandidateOrigin {
   listed,         ///< written in the scenario
-  added_braking,  ///< straight braking, added because nobody listed it
+  added_braking,  ///< straight braking, added because it was not listed
   grid,           ///< generated
 };
 

@@ -1,18 +1,15 @@
 #pragma once
 
+#include "crashrank/base/area.hpp"
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/internal/base/export.hpp"
 #include "crashrank/internal/vehicle/strength.hpp"
 #include "crashrank/mesh/import.hpp"
-#include "crashrank/mesh/stated_mass.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/scenario/harm_options.hpp"
-#include "crashrank/scenario/measure.hpp"
-#include "crashrank/scenario/risk.hpp"
-#include "crashrank/scenario/road.hpp"
-#include "crashrank/vehicle/body_kind.hpp"
-#include "crashrank/vehicle/surface.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 
 #include <Eigen/Core>
 
@@ -23,11 +20,29 @@
 
 namespace crashrank {
 
-/// A shape of a scenario, before anybody has read its mesh.
+/// Where the ego may drive, and the cost of leaving that. Without areas the road is unlimited.
+struct Road {
+  std::vector<Area> drivable;           ///< world; a wheel outside all of them is off the road
+  double harm_per_leaving = 0.0;        ///< added to the harm where the road is left, persons
+  std::optional<double> off_road_grip;  ///< between tyre and ground beside it; absent: as on it
+
+  /// False if the road is unlimited.
+  bool ends() const noexcept { return !drivable.empty(); }
+};
+
+/// Bounds on what a road may ask for; the published schema states the same numbers.
+namespace road_limits {
+inline constexpr std::size_t areas = 1000;          ///< most
+inline constexpr std::size_t holes = 1000;          ///< most of one area
+inline constexpr std::size_t corners = 10'000;      ///< most of all areas together
+inline constexpr double harm_per_leaving = 1000.0;  ///< most, persons
+}  // namespace road_limits
+
+/// A shape of a scenario; its mesh is read later.
 struct ScenarioModel {
-  std::string name;  ///< unique
-  std::string mesh;  ///< as the scenario writes it
-  std::string path;  ///< where it is; what `load_scenario` found to be allowed, else empty
+  std::string name;               ///< unique
+  std::string mesh;               ///< as the scenario writes it
+  std::string path;               ///< resolved path that `load_scenario` allowed, else empty
   BodyKind kind = BodyKind::car;  ///< what it is
   /// Mass with all aboard, kg; absent: as its model file states, else guessed from kind and size.
   std::optional<double> mass_kg;
@@ -83,8 +98,8 @@ struct ScenarioEgo {
   double max_steering_rate_radps = 0.4;
   /// Persons in it, 0 allowed; absent: HarmWeights::people_in_ego.
   std::optional<double> occupants;
-  /// Where it is and how fast, against what its candidates assume: all of them are off by the same
-  /// errors.
+  /// Errors of its pose and speed relative to the stated ones; the same for all
+  /// candidates.
   StateUncertainty uncertainty;
 };
 
@@ -103,7 +118,7 @@ struct Prediction : ActorMotion {
   double probability = 1.0;  ///< above 0; those of an actor sum to 1
 };
 
-/// Something that can be hit, and how it moves.
+/// A body that can be hit, and its motion.
 struct ScenarioActor : ActorMotion {
   std::string name;       ///< unique
   std::size_t model = 0;  ///< index into Scenario::models
@@ -112,8 +127,8 @@ struct ScenarioActor : ActorMotion {
   /// Motions that exclude each other, independent of those of other actors. Where there are any,
   /// the actor's own motion is not used.
   std::vector<Prediction> predictions;
-  double existence_probability = 1.0;  ///< that it is there at all, [0, 1]
-  /// Errors of perception, whatever it does. Of a body that something moves.
+  double existence_probability = 1.0;  ///< that it exists, [0, 1]
+  /// Errors of perception on each of its motions. Not for fixed bodies.
   StateUncertainty perception;
 };
 
@@ -152,11 +167,11 @@ struct Scenario {
   std::string name;                                     ///< unique
   std::string description;                              ///< for people
   std::vector<ScenarioModel> models;                    ///< sorted by name
-  ScenarioEgo ego;                                      ///< who decides
+  ScenarioEgo ego;                                      ///< the deciding vehicle
   std::vector<ListedCandidate> listed;                  ///< manoeuvres written out
   std::optional<CandidateGrid> grid = CandidateGrid{};  ///< absent: none is generated
-  bool add_straight_braking = true;                     ///< where nobody listed it
-  std::vector<ScenarioActor> actors;                    ///< who can be hit
+  bool add_straight_braking = true;                     ///< unless it is listed
+  std::vector<ScenarioActor> actors;                    ///< bodies that can be hit
   double horizon_s = 4.0;                               ///< how far motions are followed, s
   Measure measure = Measure::harm;                      ///< what is compared
   HarmOptions harm;   ///< weights and ranges; the defaults where the file is silent
@@ -176,11 +191,11 @@ CRASHRANK_API bool is_uncertain(const Scenario& scenario) noexcept;
 
 /// The scenario in its likeliest future, without uncertainty or errors of states: every actor
 /// follows its likeliest prediction, or its motion in the likeliest joint future; of equal ones the
-/// first. An actor that is rather not there than on any of its motions stays in the list with an
+/// first. An actor whose absence is likelier than each of its motions stays in the list with an
 /// existence probability of 0.
 CRASHRANK_API Scenario likeliest_future(const Scenario& scenario);
 
-/// Bounds on what a scenario may ask for; the published schema states the same numbers.
+/// Limits of a scenario; the published schema states the same numbers.
 namespace scenario_limits {
 inline constexpr std::size_t file_bytes = std::size_t{16} << 20;  ///< of the text
 inline constexpr std::size_t table_bytes = std::size_t{1} << 26;  ///< of a table of candidates
@@ -224,14 +239,14 @@ inline constexpr double max_grip = 3.0;                 ///< most friction
 inline constexpr double probability_sum = 1e-6;         ///< probabilities sum to 1 within this
 }  // namespace scenario_limits
 
-/// Reads a scenario from its text; `file` only names it in errors and lends it its name when the
-/// scenario has none. Touches no file: `ScenarioModel::path` stays empty, and a table of candidates
-/// is refused. Every error is bad_input or limit_exceeded and names the key path, as
+/// Reads a scenario from its text; `file` names it in errors and is its name if the scenario has
+/// none. Touches no file: `ScenarioModel::path` stays empty, and a table of candidates is
+/// refused. Every error is bad_input or limit_exceeded and names the key path, as
 /// "actors[2].speed_mps", or line and column where the text is no JSON. Linear in the text; safe
 /// from any thread.
 CRASHRANK_API Result<Scenario> parse_scenario(const std::string& text, const std::string& file);
 
-/// Where a scenario's files may lie besides the places it has a right to.
+/// Folders in which a scenario's files may lie besides the default ones.
 struct ScenarioPaths {
   std::vector<std::string> allowed_folders;  ///< files may lie there, too
 };
@@ -239,10 +254,10 @@ struct ScenarioPaths {
 /// Finds where a mesh named by a scenario is, symbolic links followed. It has to lie in the
 /// scenario's folder or below it; or, when a folder above that not everybody may write to holds a
 /// file named `crashrank.root`, below the nearest such folder; or below an allowed one. So a
-/// scenario from a stranger reaches nothing but what came with it, and a project whose scenarios
-/// share a folder of models says so with one file. Errors: bad_input when it lies elsewhere.
-/// Whether the mesh exists is for the one who reads it to find out. `scenario_file` may be a name
-/// that does not exist in a folder that does (text from a pipe).
+/// scenario that is not trusted reads only the files that came with it, and a project whose
+/// scenarios share a folder of models declares it with one file. Errors: bad_input when it lies
+/// elsewhere. Does not check that the mesh exists. `scenario_file` may
+/// be a name that does not exist in a folder that does (text from a pipe).
 CRASHRANK_API Result<std::string> resolve_mesh_path(const std::string& scenario_file,
                                                     const std::string& mesh,
                                                     const ScenarioPaths& paths = {});

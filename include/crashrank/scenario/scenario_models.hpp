@@ -3,10 +3,9 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/internal/base/export.hpp"
 #include "crashrank/mesh/import.hpp"
-#include "crashrank/mesh/stated_mass.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/build_options.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/tree/aabb_tree.hpp"
 
 #include <string>
 #include <vector>
@@ -19,7 +18,7 @@ struct ScenarioModelOptions {
   BuildOptions build;    ///< of the trees of meshes; a model file has its own
 };
 
-/// What the file of one model of a scenario holds.
+/// Contents of the file of one model of a scenario.
 struct LoadedScenarioModel {
   Model model;                        ///< ready for use
   StatedMass stated;                  ///< in a model file; empty for a mesh

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/box.hpp"
-#include "crashrank/base/column.hpp"
+#include "crashrank/base/view.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>
@@ -38,8 +38,8 @@ struct Node {
   bool is_leaf() const noexcept { return count != 0; }
 };
 
-/// A binary tree of axis-aligned boxes over the triangles of one mesh. Values only: copy, move and
-/// send it as you like; reading from many threads is safe.
+/// A binary tree of axis-aligned boxes over the triangles of one mesh. A value without pointers to
+/// other objects: may be copied and moved; reading from many threads is safe.
 struct AabbTree {
   /// Columns are the box axes in body coordinates, orthonormal: u = axesᵀ·x.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -52,7 +52,7 @@ struct AabbTree {
 
   /// True without any node.
   bool empty() const noexcept { return nodes.empty(); }
-  /// Memory that it holds, but for slack.
+  /// Memory of its columns without spare capacity, bytes.
   std::size_t bytes() const noexcept {
     return nodes.size() * sizeof(Node) + order.size() * sizeof(std::uint32_t) +
            triangles.size() * sizeof(Triangle);
@@ -102,5 +102,22 @@ inline Range descendants(const AabbTree& tree, std::uint32_t node) {
     left = tree.nodes[right_inner ? left + 1 : left].first;
   }
 }
+
+/// How a tree is built.
+struct BuildOptions {
+  SplitRule rule = SplitRule::min_relative_segment;  ///< where sets are split
+  BoxFrame frame = BoxFrame::world;                  ///< axes of the boxes
+  std::uint32_t leaf_size = 4;  ///< most triangles a leaf may hold, 1 to 255; `paper` means 1
+  /// Split no set that fits into a leaf. Otherwise min_relative_segment and sah make smaller leaves
+  /// where that is expected to save tests: fewer triangle pairs tested for more nodes.
+  bool fill_leaves = false;
+  /// After the build, whatever its rule, subtrees are moved to where the boxes above them come out
+  /// smaller; at most this many passes over the tree, fewer when nothing moves any more. Worth its
+  /// time (see bench/tree_bench) for a model that is built once and queried often.
+  std::uint32_t reinsertion_passes = 0;
+  /// Threads that min_relative_segment and sah build on, and that a model's wide tree is written
+  /// on, 1 to 256, the calling one among them. The trees are the same, bit for bit.
+  std::uint32_t threads = 1;
+};
 
 }  // namespace crashrank

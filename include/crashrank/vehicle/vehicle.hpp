@@ -6,8 +6,6 @@
 #include "crashrank/internal/vehicle/strength.hpp"
 #include "crashrank/mesh/profile.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
-#include "crashrank/vehicle/body_kind.hpp"
-#include "crashrank/vehicle/surface.hpp"
 
 #include <Eigen/Core>
 
@@ -15,13 +13,53 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace crashrank {
 
-/// What is stated of a body besides its mesh; what is absent is derived.
+/// Kind of a body. Selects its mass where none is stated.
+enum class BodyKind {
+  car,
+  truck,
+  bus,
+  motorcycle,
+  bicycle,
+  pedestrian,
+  barrier,
+  pole,
+  building,
+};
+
+/// "car", "truck", ... as in scenario files.
+CRASHRANK_API const char* body_kind_name(BodyKind kind) noexcept;
+
+/// Mass of a body from its kind and size, kg: a car −1333.5 + 526.9·(length·width)^0.8 and at least
+/// 300, a truck 25000, a bus 13000, a motorcycle 250, a bicycle 90, a pedestrian 75, rider included
+/// (TUM's planner for harm-aware trajectories). Barriers, poles and buildings do not move:
+/// infinity. `extent_m` is length, width, height.
+CRASHRANK_API double guess_mass_kg(BodyKind kind, const Eigen::Vector3d& extent_m);
+
+/// Outer material of a body. Selects the friction of a contact, together with that of the body it
+/// touches.
+enum class Surface {
+  sheet_metal,  ///< painted panels of a vehicle
+  steel,        ///< guard rails, steel poles, machinery
+  concrete,     ///< walls, barriers, masonry
+  wood,         ///< trees, timber posts, fences
+  rubber,       ///< tyres, crash cushions
+  person,       ///< clothing and skin
+};
+
+/// "sheet-metal", "steel", "concrete", "wood", "rubber", "person", as in scenario files.
+CRASHRANK_API const char* surface_name(Surface surface) noexcept;
+
+/// Inverse of `surface_name`. Errors: usage; the remedy lists the names.
+CRASHRANK_API Result<Surface> surface_from_name(const std::string& name);
+
+/// Stated properties of a body besides its mesh; absent ones are derived.
 struct VehicleFacts {
-  BodyKind kind = BodyKind::car;                    ///< what it is
+  BodyKind kind = BodyKind::car;                    ///< kind of the body
   std::optional<double> mass_kg;                    ///< absent: guessed from kind and size
   std::optional<Eigen::Vector3d> center_of_mass_m;  ///< body coordinates, m; absent: derived
   std::optional<double> yaw_inertia_kgm2;           ///< about the centre of mass; absent: derived
@@ -30,14 +68,14 @@ struct VehicleFacts {
   std::optional<Honeycomb> honeycomb;               ///< replaces the kind's strength
 };
 
-/// Everything that a body is in a crash besides its triangles.
+/// Properties of a body in a crash besides its triangles.
 struct Vehicle {
-  BodyKind kind = BodyKind::car;                             ///< what it is
-  double mass_kg = std::numeric_limits<double>::infinity();  ///< infinity: nothing moves it
+  BodyKind kind = BodyKind::car;                             ///< kind of the body
+  double mass_kg = std::numeric_limits<double>::infinity();  ///< infinity: fixed
   bool mass_is_guessed = false;                              ///< neither stated nor fixed
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();        ///< of mass, body coordinates, m
   double yaw_inertia_kgm2 = 1.0;                             ///< not read where nothing moves it
-  CrushStrength strength;                                    ///< what it takes to crush it
+  CrushStrength strength;                                    ///< resistance to crushing
   Surface surface = Surface::sheet_metal;                    ///< decides friction
   double rear_axle_x_m = 0.0;                                ///< of two-axled vehicles, m
   double wheelbase_m = 0.0;                                  ///< 0 where no axles are known, m
@@ -49,11 +87,11 @@ struct Vehicle {
   /// and presses on nothing; empty: none does.
   std::vector<std::uint8_t> in_joint;
 
-  /// False for a body that nothing moves.
+  /// False for a fixed body.
   bool movable() const noexcept { return mass_kg < std::numeric_limits<double>::infinity(); }
 };
 
-/// Describes a body: what is stated of it, the rest derived from kind and mesh.
+/// Returns the properties of a body: the stated ones, the others derived from kind and mesh.
 ///
 /// Axles of cars, trucks and buses: at the middles of the wheels where the lowest outlines show
 /// those of two axles; else at a fifth and four fifths of a car's length, and none for the others.

@@ -1,4 +1,4 @@
-#include "crashrank/dispatch/study/replay.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 
 #include "dispatch/core.hpp"
 

@@ -1,4 +1,4 @@
-#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "crashrank/dispatch/study/recording.hpp"
-#include "crashrank/dispatch/study/replay.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 #include "dispatch/holdings.hpp"
 #include "dispatch/placer.hpp"
 
@@ -45,7 +44,7 @@ public:
   void send(std::uint32_t core);
   void run_here(const FoundJob& job) { work(recording_.jobs[job.number].run_seconds); }
   bool recall(std::uint32_t core);
-  /// The main thread sleeps until it hears of a finished batch.
+  /// The main thread sleeps until it learns of a finished batch.
   void wait(std::uint32_t seen);
   /// The main thread works.
   void work(double seconds);
@@ -80,7 +79,7 @@ private:
   struct Core {
     Batch filling;
     std::deque<Batch> queue;        ///< sent; the front one is in work
-    std::deque<double> heard;       ///< when the main thread will hear of finished ones
+    std::deque<double> heard;       ///< when the main thread will learn of finished ones
     std::uint32_t outstanding = 0;  ///< as the main thread knows
     Phase phase = Phase::idle;
     double slice_ends = never;  ///< when another thread that waits may take its processor

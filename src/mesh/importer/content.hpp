@@ -7,7 +7,7 @@
 
 namespace crashrank::importer {
 
-/// What the first look at a file's bytes tells.
+/// What the first bytes of a file show.
 struct Content {
   std::size_t skip = 0;  ///< bytes of a byte order mark, which some parsers stumble over
 };

@@ -13,7 +13,7 @@
 
 // Parses one mesh in a process of its own: what a damaged or hostile file does to the parser stays
 // here. The mesh comes as standard input, the answer goes to standard output as
-// import_protocol.hpp tells; the process is confined before it looks at the first byte.
+// import_protocol.hpp describes; the process is confined before it reads the first byte.
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 namespace crashrank::importer {
 
-/// Both write the one answer to standard output; false when nobody reads it.
+/// Both write the one reply to standard output; false if no process reads it.
 bool send(const TriangleMesh& mesh, std::uint64_t dropped_triangles,
           const std::vector<std::string>& warnings);
 bool send(const Error& error);

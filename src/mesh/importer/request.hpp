@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/mesh/transform.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <cstddef>
 #include <string>

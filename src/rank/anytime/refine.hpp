@@ -1,10 +1,10 @@
 #pragma once
 
 #include "crashrank/rank/anytime/ranker.hpp"
-#include "rank/anytime/bounds.hpp"
-#include "rank/anytime/watch.hpp"
+#include "rank/bounds.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/order.hpp"
+#include "rank/watch.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -3,7 +3,7 @@
 #include "crashrank/base/view.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
 #include "rank/anytime/refine.hpp"
-#include "rank/anytime/watch.hpp"
+#include "rank/watch.hpp"
 
 #include <array>
 #include <atomic>

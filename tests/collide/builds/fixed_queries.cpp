@@ -7,7 +7,7 @@
 // The vector units that the library is built for.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 
-#include "crashrank/collide/pair_hash.hpp"
+#include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/tree/build.hpp"

@@ -1,7 +1,6 @@
 #include "query.hpp"
 
 #ifdef WITH_LIBRARY
-#include <crashrank/base/library_version.hpp>
 #include <crashrank/base/version.hpp>
 #endif
 

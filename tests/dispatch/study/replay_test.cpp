@@ -1,6 +1,4 @@
-#include "crashrank/dispatch/study/replay.hpp"
-
-#include "crashrank/dispatch/study/recording.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 
 #include "dispatch/sample_bodies.hpp"
 

@@ -1,4 +1,4 @@
-#include "crashrank/dispatch/study/sweep.hpp"
+#include "crashrank/dispatch/study/study.hpp"
 
 #include "crashrank/model/make_model.hpp"
 

@@ -19,7 +19,7 @@ struct NodePair {
 /// Stack entries that `traverse` needs below two nodes of trees of these depths. Every step takes
 /// one pair off and puts at most two on, and each pair on the stack is deeper by one level of one
 /// tree than the one before it was when put there: one waiting pair per level of either tree, and
-/// the pair in hand.
+/// the current pair.
 inline std::size_t traversal_stack_size(std::uint32_t depth_a, std::uint32_t depth_b) {
   return std::size_t{depth_a} + depth_b + 2;
 }

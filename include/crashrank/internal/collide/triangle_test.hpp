@@ -13,7 +13,7 @@
 
 namespace crashrank {
 
-/// Three corners in double, m, in A's frame: A's own, or B's as `carry` brings them there.
+/// Three corners in double, m, in A's frame: A's own, or B's transformed by `carry`.
 struct TriangleD {
   std::array<Eigen::Vector3d, 3> corner;  ///< m
 };
@@ -23,7 +23,7 @@ inline TriangleD to_double(const Triangle& t) {
   return {{t.corner[0].cast<double>(), t.corner[1].cast<double>(), t.corner[2].cast<double>()}};
 }
 
-/// Its corners, each carried by the pose.
+/// Its corners, each transformed by the pose.
 inline TriangleD carry(const Pose& pose, const Triangle& t) {
   return {{carry(pose, t.corner[0]), carry(pose, t.corner[1]), carry(pose, t.corner[2])}};
 }

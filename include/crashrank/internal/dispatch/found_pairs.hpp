@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace crashrank::detail {
+namespace crashrank {
 
 /// Consecutive pairs of one query in one worker's buffer.
 struct PairRun {
@@ -22,4 +22,4 @@ struct alignas(64) FoundPairs {
   std::vector<PairRun> runs;
 };
 
-}  // namespace crashrank::detail
+}  // namespace crashrank

@@ -18,7 +18,7 @@ namespace crashrank {
 /// corner counts once. Where the rays disagree the mesh has holes: then the point is inside when
 /// the surface fills more than half of its view, counted with the triangles' orientation (|winding
 /// number| > 1/2; Jacobson, Kavan, Sorkine-Hornung 2013), so a car without an underbody still has
-/// an inside, and a sheet has none. Points on the surface may be told either way.
+/// an inside, and a sheet has none. Points on the surface may count either way.
 /// O(nodes), with a solid angle for each triangle where the rays disagree. Allocates nothing.
 CRASHRANK_API bool contains_point(const AabbTree& tree, const Eigen::Vector3d& point_m);
 
@@ -29,9 +29,9 @@ enum class Containment {
   b_in_a,  ///< B lies inside A
 };
 
-/// For two bodies whose surfaces do not meet: does one lie inside the other? Up to 16 triangles
-/// spread over each mesh, and within the other's root box, are tested by one corner; as surfaces do
-/// not meet, a connected mesh needs one. Both trees non-empty.
+/// For two bodies whose surfaces do not touch: returns whether one lies inside the other. Up to 16
+/// triangles spread over each mesh, and within the other's root box, are tested by one corner; as
+/// surfaces do not meet, a connected mesh needs one. Both trees non-empty.
 CRASHRANK_API Containment containment(const AabbTree& a, const AabbTree& b, const Pose& b_in_a);
 
 }  // namespace crashrank

@@ -7,7 +7,7 @@
 
 namespace crashrank {
 
-// Names come from strangers' files. What is shown to a person passes through one of these first.
+// Names come from files that are not trusted. Text for people passes through one of these first.
 // None of them fails, whatever bytes the text holds; each costs O(length).
 
 /// For a terminal: control characters, characters that turn the writing direction, and bytes that

@@ -23,7 +23,7 @@ public:
   /// Cells beyond the columns are dropped, missing ones stay empty.
   void add_row(std::vector<std::string> cells);
 
-  /// Lines end in '\n' and carry no trailing spaces. `bold_titles` writes ANSI codes: for terminals
+  /// Lines end in '\n' and have no trailing spaces. `bold_titles` writes ANSI codes: for terminals
   /// that want them only.
   std::string text(bool bold_titles = false) const;
 

@@ -66,7 +66,7 @@ inline LaneBox bounds(View<const BuildRecord> records) {
 }
 
 /// Memory that begins without values: arrays that are written before they are read, and large
-/// enough that writing them twice would tell.
+/// enough that writing them twice would take noticeable time.
 template <class T> class RawArray {
 public:
   explicit RawArray(std::size_t size) : items_(new T[size]), size_(size) {

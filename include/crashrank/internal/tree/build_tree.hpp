@@ -11,7 +11,6 @@
 #include "crashrank/internal/tree/split_cost.hpp"
 #include "crashrank/internal/tree/tree_writer.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
-#include "crashrank/tree/build_options.hpp"
 
 #include <atomic>
 #include <cstddef>

@@ -74,8 +74,8 @@ public:
   ParallelBuilder(const BuildArrays& arrays, const LeafLimits& leaves)
       : arrays_(arrays), leaves_(leaves) {}
 
-  /// Returns the depth. `slots` is told of runs of slots whose order is final, by whichever thread
-  /// finished them, and asked to get ready while there is nothing else to do.
+  /// Returns the depth. `slots` is called with runs of slots whose order is final, by whichever
+  /// thread finished them, and asked to get ready while there is nothing else to do.
   template <class Slots>
   std::uint32_t build(const Box& root, std::uint32_t threads, std::vector<Node>& nodes,
                       Slots& slots) {

@@ -25,7 +25,7 @@ public:
   }
 };
 
-/// The paper's sum of relative segments, carried from one axis to three and weighted. A half's
+/// The paper's sum of relative segments, extended from one axis to three and weighted. A half's
 /// relative segment on an axis is the length of its projection over the length of the node's,
 /// taken as the mean over the axes, so that axes weigh by their lengths. A cube of relative edge
 /// 5/16 at a random place near the node meets the half's box with a chance proportional to the

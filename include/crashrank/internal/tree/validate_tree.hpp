@@ -315,7 +315,7 @@ inline Status validate_nodes(const AabbTree& tree, Below* below) {
   return Success{};
 }
 
-/// `validate`, telling what lies below each node.
+/// `validate`, which also returns what lies below each node.
 inline Status validate_tree(const AabbTree& tree, const TriangleMesh& mesh,
                             std::unique_ptr<Below[]>& below) {
   if (Status status = validate_sizes(tree, mesh); !status) return status;

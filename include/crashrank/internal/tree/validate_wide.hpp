@@ -293,7 +293,7 @@ private:
   double limit_ = 0.0;
 };
 
-/// `validate` of a model, with what was told of the binary tree on the way.
+/// `validate` of a model, with what `validate_tree` returned about the binary tree.
 inline Status validate_wide(const WideTree& wide, const AabbTree& tree, const Below* below) {
   if (wide.nodes.empty()) {
     if (wide.clusters.empty() && wide.lanes_of.empty() && wide.depth == 0) return Success{};

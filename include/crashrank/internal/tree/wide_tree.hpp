@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/base/column.hpp"
+#include "crashrank/base/view.hpp"
 
 #include <array>
 #include <cstddef>

@@ -9,7 +9,7 @@ namespace crashrank {
 
 /// Resistance of a body against being crushed from one side: force per unit width
 /// F = yield + slope·C at a crush depth C (Campbell, SAE 740565; CRASH3), spread over the heights
-/// that carry it. Behind `length_m` lies structure that hardens, see CrushStrength.
+/// that bear it. Behind `length_m` lies structure that hardens, see CrushStrength.
 struct CrushLaw {
   double yield_npm = 0.0;   ///< N per metre of width at no depth, >= 0
   double slope_npm2 = 1.0;  ///< N per metre of width and metre of depth, > 0
@@ -38,7 +38,7 @@ struct CrushStrength {
   CrushLaw front;  ///< of the front
   CrushLaw side;   ///< of both sides
   CrushLaw rear;   ///< of the rear
-  /// Heights over the ground that carry the load, m: sills, rails, bumpers, up to the bonnet. What
+  /// Heights over the ground that bear the load, m: sills, rails, bumpers, up to the bonnet. What
   /// is above them (pillars and glass) or below bears `rest` of their pressure.
   double low_m = 0.2;
   double high_m = 0.8;  ///< their upper end, m

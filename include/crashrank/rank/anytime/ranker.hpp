@@ -3,11 +3,11 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/internal/base/export.hpp"
+#include "crashrank/model/model.hpp"
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/candidate.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/tree/model.hpp"
 
 #include <atomic>
 #include <cstddef>
@@ -19,70 +19,70 @@
 
 namespace crashrank {
 
-/// What a Ranker sets memory aside for; more is refused.
+/// Sizes for which a Ranker allocates memory; larger inputs are refused.
 struct RankerLimits {
   std::size_t candidates = 1024;      ///< most
   std::size_t actors = 64;            ///< most
   std::size_t triangles = 4'000'000;  ///< of any one model
 };
 
-/// How a Ranker ranks, and what it sets aside.
+/// How a Ranker ranks, and how much memory it allocates.
 struct RankerOptions {
   /// Measure, harm, impact, and workers: the calling thread and `workers` - 1 more share the work.
   /// Samples of the harm's ranges are not evaluated, whatever HarmOptions::intervals says.
   RankOptions rank;
-  RankerLimits limits;        ///< what memory is set aside for
+  RankerLimits limits;        ///< sizes for which memory is allocated
   bool pinned = false;        ///< see PoolOptions
   std::int32_t spin_us = -1;  ///< see PoolOptions
 };
 
-/// When a ranking ends at the latest.
+/// When a ranking ends.
 struct RankBudget {
-  /// Counted from the call; at or below 0 it answers at once. Infinity: all is ranked.
+  /// Counted from the call, s; at or below 0 it returns at once. Infinity: everything is ranked.
   double deadline_s = std::numeric_limits<double>::infinity();
-  /// In tests of boxes, triangles and outline pieces; what is cut off is the same on every machine
-  /// and for every number of workers.
+  /// In tests of boxes, triangles and outline pieces; the answer is the same on every machine and
+  /// for every number of workers.
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   /// Ends as soon as the first place is proved.
   bool first_place_only = false;
-  /// Ends soon after this is set, from any thread, with what is known by then; null: by nothing.
-  /// Looked at wherever the clock is. Has to stay until the Ranker's next call or its end.
+  /// Any thread may set this to end the call soon with a partial answer; null: never. Read whenever
+  /// the clock is read. Has to stay valid until the Ranker's next call or its end.
   const std::atomic<bool>* cancel = nullptr;
-  /// Set to the number of candidates whose score is known, after each round of steps, for others to
-  /// read meanwhile; null: nowhere.
+  /// Set to the number of candidates with a known score after each round of steps, for other
+  /// threads to read; null: not reported.
   std::atomic<std::size_t>* known = nullptr;
 };
 
-/// How far a candidate was followed.
+/// How far a candidate was evaluated.
 enum class RankStage : std::uint8_t {
-  unseen,    ///< nothing but what no candidate can exceed
-  near,      ///< the bodies that its swept boxes meet are known; exact where there are none
-  searched,  ///< its contacts, or the first of them, are known; exact without any
+  unseen,    ///< only the bound that holds for all candidates
+  near,      ///< the bodies that its swept boxes overlap are known; exact if there are none
+  searched,  ///< its first contact is known; exact if there is none
   scored,    ///< its score is known
 };
 
 /// One candidate of an answer.
 struct RankedCandidate {
   std::size_t candidate = 0;            ///< index into the candidates asked about
-  RankStage stage = RankStage::unseen;  ///< how far it was followed
+  RankStage stage = RankStage::unseen;  ///< how far it was evaluated
   bool known = false;                   ///< `score` is the final one
   bool in_race = true;                  ///< can still be first
   double score = 0.0;                   ///< where it is known
-  ScoreInterval interval;               ///< holds the final score, whatever was left undone
-  /// What the score is taken for where it is not known, within the interval: futures that are not
+  ScoreInterval interval;               ///< contains the final score at every stage
+  /// Estimate of a score that is not known, within the interval: futures that are not
   /// simulated yet count as their first contact would if both bodies were points that stop each
   /// other along its normal. Before the stage `searched` the upper end. No bound. Once all
   /// candidates are searched, it decides the order among those not known, before that the upper end
   /// does.
   double estimate = 0.0;
-  /// From the stage `searched` on: that the ego touches somebody in a future.
+  /// From the stage `searched` on: probability that the ego has a contact.
   double collision_probability = 0.0;
   /// From the stage `searched` on: its first contact in the likeliest future.
   bool collides = false;
   bool grazes = false;  ///< passes something within the tolerance before that
-  /// The vehicle can follow it as far as it is followed, or that does not count (Infeasible::keep).
-  /// This and the next four are final where the score is known, the first from the stage `searched`
-  /// on; true as long as nothing else is known.
+  /// The vehicle can follow it until its first contact, or feasibility is ignored
+  /// (Infeasible::keep). This and the next four are final where the score is known, the first from
+  /// the stage `searched` on; true as long as nothing else is known.
   bool feasible = true;
   bool leaves_road = false;  ///< before the first contact in the likeliest future
   /// As in CandidateResult, infinity in place of what is absent there, 0 as long as it is open.
@@ -91,20 +91,20 @@ struct RankedCandidate {
   double end_speed_mps = 0.0;     ///< at the horizon; 0 for candidates that collide
   std::size_t actor = 0;          ///< index into Scenario::actors
   double time_of_impact_s = 0.0;  ///< from the decision
-  /// Of the points that meet. Measures that simulate the crash do not hold above
+  /// Of the points that touch. Measures that simulate the crash are not valid above
   /// `fastest_contact_mps`.
   double closing_speed_mps = 0.0;
 };
 
-/// An answer, most promising first; it looks into the Ranker and stands until its next call.
+/// An answer, most promising first; refers to the Ranker's memory, valid until its next call.
 struct RankerAnswer {
   Status status = Success{};            ///< why the call was refused; nothing is ranked then
   View<const RankedCandidate> ranking;  ///< every candidate once
   bool complete = false;                ///< every score is known
   bool proved = false;                  ///< no other candidate can still take the first place
   std::size_t in_race = 0;              ///< how many can
-  double elapsed_s = 0.0;  ///< from the call until it returns, as far as it can be told within it
-  RankerEffort effort;     ///< what it took
+  double elapsed_s = 0.0;               ///< from the call until just before it returns
+  RankerEffort effort;                  ///< work and times
   /// Of the ranking: order, stages and the bits of scores and intervals. The same on every machine
   /// whenever the answer is.
   std::uint64_t hash = 0;
@@ -120,25 +120,25 @@ struct EgoMotion {
 /// out of order or motions beyond `scenario_limits`.
 CRASHRANK_API Result<std::vector<Motion>> plan_motions(const Scenario& scenario);
 
-/// Ranks candidates against a deadline, in memory set aside beforehand.
+/// Ranks candidates within a deadline, in memory allocated beforehand.
 ///
-/// Every candidate carries an interval that holds its final score. Refined are first those that can
-/// still win, the most promising first; once the first place is proved, the others. A candidate
-/// goes through: the bodies that its swept boxes meet (none: the score is 0); the search for its
-/// contact (none: 0); then its crash, left as soon as the score can no longer be the lowest: no
-/// score is below what the contacts that are over come to by themselves, and none above what all
-/// the energy there is can do.
+/// Every candidate has an interval that contains its final score. Candidates that can still be
+/// first are refined first, the most promising one first; after the first place is proved, the
+/// others. The stages of a candidate: the bodies that its swept boxes overlap (none: the score is
+/// 0); the search for its first contact (none: 0); the simulation of its crash, which stops as soon
+/// as the score cannot be the lowest: the contacts so far are a lower bound, the available energy
+/// gives an upper one.
 ///
-/// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls are those by
-/// which it wakes and awaits its own workers. Except: measures `polygons` and `area`,
-/// whose last stage allocates.
+/// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls wake and
+/// await its own workers. Exception: measures `polygons` and `area`, whose last stage
+/// allocates.
 ///
-/// At its deadline a call returns without waiting for workers in the middle of a step: they leave
-/// it at their next look at the clock, behind the caller's back, reading nothing of the caller's
-/// but the models. The next call begins by waiting for them, `rank` until its own deadline at most.
+/// At its deadline a call returns without waiting for workers in the middle of a step: these end at
+/// their next reading of the clock, after the call has returned, and read only the models
+/// meanwhile. The next call begins by waiting for them, `rank` until its own deadline at most.
 /// Except, again, with those measures, and where a candidate's motion is a timed one: then the call
-/// waits for its workers. bench/rank measures how late answers are. With no deadline the scores
-/// have the bits of `crashrank::rank`, and so has the order.
+/// waits for its workers. docs/evidence/ranking-times.md has the lateness of answers. With no
+/// deadline the scores have the bits of `crashrank::rank`, and so has the order.
 ///
 /// One thread at a time calls the members; different Rankers are independent.
 class CRASHRANK_API Ranker {
@@ -165,28 +165,28 @@ public:
   /// Allocates.
   std::vector<Plan> plans() const;
 
-  /// The situation has changed: where the ego starts, and how each actor moves from now on, on each
-  /// of its plans, in the order of `plans`: one for each actor where nothing is uncertain. Begins
-  /// by waiting for workers that an answer at its deadline left behind, then costs some µs an
-  /// actor, of one whose state has errors so much for each future, and allocates nothing but for
-  /// timed motions. Errors, and nothing changes: usage where their number is another; bad_input for
-  /// a pose or motion that is not finite or beyond `scenario_limits` within the horizon;
-  /// out_of_memory. `ego` tells how the ego moves now: without it the demand of timed poses is told
-  /// of their later part alone.
+  /// Sets a new situation: the pose where the ego starts, and the motion of each actor on each
+  /// of its plans, in the order of `plans`: one for each actor if nothing is uncertain. Waits
+  /// first for workers that the last answer did not wait for, then costs a few µs an actor, as
+  /// much for each future if its state has errors, and allocates for timed motions only.
+  /// Errors, and nothing changes: usage where their number is another; bad_input for a pose or
+  /// motion that is not finite or beyond `scenario_limits` within the horizon; out_of_memory.
+  /// `ego` is the ego's present motion: without it the demand of timed poses leaves out their
+  /// beginning.
   Status move_actors(const Pose& ego_start, View<const Motion> actors,
                      std::optional<EgoMotion> ego = std::nullopt) noexcept;
 
-  /// The plans have other probabilities from now on: above 0, summing to 1 for each actor. Draws
-  /// samples anew from the same strata, so that they change as little as the probabilities do.
-  /// Begins like `move_actors`, allocates nothing. Errors, and nothing changes: usage where their
-  /// number is another, or the futures are joint; bad_input for what is not a probability.
+  /// Sets other probabilities of the plans: above 0, summing to 1 for each actor. Draws samples
+  /// again from the same strata, so that they change as little as the probabilities do. Begins like
+  /// `move_actors`, allocates nothing. Errors, and nothing changes: usage where their number is
+  /// another, or the futures are joint; bad_input for what is not a probability.
   Status weigh_plans(View<const double> probabilities) noexcept;
 
   /// Candidates have to stay until the call returns. Errors (in the answer, which is empty then):
   /// usage where there are more than the limits allow or the deadline is NaN; bad_input for a
   /// candidate whose motion is not finite, beyond `scenario_limits` within the horizon, or does not
-  /// begin at the ego's pose (1 m, 30°): made before `move_actors`, say; out_of_memory where there
-  /// is no room for the words of an error.
+  /// begin at the ego's pose (1 m, 30°): made before `move_actors`, say; out_of_memory where the
+  /// text of an error cannot be allocated.
   RankerAnswer rank(View<const Candidate> candidates, const RankBudget& budget = {}) noexcept;
 
   /// What `crashrank::rank` returns, of an answer. Complete: the same, samples, intervals and marks

@@ -3,13 +3,16 @@
 #include "crashrank/internal/base/export.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
+#include <Eigen/Core>
+
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace crashrank {
 
-/// What a mesh is worth before anything is computed from it. Counts and metres.
+/// Defects and size of a mesh. Counts and metres.
 struct MeshQuality {
   std::size_t degenerate_triangles = 0;  ///< exactly collinear or coinciding corners
   std::size_t duplicate_triangles = 0;   ///< same three corners as an earlier one, any order
@@ -23,9 +26,9 @@ struct MeshQuality {
   std::vector<std::string> warnings;  ///< one sentence each, for a person
 };
 
-/// Looks the mesh over. O(n log n); never fails, whatever the vertices hold (indices have to be
-/// within range). Triangles with two equal corners have no edges; triangles with a vertex that is
-/// not finite are left out of every count but that of the vertices.
+/// Counts the defects of a mesh. O(n log n); never fails, whatever the vertices hold (indices have
+/// to be within range). Triangles with two equal corners have no edges; triangles with a vertex
+/// that is not finite are left out of every count but that of the vertices.
 CRASHRANK_API MeshQuality assess(const TriangleMesh& mesh);
 
 /// Meshes with a largest extent outside these are refused on import, m.
@@ -37,5 +40,20 @@ inline constexpr double max_extent_m = 1e6;  ///< A mesh larger than this is ref
 inline constexpr double min_plausible_extent_m = 0.3;
 /// A mesh larger than this is warned about, m.
 inline constexpr double max_plausible_extent_m = 30.0;
+
+/// Area, volume, centroid and inertia of a body's surface.
+struct ShellProperties {
+  double area_m2 = 0.0;    ///< of the surface, every triangle counted
+  double volume_m3 = 0.0;  ///< enclosed; means something for closed, evenly turned meshes only
+  /// Middle of the surface, body coordinates, m.
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+  /// Moments and products of inertia of the surface as a shell of even thickness about its middle,
+  /// by body axes, for each kilogram, m²: xx, yy, zz, xy, xz, yz; products are −∫xy dm.
+  std::array<double, 6> inertia_per_kg_m2{};
+};
+
+/// Area, volume, middle and inertia of a mesh. The same bits everywhere. O(n); vertex indices have
+/// to be in range. Not finite for coordinates whose fourth powers are none in double.
+CRASHRANK_API ShellProperties shell_properties(const TriangleMesh& mesh);
 
 }  // namespace crashrank

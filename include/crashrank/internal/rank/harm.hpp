@@ -3,7 +3,7 @@
 #include "crashrank/crash/injury.hpp"
 #include "crashrank/internal/base/export.hpp"
 #include "crashrank/scenario/harm_options.hpp"
-#include "crashrank/vehicle/body_kind.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace crashrank {
 
-// Harm of a candidate as a function of its contacts; all that a bound on it may rest on.
+// Harm of a candidate as a function of its contacts, and its properties that bounds rely on.
 //
 // One body in one contact:
 //
@@ -86,29 +86,6 @@ CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& op
 /// rear have the extreme risks, see injury.hpp.
 CRASHRANK_API double most_harm(const HarmExposure& exposure, const HarmOptions& options);
 
-/// One way in which all that is not known may lie. The same sample holds for every candidate and
-/// every contact: what is wrong in the same way for all of them does not disturb their order.
-struct HarmSample {
-  double friction = 0.3;             ///< between the bodies
-  double strength = 1.0;             ///< times the default
-  double restitution = 1.0;          ///< times the contact law's
-  RiskModel model = RiskModel::tum;  ///< whose curves
-  double occupant_speed = 1.0;       ///< times the speed at which an occupant's curve is read
-  double outside_speed = 1.0;        ///< and that of people outside cars
-  double step = 1.0;                 ///< times the steps of the simulation
-  /// The ego's plan is moved this far to the left of its velocity relative to the body that it
-  /// meets first, m.
-  double shift_m = 0.0;
-};
-
-/// Whether the sample varies how contacts are computed, not what is unknown about them.
-constexpr bool is_numerical(const HarmSample& sample) noexcept {
-  return sample.step != 1.0 || sample.shift_m != 0.0;
-}
-
-/// Samples that vary how contacts are computed.
-inline constexpr std::size_t numerical_samples = 3;
-
 /// The samples of a set of options: first what is taken when nothing varies, then every corner of
 /// the ranges (2 frictions, 2 strengths, 2 restitutions, 4 models, 2 × 2 speeds: 128; ends that
 /// coincide count once), then three `is_numerical` ones in which nothing else varies: half the
@@ -121,12 +98,12 @@ CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& op
                              const HarmSample& sample);
 
 /// Probability of the sample's model's outcome for one person in or on the body in this contact
-/// alone, in [0, 1], without weights or numbers of people; 0 for kinds that carry nobody.
+/// alone, in [0, 1], without weights or numbers of people; 0 for kinds without people.
 CRASHRANK_API double risk_of(const HarmExposure& exposure, const HarmOptions& options,
                              const HarmSample& sample);
 
-/// Number of people in or on the body times the weight of one of them; 0 for kinds that carry
-/// nobody. `HarmExposure::occupants` replaces the number of `weights`.
+/// Number of people in or on the body times the weight of one of them; 0 for kinds without people.
+/// `HarmExposure::occupants` replaces the number of `weights`.
 CRASHRANK_API double people_weight(const HarmExposure& exposure, const HarmWeights& weights);
 
 /// Harm of the damage to the body itself, in the unit of `harm_of`.
@@ -151,7 +128,7 @@ CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_m
 CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
                                       double reduced_kg, const HarmOptions& options);
 
-/// Who travels in or on a body of that kind; false for those that carry nobody.
+/// Kind of the people in or on a body of that kind; false if it has none.
 CRASHRANK_API bool carries_people(BodyKind kind, Person& person) noexcept;
 
 /// Whether bodies of that kind have a passengers' cage that crush can reach into.

@@ -1,10 +1,6 @@
 #pragma once
 
-#include "crashrank/base/pose.hpp"
-#include "crashrank/base/view.hpp"
-#include "crashrank/collide/pair.hpp"
-#include "crashrank/internal/collide/triangle_test.hpp"
-#include "crashrank/mesh/triangle_mesh.hpp"
+#include "crashrank/collide/collide.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,15 +10,6 @@
 
 namespace crashrank {
 
-/// How two triangles that share a point do so.
-enum class PairKind {
-  crossing,  ///< each goes through the other's plane, and they share a segment of some length
-  touching,  ///< they only touch: in a point, or along an edge of one
-  coplanar,  ///< both lie in one plane, or one is a segment or a point in the other's plane
-};
-
-/// The kind of a pair that intersects; exact, for any order of the two and of their corners. Makes
-/// no sense for triangles that share no point. Some 100 ns.
 inline PairKind pair_kind(const TriangleD& a, const TriangleD& b) {
   std::uint64_t exact_calls = 0;
   std::array<int, 3> b_side{};
@@ -59,7 +46,6 @@ inline PairKind pair_kind(const TriangleD& a, const TriangleD& b) {
              : PairKind::touching;
 }
 
-/// Labels the pairs that a query between these meshes at this pose has found, in their order.
 inline std::vector<PairKind> pair_kinds(const TriangleMesh& a, const TriangleMesh& b,
                                         const Pose& b_in_a, View<const Pair> pairs) {
   std::vector<PairKind> kinds;

@@ -1,4 +1,4 @@
-#include "rank/anytime/bounds.hpp"
+#include "rank/bounds.hpp"
 
 #include "crash/scene_run.hpp"
 #include "rank/tally.hpp"

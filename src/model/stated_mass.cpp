@@ -1,4 +1,4 @@
-#include "crashrank/mesh/stated_mass.hpp"
+#include "crashrank/model/model.hpp"
 
 #include "crashrank/internal/base/guarded.hpp"
 

@@ -1,20 +1,56 @@
 #pragma once
 
+#include "crashrank/base/box.hpp"
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/view.hpp"
 #include "crashrank/internal/base/export.hpp"
-#include "crashrank/mesh/shell_properties.hpp"
-#include "crashrank/mesh/stated_mass.hpp"
-#include "crashrank/mesh/transform.hpp"
-#include "crashrank/tree/model.hpp"
+#include "crashrank/internal/tree/wide_tree.hpp"
+#include "crashrank/mesh/profile.hpp"
+#include "crashrank/mesh/properties.hpp"
+#include "crashrank/mesh/triangle_mesh.hpp"
+#include "crashrank/tree/aabb_tree.hpp"
+
+#include <Eigen/Core>
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace crashrank {
+
+/// A body ready for collision: its surface and the trees over it. Prepared once, read by any number
+/// of threads.
+struct Model {
+  TriangleMesh mesh;   ///< its surface
+  AabbTree tree;       ///< the binary tree over it
+  WideTree wide = {};  ///< what the vector engine reads; empty where only the scalar one can serve
+  /// Its outlines, which crash simulations read; null: `rank` makes them when it needs them. Model
+  /// files hold them.
+  std::shared_ptr<const Profile> profile = nullptr;
+};
+
+/// Mass properties that a model file states. Absent ones are derived, see `describe_vehicle`.
+struct StatedMass {
+  std::optional<double> mass_kg;                    ///< with all aboard, > 0
+  std::optional<Eigen::Vector3d> center_of_mass_m;  ///< body coordinates, m
+  /// About the vertical axis through the centre of mass, kg·m².
+  std::optional<double> yaw_inertia_kgm2;
+};
+
+/// Checks that a yaw inertia is at least 1 % of that of an even block over the body's bounds and at
+/// most that of a ring: all mass at the ends of their diagonal. `extent_m` is length, width,
+/// height. Errors: bad_input; the place is "yaw inertia".
+CRASHRANK_API Status check_yaw_inertia(double yaw_inertia_kgm2, double mass_kg,
+                                       const Eigen::Vector3d& extent_m);
+
+/// Checks the stated mass properties of a body with these bounds: a finite mass above 0; a centre
+/// of mass within the bounds, to 1 µm, and at most 2 km from the origin each way; a finite yaw
+/// inertia above 0, and as `check_yaw_inertia` where a mass is stated. Errors: bad_input; the place
+/// is "mass", "centre of mass" or "yaw inertia".
+CRASHRANK_API Status check_stated_mass(const StatedMass& stated, const Box& bounds);
 
 /// The version of model files that this library writes, and the only one that it reads.
 inline constexpr std::uint32_t model_file_version = 2;
@@ -31,7 +67,7 @@ struct StoredModel {
   StatedMass stated;
 };
 
-/// What a model file was, beside what is in it.
+/// Properties of a model file besides its contents.
 struct ModelFileFacts {
   std::uint32_t version = 0;   ///< of the format
   std::uint32_t checksum = 0;  ///< CRC-32C
@@ -41,7 +77,7 @@ struct ModelFileFacts {
 /// A model file, loaded.
 struct LoadedModel {
   StoredModel stored;    ///< what is in it
-  ModelFileFacts facts;  ///< what it was
+  ModelFileFacts facts;  ///< version, checksum and size
 };
 
 /// Where the bytes of a loaded model lie.
@@ -51,10 +87,10 @@ enum class ModelStorage {
   copied,
   /// In the file, mapped: no copy, and processes that load the same file share its memory. The file
   /// must not be written to or cut while the model lives: contents that change after they were
-  /// checked lead anywhere, and reading beyond the end of a file that was cut ends the process
-  /// (SIGBUS). `save_model` and `crashrank compile` never write into a file that exists, and a file
-  /// may be replaced by renaming another onto it. For files on a partition that is mounted
-  /// read-only.
+  /// checked cause undefined behaviour, and reading beyond the end of a truncated file ends the
+  /// process (SIGBUS). `save_model` and `crashrank compile` never write into a file that exists,
+  /// and a file may be replaced by renaming another onto it. For files on a partition that is
+  /// mounted read-only.
   mapped,
 };
 
@@ -65,19 +101,19 @@ struct LoadModelOptions {
 };
 
 /// Loads a model file and checks all of it: version, size, checksum, then every number, index,
-/// range, name and box, so that a file that loads is as good as a model just built, whoever wrote
-/// it. Nothing in it decides how much memory is taken beyond a small multiple of its own size.
+/// range, name and box, so that a loaded file is as valid as a model just built. The memory used is
+/// at most a small multiple of the file's size.
 ///
 /// The columns of the model borrow the bytes that were loaded (see Column) and keep them; copies of
-/// the model share them. O(file); blocks on the file system. Safe from any thread.
-/// Errors: not_found; bad_input for what is no model file, is of another version, cut, extended,
+/// the model share them. O(file); blocks on the file system. Safe from any thread. Errors:
+/// not_found; bad_input for files that are no model files, of another version, truncated, extended,
 /// damaged or forged; limit_exceeded; out_of_memory.
 CRASHRANK_API Result<LoadedModel> load_model(const std::string& path,
                                              const LoadModelOptions& options = {});
 
-/// The same from memory that holds the bytes of a model file and stays as it is for as long as
-/// `keeper` lives; without a keeper, for ever. Errors also: usage unless `bytes` begins at a
-/// multiple of 64.
+/// The same from memory that holds the bytes of a model file and does not change during the life of
+/// `keeper`; without a keeper, for ever. Errors also: usage unless `bytes` begins at a multiple of
+/// 64.
 CRASHRANK_API Result<LoadedModel> load_model(View<const unsigned char> bytes,
                                              std::shared_ptr<const void> keeper);
 
@@ -95,9 +131,9 @@ CRASHRANK_API Result<std::vector<unsigned char>> encode_model(const StoredModel&
 CRASHRANK_API Status save_model(const StoredModel& stored, const std::string& path,
                                 bool overwrite = false);
 
-/// Whether a file is to be read by `load_model`: it begins as a model file does, or is named as one
-/// (`.crm`), so that what is missing or damaged is told as such. False for what else cannot be
-/// read.
+/// True if a file is to be read by `load_model`: it begins as a model file does, or has the suffix
+/// `.crm`, so that a missing or damaged one is reported as a model file. False for other unreadable
+/// files.
 CRASHRANK_API bool is_model_file(const std::string& path);
 
 }  // namespace crashrank
