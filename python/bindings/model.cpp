@@ -50,7 +50,7 @@ SharedBody make_body(const Given<float, nb::shape<-1, 3>>& vertices,
 
   const nb::gil_scoped_release unlocked;
   auto body = std::make_shared<Body>();
-  body->stored.model = value_of(make_model(std::move(mesh)));
+  body->stored.model = shareable(value_of(make_model(std::move(mesh))));
   body->stored.mass = shell_properties(body->stored.model.mesh);
   return body;
 }
@@ -94,7 +94,7 @@ SharedBody load_body(const std::string& path, double scale, const std::string& u
     throw Failure(model.error());
   }
   auto body = std::make_shared<Body>();
-  body->stored.model = std::move(*model);
+  body->stored.model = shareable(std::move(*model));
   body->stored.transform = options.transform;
   body->stored.mass = shell_properties(body->stored.model.mesh);
   body->warnings = std::move(imported.warnings);

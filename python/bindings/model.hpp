@@ -21,6 +21,9 @@ struct Body {
 
 using SharedBody = std::shared_ptr<const Body>;
 
+/// A model whose copies share its memory: copying one costs no time that grows with its size.
+Model shareable(Model model);
+
 /// Path of the importer program that the package names; empty: found as `import_mesh` states.
 std::string importer_path();
 

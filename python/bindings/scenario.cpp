@@ -8,6 +8,7 @@
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <map>
@@ -31,7 +32,9 @@ void Situation::load() {
       stated.push_back(bodies_[i]->stored.stated);
       continue;
     }
-    LoadedScenarioModel read = value_of(load_scenario_model(scenario_.models[i], how));
+    LoadedScenarioModel read = cache_ != nullptr
+                                   ? cache_->find(scenario_.models[i], how)
+                                   : value_of(load_scenario_model(scenario_.models[i], how));
     for (const std::string& warning : read.warnings) {
       warnings.push_back(scenario_.models[i].path + ": " + warning);
     }
@@ -44,11 +47,23 @@ void Situation::load() {
   loaded_ = true;
 }
 
+std::vector<std::tuple<std::string, std::string>> Situation::model_files() const {
+  std::vector<std::tuple<std::string, std::string>> files;
+  for (std::size_t i = 0; i < scenario_.models.size(); ++i) {
+    const ScenarioModel& model = scenario_.models[i];
+    if (bodies_[i] == nullptr) files.emplace_back(model.name, model.path);
+  }
+  return files;
+}
+
 namespace {
 
 using Bodies = std::map<std::string, SharedBody>;
 
-SharedSituation with_bodies(Scenario scenario, const Bodies& bodies, const std::string& file) {
+using SharedCache = std::shared_ptr<ModelCache>;
+
+SharedSituation with_bodies(Scenario scenario, const Bodies& bodies, const std::string& file,
+                            SharedCache cache) {
   std::vector<SharedBody> by_model;
   for (const ScenarioModel& model : scenario.models) {
     const auto found = bodies.find(model.name);
@@ -62,22 +77,23 @@ SharedSituation with_bodies(Scenario scenario, const Bodies& bodies, const std::
                      "give bodies for names that the scenario's models have"});
     }
   }
-  return std::make_shared<Situation>(std::move(scenario), std::move(by_model));
+  return std::make_shared<Situation>(std::move(scenario), std::move(by_model), std::move(cache));
 }
 
 SharedSituation read_text(const std::string& text, const std::string& file,
-                          const std::vector<std::string>& allowed, const Bodies& bodies) {
+                          const std::vector<std::string>& allowed, const Bodies& bodies,
+                          SharedCache cache) {
   const nb::gil_scoped_release unlocked;
   Result<Scenario> scenario = load_scenario(text, file, ScenarioPaths{allowed});
   // `file` only says where meshes lie: there is none of that name.
   if (!scenario && scenario.error().file == file) scenario.error().file.clear();
-  return with_bodies(value_of(std::move(scenario)), bodies, {});
+  return with_bodies(value_of(std::move(scenario)), bodies, {}, std::move(cache));
 }
 
 SharedSituation read_file(const std::string& file, const std::vector<std::string>& allowed,
                           const Bodies& bodies) {
   const nb::gil_scoped_release unlocked;
-  return with_bodies(value_of(load_scenario_file(file, ScenarioPaths{allowed})), bodies, file);
+  return with_bodies(value_of(load_scenario_file(file, ScenarioPaths{allowed})), bodies, file, {});
 }
 
 std::vector<std::string> actor_names(const Situation& situation) {
@@ -102,6 +118,10 @@ std::vector<std::string> candidate_names(Situation& situation) {
 }  // namespace
 
 void bind_scenarios(nb::module_& module) {
+  nb::class_<ModelCache>(module, "ModelCache", "Models of files, kept between scenarios.")
+      .def(nb::init<std::size_t>(), nb::arg("most_triangles"))
+      .def_prop_ro("triangles", &ModelCache::triangles, "Of the models that are kept.")
+      .def_prop_ro("loads", &ModelCache::loads, "How many files were read so far.");
   nb::class_<Situation>(module, "Situation", "A scenario, checked, with its models.")
       .def_prop_ro("name", [](const Situation& self) { return self.scenario().name; })
       .def_prop_ro("description", [](const Situation& self) { return self.scenario().description; })
@@ -109,6 +129,7 @@ void bind_scenarios(nb::module_& module) {
       .def_prop_ro("measure",
                    [](const Situation& self) { return measure_name(self.scenario().measure); })
       .def("actor_names", &actor_names, "In the scenario's order.")
+      .def("model_files", &Situation::model_files, "Names and paths of models that are files.")
       .def("candidate_names", &candidate_names, "In their order; reads the models.")
       .def(
           "load",
@@ -118,7 +139,8 @@ void bind_scenarios(nb::module_& module) {
           },
           "Reads the models that are not read yet.");
   module.def("read_scenario_text", &read_text, nb::arg("text"), nb::arg("file"), nb::arg("allowed"),
-             nb::arg("bodies"), "Reads and checks a scenario in JSON.");
+             nb::arg("bodies"), nb::arg("cache").none() = nb::none(),
+             "Reads and checks a scenario in JSON.");
   module.def("read_scenario_file", &read_file, nb::arg("file"), nb::arg("allowed"),
              nb::arg("bodies"), "Reads and checks a scenario file.");
 }

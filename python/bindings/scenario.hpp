@@ -1,6 +1,7 @@
 #pragma once
 
 #include "model.hpp"
+#include "model_cache.hpp"
 
 #include "crashrank/model/model.hpp"
 #include "crashrank/scenario/scenario.hpp"
@@ -8,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace crashrank::python {
@@ -16,8 +18,9 @@ namespace crashrank::python {
 /// share it.
 class Situation {
 public:
-  Situation(Scenario scenario, std::vector<SharedBody> bodies)
-      : scenario_(std::move(scenario)), bodies_(std::move(bodies)) {}
+  /// `cache`: where models of files are kept between scenarios; null: read for this one.
+  Situation(Scenario scenario, std::vector<SharedBody> bodies, std::shared_ptr<ModelCache> cache)
+      : scenario_(std::move(scenario)), bodies_(std::move(bodies)), cache_(std::move(cache)) {}
 
   /// Reads the models that are not read yet. Not with the interpreter's lock: it may wait for
   /// another thread that reads them. Throws Failure.
@@ -29,12 +32,15 @@ public:
   const std::vector<Model>& models() const noexcept { return models_; }
   /// Of the meshes, each with its file. After `load` only.
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  /// Names and paths of the models whose files are to be read, in the scenario's order.
+  std::vector<std::tuple<std::string, std::string>> model_files() const;
 
 private:
   std::mutex mutex_;
   bool loaded_ = false;
   Scenario scenario_;
   std::vector<SharedBody> bodies_;  ///< by model, null where its file is to be read
+  std::shared_ptr<ModelCache> cache_;
   std::vector<Model> models_;
   std::vector<std::string> warnings_;
 };

@@ -35,6 +35,7 @@ from ._ranker import Ranker
 from ._ranking import RankedCandidate, Ranking, rank
 from ._record import Record
 from ._scenario import Scenario
+from .batch import rank_table
 
 __version__: str = _core.version
 
@@ -77,4 +78,5 @@ __all__ = [
     "pairs_hash",
     "pose_matrix",
     "rank",
+    "rank_table",
 ]

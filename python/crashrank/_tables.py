@@ -44,7 +44,7 @@ COLUMNS: tuple[tuple[str, str, tuple[str | int, ...]], ...] = (
 )
 
 
-def _at(row: Any, path: tuple[str | int, ...]) -> Any:
+def value_at(row: Any, path: tuple[str | int, ...]) -> Any:
     for key in path:
         if row is None:
             return None
@@ -53,7 +53,7 @@ def _at(row: Any, path: tuple[str | int, ...]) -> Any:
 
 
 def _column(document: dict[str, Any], path: tuple[str | int, ...]) -> list[Any]:
-    return [_at(row, path) for row in document["ranking"]]
+    return [value_at(row, path) for row in document["ranking"]]
 
 
 def missing(package: str, extra: str) -> NotFoundError:

@@ -80,3 +80,11 @@ def random_poses(seed: int, count: int, reach_m: float) -> np.ndarray:
     poses[:, :3, 3] = random.uniform(-reach_m, reach_m, size=(count, 3))
     poses[:, 3, 3] = 1
     return poses
+
+
+@pytest.fixture
+def scenes(tmp_path) -> pathlib.Path:
+    """Return a folder of twelve small scenes and their models."""
+    from batch_scenes import make_folder
+
+    return make_folder(tmp_path / "scenes", 12)

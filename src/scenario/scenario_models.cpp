@@ -48,10 +48,11 @@ Status check_limits(const StatedMass& stated, const ScenarioModel& wanted) {
 }
 
 /// A yaw inertia that only the model file states has to suit the mass that the body will have.
-Status check_inertia(const StatedMass& stated, const ScenarioModel& wanted, const Box& bounds) {
+Status check_inertia(const StatedMass& stated, const ScenarioModel& wanted,
+                     const TriangleMesh& mesh) {
   if (wanted.yaw_inertia_kgm2 || !stated.yaw_inertia_kgm2) return Success{};
   if (!wanted.mass_kg && stated.mass_kg) return Success{};  // was checked with the file
-  const Eigen::Vector3d extent_m = bounds.extent().cast<double>();
+  const Eigen::Vector3d extent_m = mesh.bounds().extent().cast<double>();
   const double mass_kg = wanted.mass_kg.value_or(guess_mass_kg(wanted.kind, extent_m));
   if (!std::isfinite(mass_kg)) return Success{};
   Status status = check_yaw_inertia(*stated.yaw_inertia_kgm2, mass_kg, extent_m);
@@ -60,6 +61,11 @@ Status check_inertia(const StatedMass& stated, const ScenarioModel& wanted, cons
                                           : "; that mass is guessed from kind and size";
   status.error().remedy = "give mass_kg and yaw_inertia_kgm2 in the scenario";
   return status;
+}
+
+Status check_mass(const LoadedScenarioModel& loaded, const ScenarioModel& wanted) {
+  if (Status status = check_limits(loaded.stated, wanted); !status) return status;
+  return check_inertia(loaded.stated, wanted, loaded.model.mesh);
 }
 
 Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
@@ -71,10 +77,8 @@ Result<LoadedScenarioModel> load_compiled(const ScenarioModel& wanted) {
   if (!loaded) return loaded.error();
   LoadedScenarioModel read;
   read.stated = loaded->stored.stated;
-  if (Status status = check_limits(read.stated, wanted); !status) return status.error();
-  const Box bounds = loaded->stored.model.mesh.bounds();
-  if (Status status = check_inertia(read.stated, wanted, bounds); !status) return status.error();
   read.model = std::move(loaded->stored.model);
+  if (Status status = check_mass(read, wanted); !status) return status.error();
   return read;
 }
 
@@ -105,6 +109,14 @@ Result<LoadedScenarioModel> load_scenario_model(const ScenarioModel& wanted,
         is_model_file(wanted.path) ? load_compiled(wanted) : load_mesh(wanted, options);
     if (!read) return of_model(read.error(), wanted);
     return read;
+  });
+}
+
+Status check_model_mass(const LoadedScenarioModel& loaded, const ScenarioModel& wanted) {
+  return detail::guarded([&]() -> Status {
+    Status status = check_mass(loaded, wanted);
+    if (!status) return of_model(status.error(), wanted);
+    return status;
   });
 }
 

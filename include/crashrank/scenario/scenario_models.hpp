@@ -34,6 +34,11 @@ struct LoadedScenarioModel {
 CRASHRANK_API Result<LoadedScenarioModel> load_scenario_model(
     const ScenarioModel& wanted, const ScenarioModelOptions& options = {});
 
+/// Checks that what a model file states of the mass suits the scenario, as `load_scenario_model`
+/// does: for models that are kept between scenarios. Errors: its errors of mass and yaw inertia.
+CRASHRANK_API Status check_model_mass(const LoadedScenarioModel& loaded,
+                                      const ScenarioModel& wanted);
+
 /// Reads all models of a scenario, in its order, as `rank` and `Ranker::prepare` take them, and
 /// gives the scenario what their files state of the mass (`add_stated_mass`). From then on it is
 /// the scenario's, also where another file is read later. Errors: as above, and then the scenario

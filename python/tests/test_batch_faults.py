@@ -1,0 +1,189 @@
+"""Runs of ``crashrank-batch`` that something ends: signals, killed workers, a full disk."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+
+import pytest
+from batch_scenes import (
+    command,
+    run_batch,
+    running,
+    scene,
+    wait_for_parts,
+    wait_until_gone,
+    worker_processes,
+    write_scene,
+)
+
+pa = pytest.importorskip("pyarrow")
+pq = pytest.importorskip("pyarrow.parquet")
+
+
+def results(folder):
+    """Return id, status and result of every row, by way of the folder as one data set."""
+    table = pq.read_table(folder)
+    columns = [table.column(name).to_pylist() for name in ("id", "status", "result_hash")]
+    return sorted(zip(*columns, strict=True), key=str)
+
+
+def parts(folder):
+    """Return name, inode and time of change of every part."""
+    found = sorted(folder.glob("part-*.parquet"))
+    return {each.name: (each.stat().st_ino, each.stat().st_mtime_ns) for each in found}
+
+
+@pytest.fixture
+def slow(scenes):
+    """Return a folder of many scenes that take longer: every measure is simulated."""
+    for i in range(12, 60):
+        write_scene(scenes, f"scene-{i:02}", scene(i, measure="harm"))
+    return scenes
+
+
+def test_a_run_that_was_killed_is_resumed(slow, tmp_path):
+    out = tmp_path / "out"
+    words = (slow, "-o", out, "--workers", 2, "--rows-per-part", 3)
+    with running(*words) as run:
+        wait_for_parts(out, 4)
+        workers = worker_processes(run.pid)
+        run.kill()  # SIGKILL: it cleans nothing up
+        run.wait()
+        wait_until_gone(workers)
+    there = parts(out)
+    assert 4 <= len(there) < 20
+    resumed = run_batch(*words)
+    assert resumed["found_rows"] == 3 * len(there)
+    assert set(there.items()) <= set(parts(out).items())
+    assert resumed["results"] == run_batch(slow, "-o", tmp_path / "b", "--sequential")["results"]
+    assert not list(out.glob(".*.part"))
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("how", [("--workers", 2), ("--sequential",)])
+def test_an_interrupt_leaves_a_folder_to_resume(slow, tmp_path, how, sign):
+    out = tmp_path / "out"
+    words = (slow, "-o", out, *how, "--rows-per-part", 3)
+    with running(*words) as run:
+        wait_for_parts(out, 3)
+        workers = worker_processes(run.pid)
+        # As a terminal does: to all processes of the group.
+        os.killpg(run.pid, sign) if sign == signal.SIGINT else run.send_signal(sign)
+        began = time.monotonic()
+        printed, messages = run.communicate(timeout=30)
+        assert run.returncode == 4, messages
+        assert "Traceback" not in messages
+        assert "the same command continues" in messages
+        assert "of 60 scenes" in printed
+        assert time.monotonic() - began < 20
+        wait_until_gone(workers, 5)
+    assert "Not complete" in (out / "_summary.html").read_text()
+    assert not json.loads((out / "_run.json").read_text())["complete"]
+    there = parts(out)
+    done = run_batch(slow, "-o", out, "--workers", 2)
+    assert done["found_rows"] == 3 * len(there)
+    assert done["errors"] == 0
+    assert json.loads((out / "_run.json").read_text())["complete"]
+
+
+def test_a_killed_worker_is_replaced(slow, tmp_path):
+    out = tmp_path / "out"
+    with running(slow, "-o", out, "--workers", 2, "--rows-per-part", 6) as run:
+        wait_for_parts(out, 1)
+        workers = worker_processes(run.pid)
+        assert len(workers) == 2
+        os.kill(workers[0], signal.SIGKILL)
+        printed, messages = run.communicate(timeout=120)
+        assert run.returncode == 0, messages
+        assert "a worker ended in part" in messages
+        assert "signal 9" in messages
+    reference = run_batch(slow, "-o", tmp_path / "b", "--sequential")
+    assert reference["results"] in printed
+    assert results(out) == results(tmp_path / "b")
+
+
+KILLER = """
+import os, sys
+from crashrank.batch import _worker
+rank_scene = _worker.rank_scene
+def rank_it(scene, settings):
+    if scene.id == "scene-04.json":
+        os.kill(os.getpid(), 9)
+    return rank_scene(scene, settings)
+_worker.rank_scene = rank_it
+"""
+
+
+def test_a_row_that_kills_its_workers_is_named(scenes, tmp_path):
+    hook = tmp_path / "hook"
+    hook.mkdir()
+    (hook / "sitecustomize.py").write_text(KILLER)
+    out = tmp_path / "out"
+    words = (scenes, "-o", out, "--workers", 2, "--rows-per-part", 4)
+    done = run_batch(*words, PYTHONPATH=str(hook))
+    assert (done["complete"], done["errors"]) == (True, 1)
+    rows = {row["id"]: row for row in pq.read_table(out).to_pylist()}
+    row = rows["scene-04.json"]
+    assert (row["status"], row["error_code"]) == ("error", "internal")
+    assert "ended its worker 2 times (signal 9)" in row["error"]
+    assert sum(each["status"] == "ok" for each in rows.values()) == 11
+    # The part stands; asked to, a run without the fault tries that row again.
+    assert run_batch(*words)["found_rows"] == 12
+    mended = run_batch(*words, "--retry")
+    assert (mended["found_rows"], mended["errors"]) == (8, 0)
+
+
+def test_workers_that_cannot_start_end_the_run(scenes, tmp_path):
+    hook = tmp_path / "hook"
+    hook.mkdir()
+    (hook / "sitecustomize.py").write_text(
+        "import os, sys\nif '--multiprocessing-fork' in sys.argv: os._exit(7)\n"
+    )
+    done = run_batch(scenes, "-o", tmp_path / "out", code=1, PYTHONPATH=str(hook))
+    assert "exit code 7" in done["messages"]
+    assert "--sequential" in done["messages"]
+
+
+def limited(*words, bytes_a_file):
+    """Run with a limit on the size of files, as a full disk is one."""
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_a_file, bytes_a_file))
+
+    return subprocess.run(
+        command(*words), capture_output=True, text=True, check=False, preexec_fn=limit
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("how", [("--workers", 2), ("--sequential",)])
+def test_a_full_disk_is_one_line_and_loses_nothing(scenes, tmp_path, how):
+    out = tmp_path / "out"
+    first = run_batch(scenes, "-o", tmp_path / "all", "--rows-per-part", 1)
+    size = max(each.stat().st_size for each in (tmp_path / "all").glob("part-*.parquet"))
+    for i in range(2):
+        write_scene(scenes, f"scene-{20 + i}", scene(i))
+    run_batch(scenes, "-o", out, "--sequential", "--rows-per-part", 2)
+    before = parts(out)
+    for name in list(before)[3:]:
+        (out / name).unlink()
+    done = limited(scenes, "-o", out, *how, bytes_a_file=size // 2)
+    assert done.returncode == 1
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+    assert "cannot be written: File too large" in done.stderr
+    assert "make room" in done.stderr
+    assert "scenes are done and stay" in done.stderr
+    assert not list(out.glob(".*.part"))
+    assert set(parts(out).items()) == set(list(before.items())[:3])
+    assert first["rows"] == 12
+    assert run_batch(scenes, "-o", out, "--sequential")["found_rows"] == 6
+
+
+def test_two_runs_do_not_write_one_folder(slow, tmp_path):
+    out = tmp_path / "out"
+    with running(slow, "-o", out, "--sequential", "--rows-per-part", 2):
+        wait_for_parts(out, 1)
+        done = run_batch(slow, "-o", out, code=2)
+    assert "another run writes" in done["messages"]
