@@ -1,6 +1,7 @@
 """Many small scenes for the tests of batches, and ways to run ``crashrank-batch``."""
 
 import contextlib
+import io
 import json
 import os
 import pathlib
@@ -80,15 +81,38 @@ def command(*words: object) -> list[str]:
 
 
 def run_batch(*words: object, code: int = 0, **more: str) -> dict:
-    """Run the program to its end; return its outcome, with what it printed as ``messages``."""
+    """Run the program to its end; return its outcome, with what it printed as ``messages``.
+
+    Without workers and an environment of its own it runs in this process.
+    """
     reports = () if "--reports" in words else ("--reports", 0)
+    given = [*map(str, words), *map(str, reports), "--json"]
+    run = run_here if "--sequential" in words and not more else run_there
+    found, printed, messages = run(given, more)
+    assert found == code, (found, printed, messages)
+    outcome = json.loads(printed) if printed else {}
+    return outcome | {"messages": messages}
+
+
+def run_here(words: list[str], _more: dict[str, str]) -> tuple[int, str, str]:
+    from crashrank.batch._command import main
+
+    before = signal.getsignal(signal.SIGTERM)
+    printed, messages = io.StringIO(), io.StringIO()
+    try:
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(messages):
+            code = main(words)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    return code, printed.getvalue(), messages.getvalue()
+
+
+def run_there(words: list[str], more: dict[str, str]) -> tuple[int, str, str]:
     done = subprocess.run(
-        command(*words, *reports, "--json"), capture_output=True, text=True, check=False,
-        timeout=300, env=environment(**more),
+        command(*words), capture_output=True, text=True, check=False, timeout=300,
+        env=environment(**more),
     )  # fmt: skip
-    assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
-    outcome = json.loads(done.stdout) if done.stdout else {}
-    return outcome | {"messages": done.stderr}
+    return done.returncode, done.stdout, done.stderr
 
 
 @contextlib.contextmanager

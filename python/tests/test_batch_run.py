@@ -114,13 +114,13 @@ def test_another_engine_makes_everything_anew(scenes, tmp_path, monkeypatch):
     from crashrank.batch import _parts, _worker
 
     out = tmp_path / "out"
-    words = ["-o", str(out), str(scenes), "--sequential", "--rows-per-part", "6"]
-    assert main(words) == 0
+    words = (scenes, "-o", out, "--sequential", "--rows-per-part", 6)
+    run_batch(*words)
     before = parts(out)
-    assert main(words) == 0
+    run_batch(*words)
     assert parts(out) == before
     monkeypatch.setattr(_worker, "engine_hash", lambda: "another build")
-    assert main(words) == 0
+    run_batch(*words)
     built = parts(out)
     assert not set(built) & set(before)
 
@@ -128,14 +128,8 @@ def test_another_engine_makes_everything_anew(scenes, tmp_path, monkeypatch):
         version = "99.0.0"
 
     monkeypatch.setattr(_parts, "_core", Version)
-    assert main(words) == 0
+    run_batch(*words)
     assert not set(parts(out)) & set(built)
-
-
-def main(words):
-    from crashrank.batch._command import main as run
-
-    return run(words)
 
 
 @pytest.mark.parametrize("how", ["cut", "flipped", "emptied", "foreign"])

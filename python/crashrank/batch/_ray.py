@@ -8,6 +8,7 @@ are loaded by the actors from their paths and never pass through the object stor
 from __future__ import annotations
 
 import os
+import socket
 import time
 from typing import Any
 
@@ -52,6 +53,8 @@ class Ray:
         """Connect, or start Ray, and ask for the actors."""
         ray = self._ray
         try:
+            if self._address:
+                _reach(self._address)
             ray.init(
                 address=self._address or "local",
                 include_dashboard=None if self._address else False,
@@ -62,8 +65,8 @@ class Ray:
             raise NotFoundError(
                 "not_found",
                 "",
-                "--address",
-                f"no Ray at {self._address or 'this machine'}: {str(error).splitlines()[0]}",
+                "--address" if self._address else "--engine ray",
+                f"no Ray at {self._address or 'this machine'}: {_first_line(error)}",
                 "see ray start --help",
             ) from error
         if self._count is None:
@@ -162,6 +165,13 @@ class Ray:
     def describe(self) -> str:
         """Return the engine in words."""
         return f"Ray, {self._count} actors"
+
+
+def _reach(address: str) -> None:
+    """Raise OSError where nothing listens at HOST:PORT: Ray would end the process."""
+    host, colon, port = address.rpartition(":")
+    if colon and port.isdigit() and "/" not in host:
+        socket.create_connection((host.strip("[]"), int(port)), timeout=10).close()
 
 
 def _first_line(error: BaseException) -> str:
