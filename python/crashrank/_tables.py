@@ -45,6 +45,7 @@ COLUMNS: tuple[tuple[str, str, tuple[str | int, ...]], ...] = (
 
 
 def value_at(row: Any, path: tuple[str | int, ...]) -> Any:
+    """Return what the keys lead to in a JSON answer; None where an object on the way is null."""
     for key in path:
         if row is None:
             return None

@@ -136,6 +136,23 @@ def test_a_row_that_kills_its_workers_is_named(scenes, tmp_path):
     assert (mended["found_rows"], mended["errors"]) == (8, 0)
 
 
+DEFECT = """
+from crashrank.batch import _worker
+def rank_row(*_):
+    raise KeyError("planted")
+_worker.rank_row = rank_row
+"""
+
+
+def test_a_defect_ends_the_run_and_says_so(scenes, tmp_path):
+    hook = tmp_path / "hook"
+    hook.mkdir()
+    (hook / "sitecustomize.py").write_text(DEFECT)
+    done = run_batch(scenes, "-o", tmp_path / "out", code=1, PYTHONPATH=str(hook))
+    assert "KeyError: 'planted'" in done["messages"]
+    assert len(done["messages"].splitlines()) == 1
+
+
 def test_workers_that_cannot_start_end_the_run(scenes, tmp_path):
     hook = tmp_path / "hook"
     hook.mkdir()

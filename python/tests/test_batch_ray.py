@@ -44,6 +44,10 @@ class Cluster(NamedTuple):
     address: str
     nodes: list
 
+    @property
+    def options(self):
+        return "--engine", "ray", "--address", self.address
+
     def actors(self):
         """Return the processes of the program's actors."""
         started = [each for node in self.nodes for each in descendants(node.pid)]
@@ -174,7 +178,7 @@ def ray_processes():
 
 
 def test_a_cluster_of_two_nodes_has_the_same_results(cluster, folder, reference, tmp_path):
-    words = (folder, "--engine", "ray", "--address", cluster.address, "--reports", 2)
+    words = (folder, *cluster.options, "--reports", 2)
     done = run_batch(*words, "-o", tmp_path / "a", "--rows-per-part", 1, **QUIET)
     assert done["results"] == reference["results"]
     assert len(list((tmp_path / "a/_reports").glob("*.html"))) == 2

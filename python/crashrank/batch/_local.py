@@ -35,7 +35,7 @@ def serve(pipe: Connection, job: Job) -> None:
     with contextlib.suppress(EOFError, OSError):
         pipe.send(READY)
         while True:
-            pipe.send(worker.run(pipe.recv()))
+            pipe.send(worker.run_safely(pipe.recv()))
 
 
 class _Process:

@@ -90,7 +90,7 @@ class Ray:
 
     def give(self, worker: int, task: Task) -> None:
         """Send a task."""
-        self._running[self._actors[worker].run.remote(task)] = (worker, task)
+        self._running[self._actors[worker].run_safely.remote(task)] = (worker, task)
 
     def wait(self, seconds: float) -> list[Event]:
         """Return tasks that have ended, and replace actors that have."""

@@ -194,8 +194,9 @@ def rank_row(
 
 def _candidate(document: dict[str, Any]) -> dict[str, Any]:
     row = {name: value_at(document, path) for name, _, path in COLUMNS}
+    # Contacts between others belong to no event of the ego.
     row["contacts"] = [
-        {name: value_at(contact, path) for name, _, path in CONTACT_COLUMNS}
+        {name: value_at({"event": None} | contact, path) for name, _, path in CONTACT_COLUMNS}
         for contact in document["contacts"]
     ]
     return row

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from .. import _core
-from .._errors import Error
+from .._errors import Error, InternalError
 from ._arrow import arrow
 from ._hashes import engine_hash
 from ._models import GivenModel, given_models
@@ -90,6 +90,19 @@ class Worker:
             return self._rank_part(task)
         except Error as error:
             return error
+
+    def run_safely(self, task: Task) -> Done | Error:
+        """Do a task; a defect of this package ends the run with an error, and not the worker."""
+        try:
+            return self.run(task)
+        except Exception as error:
+            return InternalError(
+                "internal",
+                "",
+                f"part {task.part.number}",
+                f"{type(error).__name__}: {error}",
+                "report this defect; --sequential shows where it is",
+            )
 
     def _read(self, row: Row) -> Scene:
         self._alive()
