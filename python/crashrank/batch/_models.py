@@ -37,7 +37,9 @@ def given_models(models: object) -> dict[str, GivenModel]:
     if models is None:
         return {}
     if not isinstance(models, Mapping):
-        raise wrong_type("models", f"is a {type(models).__name__}, not a mapping of names")
+        raise wrong_type(
+            "models", f"is a {type(models).__name__}, not a mapping", "give models by name"
+        )
     given: dict[str, GivenModel] = {}
     for key, value in models.items():
         name = as_text(key, "models")

@@ -101,7 +101,6 @@ def _read(
                 text = ""
         text = text or _to_json(document)
     scenario = Scenario.__new__(Scenario)
-    scenario._json = text
     scenario._situation = _core.read_scenario_text(
         text,
         row.file or os.path.join(row.folder, _JSON_FILE),
