@@ -118,15 +118,16 @@ std::string table_text(const std::vector<CrashTestRow>& rows, const std::vector<
       barrier +=
           fmt::format(" r {:.0f} mm, {:.0f} %", 1e3 * row.test.radius_m, 1e2 * row.test.overlap);
     }
-    table.add_row(
-        {row.test.id, barrier, measured_text(row.measured_delta_v_mps, kmh),
-         fmt::format("{:.1f}", kmh * o.delta_v_mps()),
-         relative_error_text(o.delta_v_mps(), row.measured_delta_v_mps),
-         fmt::format("{:.1f}", kmh * boxes[i].delta_v_mps()),
-         relative_error_text(boxes[i].delta_v_mps(), row.measured_delta_v_mps),
-         measured_text(row.measured_yaw_rate_dps, 1.0), fmt::format("{:.0f}", o.yaw_rate_dps()),
-         relative_error_text(o.yaw_rate_dps(), row.measured_yaw_rate_dps),
-         fmt::format("{:.0f}", boxes[i].yaw_rate_dps()), o.crash.severity.slides ? "yes" : "no"});
+    table.add_row({row.test.id, barrier, measured_text(row.measured_delta_v_mps, kmh),
+                   fmt::format("{:.1f}", kmh * o.delta_v_mps()),
+                   relative_error_text(o.delta_v_mps(), row.measured_delta_v_mps),
+                   fmt::format("{:.1f}", kmh * boxes[i].delta_v_mps()),
+                   relative_error_text(boxes[i].delta_v_mps(), row.measured_delta_v_mps),
+                   measured_text(row.measured_yaw_rate_dps, 1.0),
+                   fmt::format("{:.0f}", std::round(o.yaw_rate_dps()) + 0.0),
+                   relative_error_text(o.yaw_rate_dps(), row.measured_yaw_rate_dps),
+                   fmt::format("{:.0f}", std::round(boxes[i].yaw_rate_dps()) + 0.0),
+                   o.crash.severity.slides ? "yes" : "no"});
   }
   std::string text = table.text(colours_wanted());
   text += errors_of(rows, outcomes).text("meshes");

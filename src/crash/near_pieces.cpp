@@ -14,6 +14,7 @@ void NearPieces::resize(std::size_t most_pieces) {
   states.resize(most_blocks);
   curves.resize(most_blocks);
   listed.resize(most_blocks, 0);
+  followed.resize(most_blocks, 0);
 }
 
 void NearPieces::begin() {

@@ -35,15 +35,16 @@ struct NearGroup {
 
 /// Blocks of one body's outline whose pieces may press into another body.
 struct NearPieces {
-  std::vector<NearGroup> groups;      ///< of the present list: the first `count`
-  std::vector<PieceStates> states;    ///< by block; of those that are listed
-  std::vector<PieceCurves> curves;    ///< likewise
-  std::vector<std::uint32_t> listed;  ///< by block: number of the last list that it was in
-  std::size_t count = 0;              ///< groups in the present list
-  std::size_t pieces = 0;             ///< moved by the last pass
-  std::uint32_t list = 0;             ///< number of the present list
-  std::uint32_t begun = 0;            ///< lists since this number are of the same two bodies
-  double valid_for_m = -1e9;          ///< relative travel until the list has to be made anew
+  std::vector<NearGroup> groups;        ///< of the present list: the first `count`
+  std::vector<PieceStates> states;      ///< by block; of those that are listed
+  std::vector<PieceCurves> curves;      ///< likewise
+  std::vector<std::uint32_t> listed;    ///< by block: number of the last list that it was in
+  std::vector<std::uint16_t> followed;  ///< by block: its pieces in that list, a bit for each
+  std::size_t count = 0;                ///< groups in the present list
+  std::size_t pieces = 0;               ///< moved by the last pass
+  std::uint32_t list = 0;               ///< number of the present list
+  std::uint32_t begun = 0;              ///< lists since this number are of the same two bodies
+  double valid_for_m = -1e9;            ///< relative travel until the list has to be made anew
 
   /// Room for the blocks of so many pieces.
   void resize(std::size_t most_pieces);

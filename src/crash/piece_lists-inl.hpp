@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace crashrank::detail::HWY_NAMESPACE {
@@ -23,38 +24,34 @@ namespace crashrank::detail::HWY_NAMESPACE {
 /// A piece that never presses has advanced so far, which no step changes.
 inline constexpr float never = -1e9F;
 
-/// Begins to follow a block's pieces; those that lie too deep inside never press. Of what they
-/// crushed in an earlier contact of the two, `known`, they press no deeper part again: as far as
-/// they had advanced along their normals, and no further than they had travelled inside.
-inline void begin_block(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
-                        float allowed_m, bool known, PieceStates& states) {
+/// Begins to follow pieces of a block, a bit for each in `which`; those that lie too deep inside
+/// never press. Of what they crushed in an earlier contact of the two they press no deeper part
+/// again: as far as they had advanced along their normals, and no further than they had travelled
+/// inside.
+inline void begin_pieces(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
+                         float allowed_m, std::uint32_t which, PieceStates& states) {
   const Silhouettes& target = q.pressed->vehicle->silhouettes;
-  const PieceStates earlier = states;
-  states = {};
+  PieceStates begun;
   for (std::size_t h = 0; h < block_pieces; h += 8) {
     const F8 x = load(rows.x.data() + h);
     const F8 y = load(rows.y.data() + h);
     const F8 at_x = all(q.to.c) * x - all(q.to.s) * y + all(q.to.x);
     const F8 at_y = all(q.to.s) * x + all(q.to.c) * y + all(q.to.y);
     const F8 least = depths_at(target, block.band, at_x, at_y).least();
-    store(select(less(all(allowed_m), least), all(never), all(0.0F)), states.s.data() + h);
-    if (!known) continue;
-    const F8 crushed = minimum(load(earlier.way.data() + h), load(earlier.furthest.data() + h));
+    const F8 crushed = minimum(load(states.way.data() + h), load(states.furthest.data() + h));
     const M8 any = less(all(0.0F), crushed);
     // From where it is now: the way to the surface first.
-    store(select(any, crushed + positive(-least), all(0.0F)), states.furthest.data() + h);
-    store(select(any, all(0.0F), load(states.s.data() + h)), states.s.data() + h);
-    store(load(earlier.way.data() + h), states.way.data() + h);
-    store(load(earlier.ahead.data() + h), states.ahead.data() + h);
+    store(select(any, crushed + positive(-least), all(0.0F)), begun.furthest.data() + h);
+    const F8 s = select(less(all(allowed_m), least), all(never), all(0.0F));
+    store(select(any, all(0.0F), s), begun.s.data() + h);
   }
-  std::fill(states.s.begin() + block.count, states.s.end(), never);
-  if (!q.pusher->vehicle->in_joint.empty()) {
-    for (std::size_t k = 0; k < block.count; ++k) {
-      if (q.pusher->vehicle->in_joint[block.first + k] != 0) states.s[k] = never;
-    }
-  }
-  if (q.settings->neighbours.size() < 2) return;
+  const std::vector<std::uint8_t>& in_joint = q.pusher->vehicle->in_joint;
   for (std::size_t k = 0; k < block.count; ++k) {
+    if ((which >> k & 1U) == 0) continue;
+    states.s[k] = begun.s[k];
+    states.furthest[k] = begun.furthest[k];
+    if (!in_joint.empty() && in_joint[block.first + k] != 0) states.s[k] = never;
+    if (q.settings->neighbours.size() < 2) continue;
     const OutlinePiece& piece = q.pusher->vehicle->profile->pieces[block.first + k];
     if (is_hidden(*q.pusher, piece, block.band, *q.settings)) states.s[k] = never;
   }
@@ -115,25 +112,49 @@ HWY_INLINE M8 are_near(const CarriedBoxes& at, const BandBounds& bounds, float n
       both(less(all(bounds.min_y), at.y + reach_y), less(at.y - reach_y, all(bounds.max_y))));
 }
 
-/// Which of a group's blocks have pieces that may press within the next `near_m` of travel.
-HWY_INLINE std::uint32_t may_press(const PressQuery& q, const BlockGroup& group, float near_m) {
-  constexpr float turns = 0.25F;  // sine of how far a normal may turn until the next list
-  const Carrier& to = q.to;
-  const CarriedBoxes at = carry_boxes(to, group);
-  const M8 close = are_near(at, q.pressed->vehicle->silhouettes.bands[group.band], near_m);
-  if (bits(close) == 0) return 0;
-  // Pieces that face away from where they go do not press: the cosine between velocity and any
-  // normal of the block's cone is at most that to the mean normal plus the cone's sine.
-  const F8 own_nx = load(group.normal_x.data());
-  const F8 own_ny = load(group.normal_y.data());
-  const F8 nx = all(to.c) * own_nx - all(to.s) * own_ny;
-  const F8 ny = all(to.s) * own_nx + all(to.c) * own_ny;
-  const F8 vx = all(to.vx) - all(to.spin) * at.y;
-  const F8 vy = all(to.vy) + all(to.spin) * at.x;
-  const F8 size = load(group.half_x.data()) + load(group.half_y.data());
-  const F8 speed = square_root(vx * vx + vy * vy) + all(std::abs(to.spin)) * size;
-  const F8 sine = load(group.sine.data()) + all(turns);
-  return bits(both(close, at_most(-sine * speed, vx * nx + vy * ny)));
+/// Which of a group's blocks have pieces within `near_m` of a band's bounds.
+HWY_INLINE std::uint32_t near_blocks(const PressQuery& q, const BlockGroup& group, float near_m) {
+  const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[group.band];
+  return bits(are_near(carry_boxes(q.to, group), bounds, near_m));
+}
+
+/// Which of a block's pieces lie within `near_m` of the band's bounds, a bit for each. Piece by
+/// piece, whichever way they face: when one is followed does not depend on which others share its
+/// block, and none that turns later is found inside without having been followed there.
+HWY_INLINE std::uint32_t near_pieces(const PressQuery& q, const PieceBlock& block,
+                                     const PieceRows& rows, float near_m) {
+  const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[block.band];
+  std::uint32_t which = 0;
+  for (std::size_t h = 0; h < block.count; h += 8) {
+    const F8 x = load(rows.x.data() + h);
+    const F8 y = load(rows.y.data() + h);
+    const CarriedBoxes at{all(q.to.c) * x - all(q.to.s) * y + all(q.to.x),
+                          all(q.to.s) * x + all(q.to.c) * y + all(q.to.y), all(0.0F), all(0.0F)};
+    which |= bits(are_near(at, bounds, near_m)) << h;
+  }
+  return which & ((1U << block.count) - 1U);
+}
+
+inline void list_block(const PressQuery& q, std::size_t i, float near_m, float allowed_m,
+                       NearPieces& near) {
+  const Silhouettes& own = q.pusher->vehicle->silhouettes;
+  const PieceBlock& block = own.blocks[i];
+  PieceStates& states = near.states[i];
+  // Not in the list before this one: nothing is known of the way that its pieces came.
+  const std::uint32_t before = near.listed[i] + 1 == near.list ? near.followed[i] : 0U;
+  if (near.listed[i] <= near.begun) states = {};
+  if (before == 0 && !q.pusher->response.rigid) {
+    bend_block(q, block, own.rows[i], near.curves[i]);
+  }
+  const std::uint32_t now = near_pieces(q, block, own.rows[i], near_m);
+  for (std::size_t k = 0; k < block_pieces; ++k) {
+    if ((now >> k & 1U) == 0) states.s[k] = never;
+  }
+  if ((now & ~before) != 0) {
+    begin_pieces(q, block, own.rows[i], allowed_m, now & ~before, states);
+  }
+  near.listed[i] = near.list;
+  near.followed[i] = static_cast<std::uint16_t>(now);
 }
 
 inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
@@ -146,22 +167,14 @@ inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
   ++near.list;
   for (std::size_t g = 0; g < own.groups.size(); ++g) {
     const BlockGroup& group = own.groups[g];
-    const std::uint32_t listed = may_press(q, group, near_m);
+    std::uint32_t listed = 0;
+    for (std::uint32_t left = near_blocks(q, group, near_m); left != 0; left &= left - 1U) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      list_block(q, group.first + lane, near_m, allowed_m, near);
+      if (near.followed[group.first + lane] != 0) listed |= 1U << lane;
+    }
     if (listed == 0) continue;
     near.groups[near.count++] = {static_cast<std::uint32_t>(g), static_cast<std::uint8_t>(listed)};
-    for (std::uint32_t left = listed; left != 0; left &= left - 1U) {
-      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      const std::size_t i = group.first + lane;
-      // Not in the list before this one: nothing is known of the way it came.
-      if (near.listed[i] + 1 != near.list) {
-        const bool known = near.listed[i] > near.begun;
-        begin_block(q, own.blocks[i], own.rows[i], allowed_m, known, near.states[i]);
-        if (!q.pusher->response.rigid) {
-          bend_block(q, own.blocks[i], own.rows[i], near.curves[i]);
-        }
-      }
-      near.listed[i] = near.list;
-    }
   }
 }
 

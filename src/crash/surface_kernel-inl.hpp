@@ -137,7 +137,7 @@ template <bool both_yield> HWY_INLINE void Presser::press(const PressingPieces& 
   // Pressing and friction rise evenly up to these shares of the relative speed: material that is
   // only just closing, or only just sliding, bears part of the force.
   constexpr float closing_share = 0.1F;
-  constexpr float sliding_share = 0.15F;
+  constexpr float sliding_share = 0.3F;
   constexpr float least_even_mps = 0.2F;
   // Narrow bodies engage material beside them: width per metre of depth, on each side.
   constexpr float spread = 0.35F;
@@ -338,14 +338,16 @@ HWY_INLINE void press_block(const PressQuery& q, std::size_t block, NearPieces& 
                         load(rows.normal_x.data() + h), load(rows.normal_y.data() + h));
     const F8 before = load(states.s.data() + h);
     const F8 furthest = load(states.furthest.data() + h);
-    const F8 after = before + p.at.advance * step;
+    const M8 in_box = both(both(less(all(target.min_x), p.at.x), less(p.at.x, all(target.max_x))),
+                           both(less(all(target.min_y), p.at.y), less(p.at.y, all(target.max_y))));
+    // Ways beside the other body, before the piece has been in it, count neither forth nor back.
+    const M8 counts = either(in_box, less(all(0.0F), load(states.way.data() + h)));
+    const F8 after = before + select(counts, p.at.advance * step, all(0.0F));
     store(after, states.s.data() + h);
     store(maximum(after, furthest), states.furthest.data() + h);
     // Positive where the piece advances and has not gone back.
     const F8 fresh = minimum(p.at.advance, before - furthest + all(rounding_m));
-    p.where = both(both(less(all(0.0F), fresh), less(all(target.min_x), p.at.x)),
-                   both(less(p.at.x, all(target.max_x)),
-                        both(less(all(target.min_y), p.at.y), less(p.at.y, all(target.max_y)))));
+    p.where = both(less(all(0.0F), fresh), in_box);
     if (bits(p.where) == 0) continue;
     totals.approaching = true;
     p.rows = &rows;

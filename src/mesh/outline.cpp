@@ -18,25 +18,29 @@ constexpr double most_cells_passed = 10e6;
 
 double cross(const Vector2d& p, const Vector2d& q) { return p.x() * q.y() - p.y() * q.x(); }
 
-/// Cells over a section, a free rim of four around it.
+/// Cells over a section, a free rim of four around it. Rows lie evenly about the middle of the
+/// section: all places of a mirrored section have the mirrored bits.
 struct Raster {
-  Vector2d low = Vector2d::Zero();
+  double low_x = 0.0;
+  double middle_y = 0.0;
+  double half_rows = 0.0;
   double cell_m = 0.0;
   std::ptrdiff_t columns = 0;
   std::ptrdiff_t rows = 0;
 
   std::ptrdiff_t column_of(const Vector2d& p) const {
-    return static_cast<std::ptrdiff_t>((p.x() - low.x()) / cell_m);
+    return static_cast<std::ptrdiff_t>((p.x() - low_x) / cell_m);
   }
   std::ptrdiff_t row_of(const Vector2d& p) const {
-    return static_cast<std::ptrdiff_t>((p.y() - low.y()) / cell_m);
+    return static_cast<std::ptrdiff_t>((p.y() - middle_y) / cell_m + half_rows);
   }
   std::size_t index(std::ptrdiff_t column, std::ptrdiff_t row) const {
     return static_cast<std::size_t>(row * columns + column);
   }
   std::size_t size() const { return static_cast<std::size_t>(columns * rows); }
   Vector2d corner(std::ptrdiff_t column, std::ptrdiff_t row) const {
-    return low + cell_m * Vector2d(static_cast<double>(column), static_cast<double>(row));
+    return Vector2d(low_x + cell_m * static_cast<double>(column),
+                    middle_y + cell_m * (static_cast<double>(row) - half_rows));
   }
 };
 
@@ -58,10 +62,13 @@ Raster raster_over(const std::vector<SectionSegment>& segments, double cell_m) {
   }
   Raster raster;
   raster.cell_m = cell_m;
-  // Not on the grid of round numbers on which the corners of drawn bodies lie.
-  raster.low = low - Vector2d::Constant(4.37 * cell_m);
+  raster.low_x = low.x() - 4.37 * cell_m;
   raster.columns = static_cast<std::ptrdiff_t>(size.x() / cell_m) + 10;
-  raster.rows = static_cast<std::ptrdiff_t>(size.y() / cell_m) + 10;
+  // An odd number: no corner lies in the middle, as near to one side of an even body as to the
+  // other.
+  raster.rows = (static_cast<std::ptrdiff_t>(size.y() / cell_m) + 10) | 1;
+  raster.middle_y = 0.5 * (low.y() + high.y());
+  raster.half_rows = 0.5 * static_cast<double>(raster.rows);
   return raster;
 }
 
@@ -162,6 +169,13 @@ std::vector<char> enclosed_cells(const Raster& raster, const CellSegments& cells
   return solid;
 }
 
+/// Chooses between places that a mirror image exchanges, or that are passed in reverse in it: the
+/// one further ahead, of those the one further out.
+bool is_preferred(const Vector2d& p, const Vector2d& q, double middle_y) {
+  if (p.x() != q.x()) return p.x() > q.x();
+  return std::abs(p.y() - middle_y) > std::abs(q.y() - middle_y);
+}
+
 /// The point of the segments that is nearest to `p` within two cells; `p` where there is none.
 Vector2d snap(const Raster& raster, const std::vector<SectionSegment>& segments,
               const CellSegments& cells, const Vector2d& p) {
@@ -176,13 +190,15 @@ Vector2d snap(const Raster& raster, const std::vector<SectionSegment>& segments,
       const std::size_t cell = raster.index(i, j);
       for (std::size_t k = cells.first[cell]; k < cells.first[cell + 1]; ++k) {
         const SectionSegment& s = segments[cells.segment[k]];
-        const Vector2d along = s[1] - s[0];
-        const double length2 = along.squaredNorm();
+        // From the middle: the same bits whichever end comes first.
+        const Vector2d middle = 0.5 * (s[0] + s[1]);
+        const Vector2d half = 0.5 * (s[1] - s[0]);
+        const double length2 = half.squaredNorm();
         const double t =
-            length2 > 0.0 ? std::clamp((p - s[0]).dot(along) / length2, 0.0, 1.0) : 0.0;
-        const Vector2d q = s[0] + t * along;
+            length2 > 0.0 ? std::clamp((p - middle).dot(half) / length2, -1.0, 1.0) : 0.0;
+        const Vector2d q = middle + t * half;
         const double distance2 = (q - p).squaredNorm();
-        if (distance2 < best) {
+        if (distance2 < best || (distance2 == best && is_preferred(q, at, raster.middle_y))) {
           best = distance2;
           at = q;
         }
@@ -193,9 +209,11 @@ Vector2d snap(const Raster& raster, const std::vector<SectionSegment>& segments,
 }
 
 /// Marks the points between two kept ones that a line through the kept ones is too far from
-/// (Douglas and Peucker 1973).
+/// (Douglas and Peucker 1973). Of points that are as far but for rounding the preferred one, or the
+/// first and the last that are preferred alike: the same points whichever way the line runs.
 void keep_between(const OutlineLoop& line, std::size_t from, std::size_t to, double tolerance_m,
-                  std::vector<char>& kept) {
+                  double middle_y, std::vector<char>& kept) {
+  constexpr double rounding = 1e-9;
   std::vector<std::array<std::size_t, 2>> open{{from, to}};
   while (!open.empty()) {
     const auto [i, j] = open.back();
@@ -203,44 +221,58 @@ void keep_between(const OutlineLoop& line, std::size_t from, std::size_t to, dou
     if (j <= i + 1) continue;
     const Vector2d along = line[j] - line[i];
     const double length2 = along.squaredNorm();
-    double worst = -1.0;
-    std::size_t at = i;
-    for (std::size_t k = i + 1; k < j; ++k) {
+    const auto distance2_of = [&, i = i](std::size_t k) {
       const Vector2d p = line[k] - line[i];
       const double t = length2 > 0.0 ? std::clamp(p.dot(along) / length2, 0.0, 1.0) : 0.0;
-      const double distance2 = (p - t * along).squaredNorm();
-      if (distance2 > worst) {
-        worst = distance2;
-        at = k;
-      }
+      return (p - t * along).squaredNorm();
+    };
+    double worst = 0.0;
+    for (std::size_t k = i + 1; k < j; ++k) worst = std::max(worst, distance2_of(k));
+    if (!(worst > tolerance_m * tolerance_m)) continue;
+    std::size_t first = i;
+    std::size_t last = i;
+    for (std::size_t k = i + 1; k < j; ++k) {
+      if (distance2_of(k) < worst * (1.0 - rounding)) continue;
+      if (first == i || is_preferred(line[k], line[first], middle_y)) first = k;
+      if (!is_preferred(line[first], line[k], middle_y)) last = k;
     }
-    if (worst > tolerance_m * tolerance_m) {
-      kept[at] = 1;
-      open.push_back({i, at});
-      open.push_back({at, j});
-    }
+    kept[first] = kept[last] = 1;
+    open.push_back({i, first});
+    open.push_back({first, last});
+    open.push_back({last, j});
   }
 }
 
-OutlineLoop simplified(OutlineLoop loop, double tolerance_m) {
-  const auto leftmost =
-      std::min_element(loop.begin(), loop.end(), [](const Vector2d& p, const Vector2d& q) {
-        return p.x() != q.x() ? p.x() < q.x() : p.y() < q.y();
-      });
-  std::rotate(loop.begin(), leftmost, loop.end());
-  std::size_t furthest = 0;
+/// The loop without the points that are nearly on the lines between others. It is parted at its
+/// rearmost and foremost points; of several the outermost to both sides.
+OutlineLoop simplified(OutlineLoop loop, double tolerance_m, double middle_y) {
+  std::array<std::size_t, 4> ends{};
   for (std::size_t k = 0; k < loop.size(); ++k) {
-    if ((loop[k] - loop[0]).norm() > (loop[furthest] - loop[0]).norm()) furthest = k;
+    const auto take = [&](std::size_t& end, double sign_x, double sign_y) {
+      const double ahead = sign_x * (loop[k].x() - loop[end].x());
+      if (ahead > 0.0 || (ahead == 0.0 && sign_y * (loop[k].y() - loop[end].y()) > 0.0)) end = k;
+    };
+    take(ends[0], -1.0, -1.0);
+    take(ends[1], -1.0, 1.0);
+    take(ends[2], 1.0, -1.0);
+    take(ends[3], 1.0, 1.0);
   }
+  std::sort(ends.begin(), ends.end());
+  const std::size_t start = ends[0];
+  std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(start), loop.end());
   loop.push_back(loop.front());
   std::vector<char> kept(loop.size(), 0);
-  kept[0] = kept[furthest] = 1;
-  keep_between(loop, 0, furthest, tolerance_m, kept);
-  keep_between(loop, furthest, loop.size() - 1, tolerance_m, kept);
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    const std::size_t from = ends[e] - start;
+    const std::size_t to = e + 1 < ends.size() ? ends[e + 1] - start : loop.size() - 1;
+    kept[from] = 1;
+    keep_between(loop, from, to, tolerance_m, middle_y, kept);
+  }
   OutlineLoop simple;
   for (std::size_t k = 0; k + 1 < loop.size(); ++k) {
-    if (kept[k] != 0) simple.push_back(loop[k]);
+    if (kept[k] != 0 && (simple.empty() || simple.back() != loop[k])) simple.push_back(loop[k]);
   }
+  while (simple.size() > 1 && simple.front() == simple.back()) simple.pop_back();
   return simple;
 }
 
@@ -261,7 +293,6 @@ std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segme
   const Raster raster = raster_over(segments, cell_m);
   const CellSegments cells = sort_into_cells(raster, segments);
   const std::vector<char> solid = enclosed_cells(raster, cells);
-  const double apart_m = 0.1 * raster.cell_m;
 
   // Along the border with the solid cells to the left: steps of one cell in the directions 0 (+x),
   // 1 (+y), 2 (-x), 3 (-y). `begun` marks edges below solid cells, with which every loop begins.
@@ -287,8 +318,7 @@ std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segme
       std::size_t direction = 0;
       do {
         if (direction == 0) begun[raster.index(x, y)] = 1;
-        const Vector2d point = snap(raster, segments, cells, raster.corner(x, y));
-        if (loop.empty() || (point - loop.back()).norm() > apart_m) loop.push_back(point);
+        loop.push_back(snap(raster, segments, cells, raster.corner(x, y)));
         x += step_x[direction];
         y += step_y[direction];
         // Left where that keeps solid cells to the left and free ones to the right, else ahead,
@@ -303,9 +333,7 @@ std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segme
           }
         }
       } while (x != column || y != row || direction != 0);
-      while (loop.size() > 1 && (loop.front() - loop.back()).norm() <= apart_m) loop.pop_back();
-      if (loop.size() < 2) continue;
-      loop = simplified(std::move(loop), tolerance_m);
+      loop = simplified(std::move(loop), tolerance_m, raster.middle_y);
       if (loop.size() < 2) continue;
       // Around what is thinner than a cell, moving the points onto the segments can turn it over.
       if (loop_area_m2(loop) < 0.0) std::reverse(loop.begin(), loop.end());

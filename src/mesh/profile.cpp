@@ -12,10 +12,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Of the raster and of the line: finer for small bodies, so that a pole stays round.
-constexpr double coarsest_cell_m = 0.02;
-constexpr double finest_cell_m = 0.002;
-constexpr double cells_along = 250.0;
+/// Of the raster and of the line: finer for small bodies, so that a pole stays round. No round
+/// numbers, on whose grid the corners of drawn bodies lie.
+constexpr double coarsest_cell_m = 0.0199;
+constexpr double finest_cell_m = 0.00199;
+constexpr double cells_along = 251.3;
 constexpr double tolerance_cells = 0.25;
 /// Two across a motorcycle's tyre: pieces act at their middles.
 constexpr double usual_piece_m = 0.5 * longest_piece_m;
@@ -90,8 +91,10 @@ void add_pieces(const detail::OutlineLoop& loop, double longest_m,
     if (!(length > 1e-6)) continue;
     const int count = std::max(1, static_cast<int>(std::ceil(length / longest_m - 1e-6)));
     const Vector2d normal(along.y() / length, -along.x() / length);
+    const Vector2d half_sum = 0.5 * (from + loop[(i + 1) % loop.size()]);
     for (int k = 0; k < count; ++k) {
-      const Vector2d middle = from + ((k + 0.5) / count) * along;
+      // From the middle: the same bits whichever way the line runs.
+      const Vector2d middle = half_sum + ((2 * k + 1 - count) / (2.0 * count)) * along;
       pieces.push_back({static_cast<float>(middle.x()), static_cast<float>(middle.y()),
                         static_cast<float>(normal.x()), static_cast<float>(normal.y()),
                         static_cast<float>(length / count)});

@@ -75,8 +75,6 @@ void add_to_group(const Profile& profile, const PieceBlock& block, std::size_t l
   float low_y = low_x;
   float high_x = -low_x;
   float high_y = -low_x;
-  float normal_x = 0.0F;
-  float normal_y = 0.0F;
   const OutlinePiece* const first = profile.pieces.data() + block.first;
   const OutlinePiece* const last = first + block.count;
   for (const OutlinePiece* piece = first; piece != last; ++piece) {
@@ -84,25 +82,11 @@ void add_to_group(const Profile& profile, const PieceBlock& block, std::size_t l
     high_x = std::max(high_x, piece->x);
     low_y = std::min(low_y, piece->y);
     high_y = std::max(high_y, piece->y);
-    normal_x += piece->normal_x;
-    normal_y += piece->normal_y;
   }
   group.x[lane] = 0.5F * (low_x + high_x);
   group.y[lane] = 0.5F * (low_y + high_y);
   group.half_x[lane] = 0.5F * (high_x - low_x);
   group.half_y[lane] = 0.5F * (high_y - low_y);
-  group.sine[lane] = 2.0F;
-  const float length = std::hypot(normal_x, normal_y);
-  if (!(length > 1e-3F)) return;
-  normal_x /= length;
-  normal_y /= length;
-  group.normal_x[lane] = normal_x;
-  group.normal_y[lane] = normal_y;
-  float cosine = 1.0F;
-  for (const OutlinePiece* piece = first; piece != last; ++piece) {
-    cosine = std::min(cosine, piece->normal_x * normal_x + piece->normal_y * normal_y);
-  }
-  if (cosine > 0.0F) group.sine[lane] = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine));
 }
 
 /// Groups of a band's blocks, which are the last.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -115,6 +116,43 @@ TEST(Profile, OfEveryShippedModelHoldsItsSectionsAndReachesAsFar) {
       EXPECT_LE((reached_high - high).cwiseAbs().maxCoeff(), cell) << "band " << i;
     }
   }
+}
+
+/// Pieces of a band, sorted.
+std::vector<std::array<float, 5>> sorted_pieces(const Profile& profile, std::size_t band,
+                                                bool mirrored) {
+  std::vector<std::array<float, 5>> rows;
+  const float side = mirrored ? -1.0F : 1.0F;
+  for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
+    const OutlinePiece& p = profile.pieces[i];
+    rows.push_back({p.x, side * p.y, p.normal_x, side * p.normal_y, p.length_m});
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+TEST(Profile, OfAMirrorImageIsTheMirrorImage) {
+  std::size_t pieces = 0;
+  for (const char* name :
+       {"hatch", "sedan", "truck", "motorcycle", "pedestrian", "jersey_barrier", "pole", "wall"}) {
+    SCOPED_TRACE(name);
+    TriangleMesh mesh = shipped(name);
+    const Profile profile = profile_of(mesh);
+    for (Eigen::Vector3f& v : mesh.vertices) v.y() = -v.y();
+    for (std::array<std::uint32_t, 3>& t : mesh.triangles) std::swap(t[0], t[1]);
+    const Profile mirrored = profile_of(mesh);
+    for (std::size_t band = 0; band < profile_bands; ++band) {
+      const auto before = sorted_pieces(profile, band, false);
+      const auto after = sorted_pieces(mirrored, band, true);
+      std::vector<std::array<float, 5>> alone;
+      std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
+                                    std::back_inserter(alone));
+      EXPECT_TRUE(alone.empty()) << "band " << band << ", of " << before.size() << " pieces "
+                                 << testing::PrintToString(alone);
+    }
+    pieces += profile.pieces.size();
+  }
+  EXPECT_GT(pieces, 4000U);
 }
 
 TEST(Profile, OfTheShippedBodiesOfKnownShapeHasTheirArea) {

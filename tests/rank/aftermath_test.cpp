@@ -41,12 +41,22 @@ TEST(Aftermath, TheForceIsTheWallsThatBearsItNotThePostsMetFirst) {
   scene.add_actor("post", post, 49.2, 1.04);
   scene.add_candidate("straight on", 0.0);
   const CandidateResult ranked = scene.ranked().ranking.front();
-  ASSERT_EQ(ranked.contacts.size(), 2U);
+  ASSERT_GE(ranked.contacts.size(), 2U);
   EXPECT_EQ(scene.scenario.actors[ranked.contacts[0].actor].name, "post");
-  EXPECT_LT(ranked.contacts[0].severity.ego.delta_v_mps, 1.0);
-  EXPECT_EQ(scene.scenario.actors[ranked.contacts[1].actor].name, "wall");
-  EXPECT_GT(ranked.contacts[1].severity.ego.delta_v_mps, 20.0);
-  EXPECT_GE(ranked.contacts[1].time_of_impact_s, ranked.contacts[0].time_of_impact_s);
+  int walls = 0;
+  for (const Contact& contact : ranked.contacts) {
+    const double delta_v_mps = contact.severity.ego.delta_v_mps;
+    std::printf("%s at %.4f s: %.3f m/s\n", scene.scenario.actors[contact.actor].name.c_str(),
+                contact.time_of_impact_s, delta_v_mps);
+    EXPECT_GE(contact.time_of_impact_s, ranked.contacts[0].time_of_impact_s);
+    if (scene.scenario.actors[contact.actor].name == "post") {
+      EXPECT_LT(delta_v_mps, 1.0);
+    } else {
+      ++walls;
+      EXPECT_GT(delta_v_mps, 20.0);
+    }
+  }
+  EXPECT_EQ(walls, 1);
 }
 
 /// Braking and steering by a listed manoeuvre and by the same motion in poses every 50 ms: what the

@@ -36,20 +36,16 @@ struct PieceBlock {
   std::uint16_t band = 0;   ///< height band
 };
 
-/// Up to eight consecutive blocks of one band by field, for vector units: boxes around them and
-/// cones around their normals. Those beyond the group's count are empty.
+/// Up to eight consecutive blocks of one band by field, for vector units: boxes around them.
+/// Those beyond the group's count are empty.
 struct alignas(64) BlockGroup {
   static constexpr float empty = -1e9F;  ///< extent of those beyond the count
   std::array<float, 8> x{};              ///< centre of the box, m
   std::array<float, 8> y{};              ///< m
   std::array<float, 8> half_x{};         ///< half its length, m
   std::array<float, 8> half_y{};         ///< and width, m
-  std::array<float, 8> normal_x{};       ///< mean of the normals, unit; zero where they cancel
-  std::array<float, 8> normal_y{};       ///< see `normal_x`
-  /// Sine of the greatest angle between a normal and their mean, 2 from a right angle on.
-  std::array<float, 8> sine{};
-  std::uint32_t first = 0;  ///< block
-  std::uint16_t band = 0;   ///< height band
+  std::uint32_t first = 0;               ///< block
+  std::uint16_t band = 0;                ///< height band
 };
 
 /// The pieces of a block by field, for vector units: rows of `OutlinePiece`s. Places beyond the
