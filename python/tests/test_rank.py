@@ -241,7 +241,9 @@ def test_progress_is_told_and_may_end_the_ranking():
 
 
 INTERRUPTED = """
-import sys, time, crashrank
+import signal, sys, crashrank
+# A shell's background process would ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scenario = crashrank.Scenario.load(sys.argv[1]).load_models()
 print("ready", flush=True)
 ranking = crashrank.rank(scenario, workers=2, **eval(sys.argv[2]))
