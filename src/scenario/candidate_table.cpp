@@ -21,7 +21,7 @@ constexpr std::size_t required_columns = z;
 constexpr std::array<const char*, column_count> column_names{
     "candidate", "t_s", "x_m", "y_m", "yaw_deg", "z_m", "pitch_deg", "roll_deg"};
 constexpr std::array<NumberRange, column_count> column_ranges{{{},
-                                                               {0.0, limits::horizon_s},
+                                                               ranges::pose_time,
                                                                ranges::position,
                                                                ranges::position,
                                                                ranges::angle,

@@ -153,11 +153,8 @@ std::optional<double> JsonObject::optional_number(const char* key, NumberRange r
   return number(key, range, range.highest);
 }
 
-std::size_t JsonObject::count(const char* key, std::size_t lowest, std::size_t highest,
-                              std::size_t otherwise) const {
-  const double number =
-      this->number(key, {static_cast<double>(lowest), static_cast<double>(highest)},
-                   static_cast<double>(otherwise));
+std::size_t JsonObject::count(const char* key, NumberRange range, std::size_t otherwise) const {
+  const double number = this->number(key, range, static_cast<double>(otherwise));
   if (number != std::floor(number)) {
     refuse(key, "is " + number_text(number) + ", not a whole number", "round it");
     return otherwise;

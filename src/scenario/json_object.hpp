@@ -30,8 +30,8 @@ public:
   std::string name(const char* key, std::size_t max_characters) const;
   double number(const char* key, NumberRange range, double otherwise) const;
   std::optional<double> optional_number(const char* key, NumberRange range) const;
-  std::size_t count(const char* key, std::size_t lowest, std::size_t highest,
-                    std::size_t otherwise) const;
+  /// A whole number.
+  std::size_t count(const char* key, NumberRange range, std::size_t otherwise) const;
   bool flag(const char* key, bool otherwise) const;
   /// An array of at most that many elements; null when it is absent or wrong.
   const nlohmann::json* array(const char* key, std::size_t lowest, std::size_t highest) const;

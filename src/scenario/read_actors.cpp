@@ -8,7 +8,6 @@
 
 namespace crashrank::detail {
 
-namespace limits = scenario_limits;
 using namespace ranges;
 using nlohmann::json;
 
@@ -124,7 +123,7 @@ std::vector<TimedPose> read_poses(const JsonObject& parent) {
                             parent.status(),
                             {"t_s", "x_m", "y_m", "z_m", "yaw_deg", "pitch_deg", "roll_deg"});
     object.require("t_s");
-    const double time = object.number("t_s", {0.0, limits::horizon_s}, 0.0);
+    const double time = object.number("t_s", pose_time, 0.0);
     if (poses.empty() ? time != 0.0 : time <= poses.back().time_s) {
       object.refuse("t_s", poses.empty() ? "the first pose is not at time 0" : "does not rise",
                     "start at 0 and let times rise from pose to pose");

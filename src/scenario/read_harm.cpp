@@ -1,15 +1,14 @@
 #include "scenario/read_harm.hpp"
 
+#include "scenario/key_ranges.hpp"
+
 #include <optional>
 #include <string>
 
 namespace crashrank::detail {
 namespace {
 
-constexpr NumberRange weight{0.0, harm_limits::weight};
-constexpr NumberRange people{0.0, harm_limits::people};
-constexpr NumberRange friction{0.0, harm_limits::friction};
-constexpr NumberRange share{0.0, 1.0};
+using namespace ranges;
 
 /// [least, most], the first no greater than the second.
 void read_range(const JsonObject& object, const char* key, NumberRange range, double& least,
@@ -63,12 +62,9 @@ void read_ranges(const JsonObject& parent, HarmRanges& r) {
   const JsonObject object(parent.at("ranges"), parent.path_of("ranges"), parent.status(),
                           {"friction", "strength", "restitution", "risk_speed", "all_models"});
   read_range(object, "friction", friction, r.least_friction, r.most_friction);
-  read_range(object, "strength", {harm_limits::min_strength, harm_limits::max_strength},
-             r.least_strength, r.most_strength);
-  read_range(object, "restitution", {0.0, harm_limits::restitution}, r.least_restitution,
-             r.most_restitution);
-  read_range(object, "risk_speed", {harm_limits::min_risk_speed, harm_limits::max_risk_speed},
-             r.least_risk_speed, r.most_risk_speed);
+  read_range(object, "strength", strength, r.least_strength, r.most_strength);
+  read_range(object, "restitution", restitution, r.least_restitution, r.most_restitution);
+  read_range(object, "risk_speed", risk_speed, r.least_risk_speed, r.most_risk_speed);
   r.all_models = object.flag("all_models", r.all_models);
 }
 
@@ -89,7 +85,7 @@ void read_harm(const JsonObject& object, HarmOptions& harm) {
   if (object.has("pedestrian")) {
     const JsonObject person(object.at("pedestrian"), object.path_of("pedestrian"), object.status(),
                             {"age_years", "male_share"});
-    read_mean_or(person, "age_years", {0.0, harm_limits::age_years}, harm.pedestrian.age_years);
+    read_mean_or(person, "age_years", age, harm.pedestrian.age_years);
     read_mean_or(person, "male_share", share, harm.pedestrian.male_share);
   }
   harm.friction = object.number("friction", friction, harm.friction);
@@ -107,9 +103,9 @@ void read_harm(const JsonObject& object, HarmOptions& harm) {
     // Without effect, but no nonsense either.
     const JsonObject after(object.at("after_impact"), object.path_of("after_impact"),
                            object.status(), {"deceleration_mps2", "longest_s", "most_contacts"});
-    after.number("deceleration_mps2", {0.0, harm_limits::deceleration_mps2}, 0.0);
-    after.number("longest_s", {0.0, harm_limits::after_s}, 0.0);
-    after.count("most_contacts", 1, harm_limits::contacts, 1);
+    after.number("deceleration_mps2", former_deceleration, 0.0);
+    after.number("longest_s", former_time, 0.0);
+    after.count("most_contacts", former_contacts, 1);
   }
   harm.least_struck_share = object.number("least_struck_share", share, harm.least_struck_share);
 }

@@ -80,10 +80,8 @@ Road read_road(const JsonObject& root) {
   if (object.has("off_road")) {
     const JsonObject off(object.at("off_road"), object.path_of("off_road"), root.status(),
                          {"harm_per_leaving", "grip"});
-    road.harm_per_leaving =
-        off.number("harm_per_leaving", {0.0, road_limits::harm_per_leaving}, 0.0);
-    road.off_road_grip =
-        off.optional_number("grip", {scenario_limits::min_grip, scenario_limits::max_grip});
+    road.harm_per_leaving = off.number("harm_per_leaving", ranges::harm_per_leaving, 0.0);
+    road.off_road_grip = off.optional_number("grip", ranges::grip);
   }
   return road;
 }

@@ -33,16 +33,7 @@ public:
     }
   }
 
-  void at_most(const std::string& path, double number, double limit, double unit = 1.0) {
-    within(path, number, {-limit, limit}, unit);
-  }
-
-  void not_negative(const std::string& path, double number, double limit, double unit = 1.0) {
-    within(path, number, {0.0, limit}, unit);
-  }
-
-  void range(const std::string& path, double least, double most, double lowest, double highest) {
-    const NumberRange range{lowest, highest};
+  void both_within(const std::string& path, double least, double most, NumberRange range) {
     within(path, least, range);
     within(path, most, range);
     if (least > most) refuse(path, "begins above its end", "give the lower end first");
@@ -54,7 +45,7 @@ public:
     }
     for (const auto& [axis, key] :
          {std::pair(0, ".x_m"), std::pair(1, ".y_m"), std::pair(2, ".z_m")}) {
-      at_most(path + key, pose.translation[axis], limits::position_m);
+      within(path + key, pose.translation[axis], ranges::position);
     }
   }
 
@@ -67,7 +58,7 @@ public:
   void poses(const std::string& path, const std::vector<TimedPose>& poses) {
     for (std::size_t i = 0; i < poses.size() && status.ok(); ++i) {
       const std::string at = path + "[" + std::to_string(i) + "]";
-      not_negative(at + ".t_s", poses[i].time_s, limits::horizon_s);
+      within(at + ".t_s", poses[i].time_s, ranges::pose_time);
       pose(at, poses[i].pose);
     }
   }
@@ -93,26 +84,24 @@ void check_models(const Scenario& scenario, Check& check) {
   for (const ScenarioModel& model : scenario.models) {
     const std::string path = "models." + model.name;
     if (model.mass_kg) {
-      check.within(path + ".mass_kg", *model.mass_kg, {limits::min_mass_kg, limits::max_mass_kg});
+      check.within(path + ".mass_kg", *model.mass_kg, ranges::mass);
     }
     if (model.center_of_mass_m) {
       for (Eigen::Index i = 0; i < 3; ++i) {
-        check.at_most(path + ".center_of_mass_m[" + std::to_string(i) + "]",
-                      (*model.center_of_mass_m)[i], limits::position_m);
+        check.within(path + ".center_of_mass_m[" + std::to_string(i) + "]",
+                     (*model.center_of_mass_m)[i], ranges::position);
       }
     }
     if (model.yaw_inertia_kgm2) {
-      check.within(path + ".yaw_inertia_kgm2", *model.yaw_inertia_kgm2,
-                   {0.0, limits::yaw_inertia_kgm2, true});
+      check.within(path + ".yaw_inertia_kgm2", *model.yaw_inertia_kgm2, ranges::yaw_inertia);
     }
-    check.within(path + ".stiffness", model.stiffness,
-                 {limits::min_stiffness, limits::max_stiffness});
+    check.within(path + ".stiffness", model.stiffness, ranges::stiffness);
     if (model.honeycomb) {
       const Honeycomb& h = *model.honeycomb;
       check.within(path + ".honeycomb.pressure_pa", h.pressure_pa, ranges::honeycomb_pressure);
-      check.within(path + ".honeycomb.depth_m", h.depth_m, ranges::honeycomb_depth);
-      check.within(path + ".honeycomb.high_m", h.high_m, ranges::honeycomb_depth);
-      check.not_negative(path + ".honeycomb.low_m", h.low_m, limits::honeycomb_m);
+      check.within(path + ".honeycomb.depth_m", h.depth_m, ranges::honeycomb_size);
+      check.within(path + ".honeycomb.high_m", h.high_m, ranges::honeycomb_size);
+      check.within(path + ".honeycomb.low_m", h.low_m, ranges::honeycomb_low);
       if (!(h.low_m < h.high_m)) {
         check.refuse(path + ".honeycomb.low_m", "is not below high_m", "give the lower end");
       }
@@ -126,23 +115,19 @@ void check_ego(const Scenario& scenario, Check& check) {
     check.refuse("ego.model", "is not among the models", "add the model first");
   }
   check.pose("ego.pose", ego.pose);
-  check.at_most("ego.speed_mps", ego.speed_mps, limits::speed_mps);
-  check.at_most("ego.yaw_rate_dps", ego.yaw_rate_radps, limits::yaw_rate_dps, rad_per_deg);
-  check.not_negative("ego.max_acceleration_mps2", ego.max_acceleration_mps2,
-                     limits::acceleration_mps2);
-  check.not_negative("ego.max_steering_deg", ego.max_steering_rad, limits::steering_deg,
-                     rad_per_deg);
-  check.within("ego.max_steering_rate_dps", ego.max_steering_rate_radps, ranges::steering_rate,
+  check.within("ego.speed_mps", ego.speed_mps, ranges::speed);
+  check.within("ego.yaw_rate_dps", ego.yaw_rate_radps, ranges::yaw_rate, rad_per_deg);
+  check.within("ego.max_acceleration_mps2", ego.max_acceleration_mps2, ranges::max_acceleration);
+  check.within("ego.max_steering_deg", ego.max_steering_rad, ranges::max_steering, rad_per_deg);
+  check.within("ego.max_steering_rate_dps", ego.max_steering_rate_radps, ranges::max_steering_rate,
                rad_per_deg);
   if (ego.max_deceleration_mps2) {
-    check.within("ego.max_deceleration_mps2", *ego.max_deceleration_mps2,
-                 {limits::min_deceleration_mps2, limits::acceleration_mps2});
+    check.within("ego.max_deceleration_mps2", *ego.max_deceleration_mps2, ranges::max_deceleration);
   }
   if (ego.wheelbase_m) {
-    check.within("ego.wheelbase_m", *ego.wheelbase_m,
-                 {limits::min_wheelbase_m, limits::max_wheelbase_m});
+    check.within("ego.wheelbase_m", *ego.wheelbase_m, ranges::wheelbase);
   }
-  check.not_negative("ego.occupants", ego.occupants.value_or(0.0), harm_limits::people);
+  check.within("ego.occupants", ego.occupants.value_or(0.0), ranges::occupants);
   check.uncertainty("ego.uncertainty", ego.uncertainty);
 }
 
@@ -150,12 +135,11 @@ void check_candidates(const Scenario& scenario, Check& check) {
   for (std::size_t i = 0; i < scenario.listed.size() && check.status.ok(); ++i) {
     const ListedCandidate& candidate = scenario.listed[i];
     const std::string path = ranges::indexed("candidates.listed", i);
-    check.at_most(path + ".acceleration_mps2", candidate.acceleration_mps2,
-                  limits::acceleration_mps2);
-    check.at_most(path + ".steering_deg", candidate.steering_rad.value_or(0.0),
-                  limits::steering_deg, rad_per_deg);
-    check.at_most(path + ".yaw_rate_dps", candidate.yaw_rate_radps.value_or(0.0),
-                  limits::yaw_rate_dps, rad_per_deg);
+    check.within(path + ".acceleration_mps2", candidate.acceleration_mps2, ranges::acceleration);
+    check.within(path + ".steering_deg", candidate.steering_rad.value_or(0.0), ranges::steering,
+                 rad_per_deg);
+    check.within(path + ".yaw_rate_dps", candidate.yaw_rate_radps.value_or(0.0), ranges::yaw_rate,
+                 rad_per_deg);
     check.poses(path + ".poses", candidate.poses);
     if (candidate.poses.empty()) continue;
     if (!begins_at(candidate.poses.front().pose, scenario.ego.pose)) {
@@ -184,9 +168,9 @@ void check_candidates(const Scenario& scenario, Check& check) {
 
 void check_motion(const std::string& path, const ActorMotion& motion, Check& check) {
   check.pose(path + ".pose", motion.pose);
-  check.at_most(path + ".speed_mps", motion.speed_mps, limits::speed_mps);
-  check.at_most(path + ".acceleration_mps2", motion.acceleration_mps2, limits::acceleration_mps2);
-  check.at_most(path + ".yaw_rate_dps", motion.yaw_rate_radps, limits::yaw_rate_dps, rad_per_deg);
+  check.within(path + ".speed_mps", motion.speed_mps, ranges::speed);
+  check.within(path + ".acceleration_mps2", motion.acceleration_mps2, ranges::acceleration);
+  check.within(path + ".yaw_rate_dps", motion.yaw_rate_radps, ranges::yaw_rate, rad_per_deg);
   check.poses(path + ".poses", motion.poses);
 }
 
@@ -198,7 +182,7 @@ void check_actors(const Scenario& scenario, Check& check) {
       check.refuse(path + ".model", "is not among the models", "add the model first");
     }
     check_motion(path, actor, check);
-    check.not_negative(path + ".occupants", actor.occupants.value_or(0.0), harm_limits::people);
+    check.within(path + ".occupants", actor.occupants.value_or(0.0), ranges::occupants);
     check.within(path + ".existence_probability", actor.existence_probability, ranges::existence);
     check.uncertainty(path + ".perception", actor.perception);
     for (std::size_t k = 0; k < actor.predictions.size() && check.status.ok(); ++k) {
@@ -240,32 +224,30 @@ void check_sum(const std::vector<Weighted>& weighted, const std::string& path, C
 }
 
 void check_harm(const HarmOptions& harm, const std::string& path, Check& check) {
-  namespace bounds = harm_limits;
   const HarmWeights& w = harm.weights;
-  check.not_negative(path + ".weights.ego_occupant", w.ego_occupant, bounds::weight);
-  check.not_negative(path + ".weights.other_occupant", w.other_occupant, bounds::weight);
-  check.not_negative(path + ".weights.pedestrian", w.pedestrian, bounds::weight);
-  check.not_negative(path + ".weights.cyclist", w.cyclist, bounds::weight);
-  check.not_negative(path + ".weights.motorcyclist", w.motorcyclist, bounds::weight);
-  check.not_negative(path + ".weights.property_per_mj", w.property_per_mj, bounds::weight);
-  check.not_negative(path + ".people.ego", w.people_in_ego, bounds::people);
-  check.not_negative(path + ".people.car", w.people_in_car, bounds::people);
-  check.not_negative(path + ".people.truck", w.people_in_truck, bounds::people);
-  check.not_negative(path + ".people.bus", w.people_in_bus, bounds::people);
-  check.not_negative(path + ".pedestrian.age_years", harm.pedestrian.age_years.value_or(0.0),
-                     bounds::age_years);
-  check.not_negative(path + ".pedestrian.male_share", harm.pedestrian.male_share.value_or(0.0),
-                     1.0);
-  check.not_negative(path + ".friction", harm.friction, bounds::friction);
+  check.within(path + ".weights.ego_occupant", w.ego_occupant, ranges::weight);
+  check.within(path + ".weights.other_occupant", w.other_occupant, ranges::weight);
+  check.within(path + ".weights.pedestrian", w.pedestrian, ranges::weight);
+  check.within(path + ".weights.cyclist", w.cyclist, ranges::weight);
+  check.within(path + ".weights.motorcyclist", w.motorcyclist, ranges::weight);
+  check.within(path + ".weights.property_per_mj", w.property_per_mj, ranges::weight);
+  check.within(path + ".people.ego", w.people_in_ego, ranges::people);
+  check.within(path + ".people.car", w.people_in_car, ranges::people);
+  check.within(path + ".people.truck", w.people_in_truck, ranges::people);
+  check.within(path + ".people.bus", w.people_in_bus, ranges::people);
+  check.within(path + ".pedestrian.age_years", harm.pedestrian.age_years.value_or(0.0),
+               ranges::age);
+  check.within(path + ".pedestrian.male_share", harm.pedestrian.male_share.value_or(0.0),
+               ranges::share);
+  check.within(path + ".friction", harm.friction, ranges::friction);
   const HarmRanges& r = harm.ranges;
-  check.range(path + ".ranges.friction", r.least_friction, r.most_friction, 0.0, bounds::friction);
-  check.range(path + ".ranges.strength", r.least_strength, r.most_strength, bounds::min_strength,
-              bounds::max_strength);
-  check.range(path + ".ranges.restitution", r.least_restitution, r.most_restitution, 0.0,
-              bounds::restitution);
-  check.range(path + ".ranges.risk_speed", r.least_risk_speed, r.most_risk_speed,
-              bounds::min_risk_speed, bounds::max_risk_speed);
-  check.not_negative(path + ".least_struck_share", harm.least_struck_share, 1.0);
+  check.both_within(path + ".ranges.friction", r.least_friction, r.most_friction, ranges::friction);
+  check.both_within(path + ".ranges.strength", r.least_strength, r.most_strength, ranges::strength);
+  check.both_within(path + ".ranges.restitution", r.least_restitution, r.most_restitution,
+                    ranges::restitution);
+  check.both_within(path + ".ranges.risk_speed", r.least_risk_speed, r.most_risk_speed,
+                    ranges::risk_speed);
+  check.within(path + ".least_struck_share", harm.least_struck_share, ranges::share);
 }
 
 void check_road(const Road& road, Check& check) {
@@ -280,10 +262,9 @@ void check_road(const Road& road, Check& check) {
   for (std::size_t i = 0; i < road.drivable.size() && check.status.ok(); ++i) {
     check.status = check_area(road.drivable[i], "road." + ranges::indexed("drivable", i));
   }
-  check.not_negative("road.off_road.harm_per_leaving", road.harm_per_leaving,
-                     road_limits::harm_per_leaving);
+  check.within("road.off_road.harm_per_leaving", road.harm_per_leaving, ranges::harm_per_leaving);
   if (road.off_road_grip) {
-    check.within("road.off_road.grip", *road.off_road_grip, {limits::min_grip, limits::max_grip});
+    check.within("road.off_road.grip", *road.off_road_grip, ranges::grip);
   }
 }
 
@@ -360,9 +341,9 @@ Status check_scenario(const Scenario& scenario) {
   check_futures(scenario, check);
   check_risk(scenario.risk, check);
   check_road(scenario.road, check);
-  check.within("horizon_s", scenario.horizon_s, {0.0, limits::horizon_s, true});
+  check.within("horizon_s", scenario.horizon_s, ranges::horizon);
   check_harm(scenario.harm, "harm", check);
-  check.within("grip", scenario.grip, {limits::min_grip, limits::max_grip});
+  check.within("grip", scenario.grip, ranges::grip);
   return check.status;
 }
 

@@ -4,7 +4,7 @@
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
-#include "scenario/number_range.hpp"
+#include "scenario/key_ranges.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -27,8 +27,8 @@ Error of_model(Error error, const ScenarioModel& wanted) {
 
 /// What the scenario itself does not state has to be what it may state.
 Status check_limits(const StatedMass& stated, const ScenarioModel& wanted) {
-  constexpr detail::NumberRange masses{scenario_limits::min_mass_kg, scenario_limits::max_mass_kg};
-  constexpr detail::NumberRange inertias{0.0, scenario_limits::yaw_inertia_kgm2, true};
+  constexpr detail::NumberRange masses = detail::ranges::mass;
+  constexpr detail::NumberRange inertias = detail::ranges::yaw_inertia;
   if (!wanted.mass_kg && stated.mass_kg && !masses.holds(*stated.mass_kg)) {
     return make_error(ErrorCode::bad_input,
                       "its mass of " + detail::number_text(*stated.mass_kg) + " kg is not from " +

@@ -20,7 +20,6 @@
 namespace crashrank {
 namespace {
 
-namespace limits = scenario_limits;
 using detail::JsonObject;
 using namespace detail::ranges;
 using nlohmann::json;
@@ -86,9 +85,9 @@ std::optional<Honeycomb> read_honeycomb(const JsonObject& parent) {
   for (const char* const key : {"pressure_pa", "depth_m", "high_m"}) object.require(key);
   Honeycomb honeycomb;
   honeycomb.pressure_pa = object.number("pressure_pa", honeycomb_pressure, 1.0);
-  honeycomb.depth_m = object.number("depth_m", honeycomb_depth, 1.0);
-  honeycomb.low_m = object.number("low_m", {0.0, limits::honeycomb_m}, 0.0);
-  honeycomb.high_m = object.number("high_m", honeycomb_depth, limits::honeycomb_m);
+  honeycomb.depth_m = object.number("depth_m", honeycomb_size, 1.0);
+  honeycomb.low_m = object.number("low_m", honeycomb_low, 0.0);
+  honeycomb.high_m = object.number("high_m", honeycomb_size, limits::honeycomb_m);
   if (!(honeycomb.low_m < honeycomb.high_m)) {
     object.refuse("low_m", "is not below high_m", "give the lower end");
   }
@@ -107,9 +106,9 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
   model.mesh = object.name("mesh", limits::path_characters);
   model.kind = read_kind(object);
   if (object.has("mass_kg") && !object.at("mass_kg").is_null()) {
-    model.mass_kg = object.optional_number("mass_kg", {limits::min_mass_kg, limits::max_mass_kg});
+    model.mass_kg = object.optional_number("mass_kg", mass);
   }
-  model.transform.scale = object.number("scale", {limits::min_scale, limits::max_scale}, 1.0);
+  model.transform.scale = object.number("scale", scale, 1.0);
   model.transform.up = read_axis(object, "up", Axis::plus_z);
   model.transform.forward = read_axis(object, "forward", Axis::plus_x);
   if (same_line(model.transform.up, model.transform.forward)) {
@@ -117,9 +116,8 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
   }
   if (const auto origin = read_point(object, "origin_m")) model.transform.origin_m = *origin;
   model.center_of_mass_m = read_point(object, "center_of_mass_m");
-  model.yaw_inertia_kgm2 =
-      object.optional_number("yaw_inertia_kgm2", {0.0, limits::yaw_inertia_kgm2, true});
-  model.stiffness = object.number("stiffness", {limits::min_stiffness, limits::max_stiffness}, 1.0);
+  model.yaw_inertia_kgm2 = object.optional_number("yaw_inertia_kgm2", yaw_inertia);
+  model.stiffness = object.number("stiffness", stiffness, 1.0);
   model.surface = read_surface(object);
   model.honeycomb = read_honeycomb(object);
   return model;
@@ -138,17 +136,14 @@ ScenarioEgo read_ego(const JsonObject& root, const std::vector<ScenarioModel>& m
   object.require("speed_mps");
   ego.speed_mps = object.number("speed_mps", speed, 0.0);
   ego.yaw_rate_radps = rad_per_deg * object.number("yaw_rate_dps", yaw_rate, 0.0);
-  ego.wheelbase_m =
-      object.optional_number("wheelbase_m", {limits::min_wheelbase_m, limits::max_wheelbase_m});
-  ego.max_acceleration_mps2 = object.number(
-      "max_acceleration_mps2", {0.0, limits::acceleration_mps2}, ego.max_acceleration_mps2);
-  ego.max_deceleration_mps2 = object.optional_number(
-      "max_deceleration_mps2", {limits::min_deceleration_mps2, limits::acceleration_mps2});
+  ego.wheelbase_m = object.optional_number("wheelbase_m", wheelbase);
+  ego.max_acceleration_mps2 =
+      object.number("max_acceleration_mps2", max_acceleration, ego.max_acceleration_mps2);
+  ego.max_deceleration_mps2 = object.optional_number("max_deceleration_mps2", max_deceleration);
   ego.max_steering_rate_radps =
-      rad_per_deg * object.number("max_steering_rate_dps", steering_rate,
+      rad_per_deg * object.number("max_steering_rate_dps", max_steering_rate,
                                   ego.max_steering_rate_radps / rad_per_deg);
-  ego.max_steering_rad =
-      rad_per_deg * object.number("max_steering_deg", {0.0, limits::steering_deg}, 35.0);
+  ego.max_steering_rad = rad_per_deg * object.number("max_steering_deg", max_steering, 35.0);
   ego.occupants = object.optional_number("occupants", occupants);
   ego.uncertainty = detail::read_uncertainty(object, "uncertainty");
   return ego;
@@ -200,8 +195,8 @@ void read_candidates(const JsonObject& root, detail::ParsedScenario& parsed) {
   } else if (object.has("grid")) {
     const JsonObject grid(object.at("grid"), object.path_of("grid"), status,
                           {"accelerations", "steerings"});
-    scenario.grid = CandidateGrid{grid.count("accelerations", 1, limits::grid_side, 15),
-                                  grid.count("steerings", 1, limits::grid_side, 15)};
+    scenario.grid = CandidateGrid{grid.count("accelerations", grid_side, 15),
+                                  grid.count("steerings", grid_side, 15)};
   }
   scenario.add_straight_braking = object.flag("add_straight_braking", true);
 }
@@ -262,7 +257,7 @@ detail::ParsedScenario read_scenario(const json& document, Status& status) {
   detail::read_futures(root, scenario);
   detail::require_version_2(root, root, {"road"});
   scenario.road = detail::read_road(root);
-  scenario.horizon_s = root.number("horizon_s", {0.0, limits::horizon_s, true}, 4.0);
+  scenario.horizon_s = root.number("horizon_s", horizon, 4.0);
   if (root.has("measure")) {
     const Result<Measure> measure =
         measure_from_name(root.text("measure", limits::name_characters));
@@ -278,7 +273,7 @@ detail::ParsedScenario read_scenario(const json& document, Status& status) {
                            "after_contact", "after_impact", "least_struck_share"});
     detail::read_harm(harm, scenario.harm);
   }
-  scenario.grip = root.number("grip", {limits::min_grip, limits::max_grip}, 0.8);
+  scenario.grip = root.number("grip", grip, 0.8);
   if (status.ok()) scenario.keys_without_effect = find_keys_without_effect(document);
   return parsed;
 }

@@ -114,61 +114,6 @@ TEST(Scenario, EveryErrorNamesItsKeyPath) {
   }
 }
 
-TEST(Scenario, TheSchemaStatesTheParsersLimits) {
-  const json schema = json::parse(read(CRASHRANK_SCHEMA));
-  const auto at = [&schema](const char* pointer) { return schema.at(json::json_pointer(pointer)); };
-  namespace limits = scenario_limits;
-  EXPECT_EQ(at("/properties/models/maxProperties"), limits::models);
-  EXPECT_EQ(at("/properties/actors/maxItems"), limits::actors);
-  EXPECT_EQ(at("/$defs/candidates/properties/listed/maxItems"), limits::listed_candidates);
-  EXPECT_EQ(at("/$defs/candidates/properties/grid/oneOf/1/properties/accelerations/maximum"),
-            limits::grid_side);
-  EXPECT_EQ(at("/$defs/poses/maxItems"), limits::poses);
-  EXPECT_EQ(at("/$defs/name/maxLength"), limits::name_characters);
-  EXPECT_EQ(at("/$defs/model/properties/mesh/maxLength"), limits::path_characters);
-  EXPECT_EQ(at("/properties/description/maxLength"), limits::description_characters);
-  EXPECT_EQ(at("/properties/horizon_s/maximum"), limits::horizon_s);
-  EXPECT_EQ(at("/$defs/poses/items/properties/t_s/maximum"), limits::horizon_s);
-  EXPECT_EQ(at("/$defs/position_m/maximum"), limits::position_m);
-  EXPECT_EQ(at("/$defs/angle_deg/maximum"), limits::angle_deg);
-  EXPECT_EQ(at("/$defs/speed_mps/maximum"), limits::speed_mps);
-  EXPECT_EQ(at("/$defs/acceleration_mps2/maximum"), limits::acceleration_mps2);
-  EXPECT_EQ(at("/$defs/yaw_rate_dps/maximum"), limits::yaw_rate_dps);
-  EXPECT_EQ(at("/$defs/state_errors/properties/position_m/maximum"), limits::position_error_m);
-  EXPECT_EQ(at("/$defs/state_errors/properties/heading_deg/maximum"), limits::heading_error_deg);
-  EXPECT_EQ(at("/$defs/state_errors/properties/speed_mps/maximum"), limits::speed_error_mps);
-  EXPECT_EQ(at("/$defs/ego/properties/max_steering_deg/maximum"), limits::steering_deg);
-  EXPECT_EQ(at("/$defs/ego/properties/max_deceleration_mps2/minimum"),
-            limits::min_deceleration_mps2);
-  EXPECT_EQ(at("/$defs/ego/properties/max_steering_rate_dps/minimum"),
-            limits::min_steering_rate_dps);
-  EXPECT_EQ(at("/$defs/ego/properties/max_steering_rate_dps/maximum"),
-            limits::max_steering_rate_dps);
-  EXPECT_EQ(at("/$defs/road/properties/drivable/maxItems"), road_limits::areas);
-  const std::string off_road = "/$defs/road/properties/off_road/properties/";
-  EXPECT_EQ(at((off_road + "harm_per_leaving/maximum").c_str()), road_limits::harm_per_leaving);
-  EXPECT_EQ(at((off_road + "grip/minimum").c_str()), limits::min_grip);
-  EXPECT_EQ(at("/$defs/ego/properties/wheelbase_m/minimum"), limits::min_wheelbase_m);
-  EXPECT_EQ(at("/$defs/ego/properties/wheelbase_m/maximum"), limits::max_wheelbase_m);
-  EXPECT_EQ(at("/$defs/model/properties/mass_kg/minimum"), limits::min_mass_kg);
-  EXPECT_EQ(at("/$defs/model/properties/mass_kg/maximum"), limits::max_mass_kg);
-  EXPECT_EQ(at("/$defs/model/properties/yaw_inertia_kgm2/exclusiveMinimum"), 0.0);
-  EXPECT_EQ(at("/$defs/model/properties/yaw_inertia_kgm2/maximum"), limits::yaw_inertia_kgm2);
-  EXPECT_EQ(at("/$defs/model/properties/stiffness/minimum"), limits::min_stiffness);
-  EXPECT_EQ(at("/$defs/model/properties/stiffness/maximum"), limits::max_stiffness);
-  const std::string honeycomb = "/$defs/model/properties/honeycomb/properties/";
-  EXPECT_EQ(at((honeycomb + "pressure_pa/maximum").c_str()), limits::honeycomb_pa);
-  for (const char* const key : {"depth_m", "low_m", "high_m"}) {
-    EXPECT_EQ(at((honeycomb + key + "/maximum").c_str()), limits::honeycomb_m);
-  }
-  EXPECT_EQ(at("/$defs/occupants/minimum"), 0.0);
-  EXPECT_EQ(at("/$defs/occupants/maximum"), harm_limits::people);
-  EXPECT_EQ(at("/$defs/model/properties/scale/minimum"), limits::min_scale);
-  EXPECT_EQ(at("/$defs/model/properties/scale/maximum"), limits::max_scale);
-  EXPECT_EQ(at("/properties/grip/minimum"), limits::min_grip);
-  EXPECT_EQ(at("/properties/grip/maximum"), limits::max_grip);
-}
-
 TEST(Scenario, DefaultsAreThoseOfTheSchema) {
   const json schema = json::parse(read(CRASHRANK_SCHEMA));
   const auto at = [&schema](const char* pointer) { return schema.at(json::json_pointer(pointer)); };
