@@ -172,9 +172,9 @@ public:
     Source source;
     source.path_ = path;
     if (!is_standard(path)) return source;
-    const Error unknown =
-        make_error(ErrorCode::usage, "standard input has no name to tell its format from",
-                   "give --format, such as --format obj");
+    const Error unknown = make_error(
+        ErrorCode::usage, "standard input has no file name, whose extension selects the format",
+        "give --format, such as --format obj");
     const bool named = !arguments.format.empty();
     if (!named && !models) return unknown;
     Result<StandardInputFile> file = StandardInputFile::receive(

@@ -329,14 +329,14 @@ void add_rank(CLI::App& app, Action& action) {
       "left out, or ranked like all others",
       {"demote", "drop", "keep"});
   add_file(*command, "--profile", options->profile,
-           "Whose harm counts for how much, and ranges of what is not known: a file after "
-           "data/profile.schema.json, over what the scenario says");
+           "Weights of harm and ranges of uncertain parameters: a file after "
+           "data/profile.schema.json, which overrides the scenario");
   command->add_flag("--json", options->json, "Answer in JSON, every candidate");
   add_count(*command, "--top", options->top, "Candidates in the table, 0 for all", 0, 1'000'000);
   const CLI::Option* const workers =
       add_count(*command, "--workers", options->workers,
                 "Threads that share the work; the answer is the same. --damage uses all processors "
-                "unless told otherwise",
+                "by default",
                 1, max_workers);
   command
       ->add_option(

@@ -163,7 +163,7 @@ bool exceeds_cores(const SweepRow& row, const Sweep& sweep) {
 }
 
 constexpr const char* excess_note =
-    "more than the number of processors: serial and dispatched runs met another speed of the "
+    "more than the number of processors: serial and dispatched runs had other speeds of the "
     "machine or other caches; raise --repeat";
 
 Json speedup_json(const SweepRow& row, double value) {

@@ -2,12 +2,12 @@
 #define CRASHRANK_CRASHRANK_H
 
 /// \file
-/// The C interface, for C11 and for every language that can call C. It stands in the library
+/// The C interface, for C11 and for every language that can call C. It is part of the library
 /// crashrank, but for the two functions at the end, which read mesh files: those are in
 /// crashrank_import. Every answer is the C++ library's.
 ///
 /// Errors: a function that can fail returns a crashrank_status and, where `error` is not NULL,
-/// writes there what went wrong. Nothing is written to its other outputs then. No exception leaves
+/// writes the error there. Nothing is written to its other outputs then. No exception leaves
 /// a function, nothing is printed, nothing ends the process.
 /// Ownership: what a function named *_create, *_load or *_import gives is the caller's, to be given
 /// to the *_free of its type; freeing NULL does nothing. Strings and arrays that an object gives
@@ -70,7 +70,7 @@ typedef struct crashrank_error {
 typedef struct crashrank_models crashrank_models;
 /// Working memory of collision queries.
 typedef struct crashrank_query crashrank_query;
-/// One moment of decision: the ego, what it can do, who else is there.
+/// One moment of decision: the ego, its candidates, and the actors.
 typedef struct crashrank_scenario crashrank_scenario;
 /// Candidates in order, least harmful first.
 typedef struct crashrank_ranking crashrank_ranking;
@@ -131,8 +131,8 @@ CRASHRANK_API crashrank_status crashrank_query_create(crashrank_query** query,
 CRASHRANK_API void crashrank_query_free(crashrank_query* query);
 
 /// Whether model `b`, at `b_in_a` in the frame of model `a`, shares a point with it: 1 or 0. A body
-/// wholly inside the other touches nothing. Exact. Allocates nothing once the query has met trees
-/// as deep. Errors: usage; bad_input for a pose off a rigid motion by more than 1e-6.
+/// wholly inside the other touches nothing. Exact. Allocates nothing once the query has been used
+/// with trees as deep. Errors: usage; bad_input for a pose off a rigid motion by more than 1e-6.
 CRASHRANK_API crashrank_status crashrank_collide_any(crashrank_query* query,
                                                      const crashrank_models* models, size_t a,
                                                      size_t b, const double b_in_a[16],
@@ -219,7 +219,7 @@ typedef struct crashrank_body {
   double stiffness;           ///< crush strength, times the default, 0.01 to 100; 0: 1
   crashrank_surface surface;  ///< 0: by kind
 } crashrank_body;
-/// Sets what is known of the shape with that index. Errors: usage.
+/// Sets the known properties of the shape with that index. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario,
                                                            size_t model, const crashrank_body* body,
                                                            crashrank_error* error);
@@ -282,7 +282,7 @@ CRASHRANK_API crashrank_status crashrank_scenario_add_prediction(crashrank_scena
 CRASHRANK_API crashrank_status crashrank_scenario_set_existence(crashrank_scenario* scenario,
                                                                 size_t actor, double probability,
                                                                 crashrank_error* error);
-/// Sets the standard deviations of the errors of the ego's state, against what its candidates
+/// Sets the standard deviations of the errors of the ego's state, relative to what its candidates
 /// assume: of x and of y (m, 0 to 10), of its heading (rad, 0 to pi/4) and, where it moves, of its
 /// speed (m/s, 0 to 20). Above 0 the futures are drawn with them; crashrank_rank checks them.
 /// Errors: usage.
@@ -350,8 +350,8 @@ CRASHRANK_API crashrank_status crashrank_scenario_set_horizon(crashrank_scenario
 CRASHRANK_API crashrank_status crashrank_scenario_set_grip(crashrank_scenario* scenario,
                                                            double grip, crashrank_error* error);
 
-/// What the ego can do; what asks for more is marked as not feasible. 0 is the default of every
-/// member.
+/// Limits of the ego; candidates that require more are marked as infeasible. 0 is the default of
+/// every member.
 typedef struct crashrank_ego_limits {
   size_t size;                     ///< sizeof(crashrank_ego_limits)
   double max_acceleration_mps2;    ///< of the engine; 0: 3
@@ -359,7 +359,7 @@ typedef struct crashrank_ego_limits {
   double max_steering_rad;         ///< of the road wheels; 0: 35 degrees
   double max_steering_rate_radps;  ///< of their angle; 0: 0.4
 } crashrank_ego_limits;
-/// Sets what the ego can do. Errors: usage; numbers out of range are refused by crashrank_rank.
+/// Sets the limits of the ego. Errors: usage; numbers out of range are refused by crashrank_rank.
 CRASHRANK_API crashrank_status crashrank_scenario_set_ego_limits(crashrank_scenario* scenario,
                                                                  const crashrank_ego_limits* limits,
                                                                  crashrank_error* error);
@@ -392,7 +392,7 @@ enum {
 /// The risk model's name in scenario files, "malliaris-monfort"; NULL for no value.
 CRASHRANK_API const char* crashrank_risk_model_name(crashrank_risk_model model);
 
-/// What the undamaged wheels of a vehicle do once something has hit it.
+/// What the undamaged wheels of a vehicle do after its first contact.
 typedef int32_t crashrank_after_contact;
 /// Values of crashrank_after_contact.
 enum {
@@ -409,7 +409,7 @@ CRASHRANK_API const char* crashrank_after_contact_name(crashrank_after_contact a
 /// which a ranking states how stable it is.
 typedef struct crashrank_harm {
   size_t size;                            ///< sizeof(crashrank_harm)
-  crashrank_risk_model risk_model;        ///< whose curves
+  crashrank_risk_model risk_model;        ///< published curves
   crashrank_after_contact after_contact;  ///< of all vehicles that were hit
   double weights_ego_occupant;            ///< of a person in the ego, 0 to 1e6
   double weights_other_occupant;          ///< of a person in another vehicle, 0 to 1e6
@@ -481,7 +481,7 @@ CRASHRANK_API const char* crashrank_measure_name(crashrank_measure measure);
 typedef int32_t crashrank_infeasible;
 /// Values of crashrank_infeasible.
 enum {
-  CRASHRANK_INFEASIBLE_DEMOTE = 1,  ///< they stand behind all feasible ones
+  CRASHRANK_INFEASIBLE_DEMOTE = 1,  ///< they rank behind all feasible ones
   CRASHRANK_INFEASIBLE_DROP = 2,    ///< they are left out, unless there is no feasible one
   CRASHRANK_INFEASIBLE_KEEP = 3     ///< they are ranked like all others
 };
@@ -496,10 +496,10 @@ typedef struct crashrank_rank_options {
   crashrank_infeasible infeasible;  ///< 0: CRASHRANK_INFEASIBLE_DEMOTE
 } crashrank_rank_options;
 
-/// Ranks the candidates by what they would destroy. The model with index i is that of the shape
-/// with index i. `options` may be NULL. Errors: usage (number of models, measure), bad_input,
-/// internal. Cost: about the candidates times the bodies they come near. Allocates, may start
-/// threads.
+/// Ranks the candidates by the harm or damage of their crashes. The model with index i is that of
+/// the shape with index i. `options` may be NULL. Errors: usage (number of models, measure),
+/// bad_input, internal. Cost: about the candidates times the bodies they come near. Allocates, may
+/// start threads.
 CRASHRANK_API crashrank_status crashrank_rank(const crashrank_scenario* scenario,
                                               const crashrank_models* models,
                                               const crashrank_rank_options* options,
@@ -511,20 +511,20 @@ CRASHRANK_API void crashrank_ranking_free(crashrank_ranking* ranking);
 /// intrusion do not hold there, closing-energy does.
 #define CRASHRANK_FASTEST_CRASH_MPS 140.0
 
-/// What choosing a candidate leads to. Of contacts the first is told; without one its numbers are
+/// Outcome of a candidate. Of contacts the first is reported; without one its numbers are
 /// NaN.
 typedef struct crashrank_choice {
   size_t size;                 ///< sizeof(crashrank_choice)
   const char* candidate;       ///< its name; the ranking's
-  const char* other;           ///< who is hit first, NULL for nobody; the ranking's
+  const char* other;           ///< name of the body hit first, NULL if none; the ranking's
   double score;                ///< in the measure's unit, lower is better, 0 without contact; NaN
                                ///< where only the interval is known
   double lowest_score;         ///< the interval that contains the score
   double highest_score;        ///< and its upper end
   double time_of_impact_s;     ///< from now
-  double closing_speed_mps;    ///< of the points that meet; see CRASHRANK_FASTEST_CRASH_MPS
+  double closing_speed_mps;    ///< of the points that touch; see CRASHRANK_FASTEST_CRASH_MPS
   double delta_v_mps;          ///< the ego's change of velocity, magnitude
-  double other_delta_v_mps;    ///< and that of who is hit
+  double other_delta_v_mps;    ///< and that of the body hit
   double pdof_deg;             ///< where the force on the ego comes from, clockwise from ahead
   uint64_t damaged_triangles;  ///< of the ego, from all contacts
   uint64_t contacts;           ///< of the ego; for those between others see
@@ -559,23 +559,23 @@ CRASHRANK_API crashrank_status crashrank_ranking_further(const crashrank_ranking
                                                          size_t index, size_t contact,
                                                          crashrank_further_contact* further,
                                                          crashrank_error* error);
-/// What is to be said of a candidate besides its crash; what is absent is NaN.
+/// Properties of a candidate besides its crash; absent ones are NaN.
 typedef struct crashrank_manoeuvre {
   size_t size;                  ///< sizeof(crashrank_manoeuvre)
   int32_t feasible;             ///< 1: the vehicle can follow it to its first contact; else 0
   int32_t leaves_road;          ///< 1: a wheel leaves the road before the first contact; else 0
-  double grip_demand;           ///< what it asks for over what there is: of the tyres' grip
+  double grip_demand;           ///< what it requires over what is available: of the tyres' grip
   double engine_demand;         ///< of the engine
   double brakes_demand;         ///< of the brakes
   double steering_demand;       ///< of the steering angle
   double steering_rate_demand;  ///< of its rate
   double leaves_road_s;         ///< when, from now
   double leaves_road_mps;       ///< and how fast
-  double least_distance_m;      ///< to anybody along the plans, 0 where it touches somebody
+  double least_distance_m;      ///< to other bodies along the plans, 0 if it has a contact
   double least_time_gap_s;      ///< between it and another that moves, at one place
-  double horizon_speed_mps;     ///< at the horizon, where it collides with nobody
+  double horizon_speed_mps;     ///< at the horizon, if it has no contact
 } crashrank_manoeuvre;
-/// What is to be said of the candidate under `index` besides its crash; the caller sets
+/// Properties of the candidate under `index` besides its crash; the caller sets
 /// `manoeuvre->size`. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_ranking_manoeuvre(const crashrank_ranking* ranking,
                                                            size_t index,
@@ -587,9 +587,9 @@ CRASHRANK_API crashrank_status crashrank_ranking_manoeuvre(const crashrank_ranki
 CRASHRANK_API crashrank_status crashrank_ranking_place(const crashrank_ranking* ranking,
                                                        size_t index, size_t* place, size_t* sharing,
                                                        crashrank_error* error);
-/// Whether the candidate under `index` can be told from the next one: 1 or 0, -1 where the scores
+/// Whether the candidate under `index` is separable from the next one: 1 or 0, -1 where the scores
 /// read simulated crashes and no samples were taken (or it is the last). 0 where they tie, score
-/// alike, the order turns round in more than 5 % of the samples, or half the steps or 1 mm aside
+/// alike, the order reverses in more than 5 % of the samples, or half the steps or 1 mm aside
 /// may turn it. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_ranking_separable(const crashrank_ranking* ranking,
                                                            size_t index, int32_t* separable,
@@ -602,7 +602,7 @@ CRASHRANK_API const char* crashrank_ranking_json(const crashrank_ranking* rankin
 
 // ---- Ranking against a deadline -----------------------------------------------------------------
 
-/// Ranks again and again in memory set aside once.
+/// Ranks repeatedly in memory that is allocated once.
 typedef struct crashrank_ranker crashrank_ranker;
 
 /// What a ranker ranks by and sets aside; 0 is the default of every member.
@@ -648,9 +648,9 @@ typedef struct crashrank_ranked {
   double lowest_score;       ///< the interval contains the final score, whatever was left undone
   double highest_score;      ///< and its upper end
   double time_of_impact_s;   ///< from now
-  double closing_speed_mps;  ///< of the points that meet; see CRASHRANK_FASTEST_CRASH_MPS
+  double closing_speed_mps;  ///< of the points that touch; see CRASHRANK_FASTEST_CRASH_MPS
   double collision_probability;  ///< over all futures, as far as it is known
-  double estimated_score;        ///< what the score is taken for; itself where it is known
+  double estimated_score;        ///< estimate of the score; the score where it is known
   int32_t in_race;               ///< can still be first
   int32_t collides;              ///< in the likeliest future, as far as it is known
 } crashrank_ranked;

@@ -34,15 +34,15 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-bool boxes_meet(const RingEdge& p, const RingEdge& q) {
+bool boxes_overlap(const RingEdge& p, const RingEdge& q) {
   return std::min(p.from.x(), p.to.x()) <= std::max(q.from.x(), q.to.x()) &&
          std::min(q.from.x(), q.to.x()) <= std::max(p.from.x(), p.to.x()) &&
          std::min(p.from.y(), p.to.y()) <= std::max(q.from.y(), q.to.y()) &&
          std::min(q.from.y(), q.to.y()) <= std::max(p.from.y(), p.to.y());
 }
 
-bool meet(const RingEdge& p, const RingEdge& q) {
-  if (!boxes_meet(p, q)) return false;
+bool edges_touch(const RingEdge& p, const RingEdge& q) {
+  if (!boxes_overlap(p, q)) return false;
   const double a = turn(p.from, p.to, q.from);
   const double b = turn(p.from, p.to, q.to);
   const double c = turn(q.from, q.to, p.from);
@@ -71,7 +71,7 @@ Status add_edges(const std::vector<Vector2d>& ring, std::size_t index, const std
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const RingEdge edge{ring[i], ring[(i + 1) % ring.size()], index, i, ring.size()};
     if (!edge.from.allFinite()) {
-      return refused(ring_name(place, index), "has a corner that is not finite", "mend it");
+      return refused(ring_name(place, index), "has a corner that is not finite", "correct it");
     }
     if (edge.from == edge.to) {
       return refused(ring_name(place, index) + "[" + std::to_string(i) + "]",
@@ -100,7 +100,7 @@ Status check_area(const Area& area, const std::string& place) {
         const bool p_first = (p.index + 1) % p.corners == q.index;
         crossing = p_first ? turns_back(p, q) : turns_back(q, p);
       } else {
-        crossing = meet(p, q);
+        crossing = edges_touch(p, q);
       }
       if (!crossing) continue;
       const auto name = [](const RingEdge& edge) {
@@ -111,7 +111,7 @@ Status check_area(const Area& area, const std::string& place) {
                                                  : "an edge of " + ring_name(place, q.ring);
       return refused(
           ring_name(place, p.ring),
-          "crosses or touches itself: the edge from corner " + name(p) + " and " + other + " meet",
+          "crosses or touches itself: the edge from corner " + name(p) + " and " + other + " touch",
           "list the corners in their order around it; write parts that touch as areas of "
           "their own");
     }

@@ -38,7 +38,7 @@ struct crashrank_models {
 struct crashrank_query {
   crashrank::ModelWorkspace workspace;
   std::vector<crashrank::Pair> pairs;
-  std::vector<crashrank_pair> told;  ///< the same, in the caller's type
+  std::vector<crashrank_pair> pairs_for_caller;  ///< the same, in the caller's type
 };
 
 struct crashrank_scenario {

@@ -167,10 +167,10 @@ crashrank_status crashrank_collide_all(crashrank_query* query, const crashrank_m
   if (status != CRASHRANK_OK) return status;
   return guarded(error, [&]() -> crashrank_status {
     std::sort(query->pairs.begin(), query->pairs.end());
-    query->told.clear();
-    for (const Pair& pair : query->pairs) query->told.push_back({pair.a, pair.b});
-    *pairs = query->told.data();
-    *count = query->told.size();
+    query->pairs_for_caller.clear();
+    for (const Pair& pair : query->pairs) query->pairs_for_caller.push_back({pair.a, pair.b});
+    *pairs = query->pairs_for_caller.data();
+    *count = query->pairs_for_caller.size();
     return CRASHRANK_OK;
   });
 }

@@ -18,7 +18,7 @@ struct crashrank_ranker {
   crashrank::Scenario prepared;       ///< what an update cannot change is compared with it
   std::vector<double> ego_lengths_m;  ///< by model
   std::vector<crashrank::Candidate> candidates;
-  std::vector<crashrank_ranked> told;
+  std::vector<crashrank_ranked> answer;
 };
 
 namespace {
@@ -127,7 +127,7 @@ Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
   }
   const Result<std::vector<Motion>> motions = plan_motions(scenario);
   if (!motions) return motions.error();
-  ranker.told.reserve(candidates->size());
+  ranker.answer.reserve(candidates->size());
   if (Status moved =
           ranker.ranker.move_actors(scenario.ego.pose, *motions,
                                     EgoMotion{scenario.ego.speed_mps, scenario.ego.yaw_rate_radps});
@@ -217,25 +217,25 @@ crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank
     }
     const RankerAnswer ranked = ranker->ranker.rank(ranker->candidates, within);
     if (!ranked.status) return refuse(ranked.status.error(), error);
-    ranker->told.clear();
+    ranker->answer.clear();
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     for (const RankedCandidate& one : ranked.ranking) {
-      crashrank_ranked told{};
-      told.candidate = one.candidate;
-      told.score = one.known ? one.score : unknown;
-      told.lowest_score = one.interval.lowest;
-      told.highest_score = one.interval.highest;
-      told.estimated_score = one.stage >= RankStage::searched ? one.estimate : unknown;
-      told.time_of_impact_s = one.collides ? one.time_of_impact_s : unknown;
-      told.closing_speed_mps = one.collides ? one.closing_speed_mps : unknown;
-      told.collision_probability = one.collision_probability;
-      told.in_race = one.in_race ? 1 : 0;
-      told.collides = one.collides ? 1 : 0;
-      ranker->told.push_back(told);
+      crashrank_ranked entry{};
+      entry.candidate = one.candidate;
+      entry.score = one.known ? one.score : unknown;
+      entry.lowest_score = one.interval.lowest;
+      entry.highest_score = one.interval.highest;
+      entry.estimated_score = one.stage >= RankStage::searched ? one.estimate : unknown;
+      entry.time_of_impact_s = one.collides ? one.time_of_impact_s : unknown;
+      entry.closing_speed_mps = one.collides ? one.closing_speed_mps : unknown;
+      entry.collision_probability = one.collision_probability;
+      entry.in_race = one.in_race ? 1 : 0;
+      entry.collides = one.collides ? 1 : 0;
+      ranker->answer.push_back(entry);
     }
     crashrank_answer made{};
-    made.ranking = ranker->told.data();
-    made.count = ranker->told.size();
+    made.ranking = ranker->answer.data();
+    made.count = ranker->answer.size();
     made.in_race = ranked.in_race;
     made.hash = ranked.hash;
     made.elapsed_s = ranked.elapsed_s;

@@ -94,13 +94,13 @@ crashrank_status crashrank_rank(const crashrank_scenario* scenario, const crashr
     }
     const Result<RankOptions> how = to_options(given);
     if (!how) return refuse(how.error(), error);
-    const Scenario told = c::with_stated_masses(*scenario, *models);
-    Result<RankResult> result = rank(told, models->list, *how);
+    const Scenario completed = c::with_stated_masses(*scenario, *models);
+    Result<RankResult> result = rank(completed, models->list, *how);
     if (!result) return refuse(result.error(), error);
     auto made = std::make_unique<crashrank_ranking>();
-    for (const ScenarioActor& actor : told.actors) made->actors.push_back(actor.name);
+    for (const ScenarioActor& actor : completed.actors) made->actors.push_back(actor.name);
     if (given.json != 0) {
-      made->json = ranking_json(told, models->list, *result);
+      made->json = ranking_json(completed, models->list, *result);
     }
     made->result = std::move(*result);
     *ranking = made.release();

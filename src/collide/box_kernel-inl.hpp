@@ -171,15 +171,15 @@ private:
     }
     if (__builtin_popcount(a_lanes) <= __builtin_popcount(b_lanes)) {
       descend<any, true>(task, na, nb,
-                         meet<any>(na, a_in_b, a_lanes, b, b_in_a, b_lanes, nb.leaf_lanes));
+                         overlaps_of<any>(na, a_in_b, a_lanes, b, b_in_a, b_lanes, nb.leaf_lanes));
     } else {
       descend<any, false>(task, nb, na,
-                          meet<any>(nb, b_in_a, b_lanes, a, a_in_b, a_lanes, na.leaf_lanes));
+                          overlaps_of<any>(nb, b_in_a, b_lanes, a, a_in_b, a_lanes, na.leaf_lanes));
     }
   }
 
   /// Which lanes of one node, the rows, overlap which of the other, the columns, by what they are.
-  struct Meetings {
+  struct Overlaps {
     std::uint64_t clusters = 0;  ///< two clusters
     std::uint64_t nodes = 0;     ///< two inner nodes
     std::uint64_t cluster_node = 0;
@@ -189,11 +189,12 @@ private:
   /// `one_turned`: boxes of the rows in the other frame. `other`, `other_turned`: boxes of the
   /// columns.
   template <bool any>
-  HWY_INLINE Meetings meet(const WideNode& one, const Boxes& one_turned, std::uint32_t one_lanes,
-                           const Boxes& other, const Boxes& other_turned, std::uint32_t other_lanes,
-                           std::uint32_t other_leaves) {
+  HWY_INLINE Overlaps overlaps_of(const WideNode& one, const Boxes& one_turned,
+                                  std::uint32_t one_lanes, const Boxes& other,
+                                  const Boxes& other_turned, std::uint32_t other_lanes,
+                                  std::uint32_t other_leaves) {
     store_boxes(one_turned, turned_);
-    Meetings met;
+    Overlaps overlaps;
     for (std::uint32_t left = one_lanes; left != 0; left &= left - 1) {
       const auto i = lowest(left);
       work_.bv_tests += 8;
@@ -207,17 +208,17 @@ private:
       const std::uint32_t is_leaf = 0U - (one.leaf_lanes >> i & 1U);
       const std::uint64_t leaves = found & other_leaves;
       const std::uint64_t inner = found & ~other_leaves;
-      met.clusters |= (leaves & is_leaf) << 8 * i;
-      met.cluster_node |= (inner & is_leaf) << 8 * i;
-      met.node_cluster |= (leaves & ~is_leaf) << 8 * i;
-      met.nodes |= (inner & ~is_leaf) << 8 * i;
+      overlaps.clusters |= (leaves & is_leaf) << 8 * i;
+      overlaps.cluster_node |= (inner & is_leaf) << 8 * i;
+      overlaps.node_cluster |= (leaves & ~is_leaf) << 8 * i;
+      overlaps.nodes |= (inner & ~is_leaf) << 8 * i;
     }
-    return met;
+    return overlaps;
   }
 
   template <bool any, bool a_rows>
   HWY_INLINE void descend(const WideTask& task, const WideNode& one, const WideNode& other,
-                          const Meetings& met) {
+                          const Overlaps& overlaps) {
     const std::uint32_t row_node = a_rows ? task.a_node : task.b_node;
     const std::uint32_t column_node = a_rows ? task.b_node : task.a_node;
     const auto put = [this](std::uint32_t row, std::uint32_t row_lanes, std::uint32_t col,
@@ -226,14 +227,14 @@ private:
                   : WideTask{col, row, col_lanes, row_lanes});
     };
     // A cluster's box is not tested again: all clusters that overlap one inner node go with it.
-    for (std::uint64_t left = met.cluster_node; left != 0;) {
+    for (std::uint64_t left = overlaps.cluster_node; left != 0;) {
       const std::size_t c = static_cast<std::size_t>(__builtin_ctzll(left)) & 7U;
       const std::uint32_t child = other.child[c];
       prefetch((a_rows ? query_.b_nodes : query_.a_nodes)[child]);
       put(row_node, column(left, c), child, 0xffU);
       left &= ~(0x0101010101010101U << c);
     }
-    for (std::uint64_t left = met.node_cluster; left != 0;) {
+    for (std::uint64_t left = overlaps.node_cluster; left != 0;) {
       const std::size_t r = static_cast<std::size_t>(__builtin_ctzll(left)) >> 3U;
       const std::uint32_t child = one.child[r];
       prefetch((a_rows ? query_.a_nodes : query_.b_nodes)[child]);
@@ -242,7 +243,7 @@ private:
     }
     std::size_t first = waiting_;
     float deepest = no_penetration;
-    for (std::uint64_t left = met.nodes; left != 0; left &= left - 1) {
+    for (std::uint64_t left = overlaps.nodes; left != 0; left &= left - 1) {
       const auto at = static_cast<std::size_t>(__builtin_ctzll(left));
       const std::uint32_t row = one.child[at >> 3U];
       const std::uint32_t col = other.child[at & 7U];
@@ -255,11 +256,11 @@ private:
       put(row, 0xffU, col, 0xffU);
     }
     // Where one pair is enough, what reaches deepest into the other comes first.
-    if (any && met.nodes != 0) std::swap(stack_[first], stack_[waiting_ - 1]);
+    if (any && overlaps.nodes != 0) std::swap(stack_[first], stack_[waiting_ - 1]);
     const std::size_t before = pairs_;
     first = pairs_;
     deepest = no_penetration;
-    for (std::uint64_t left = met.clusters; left != 0; left &= left - 1) {
+    for (std::uint64_t left = overlaps.clusters; left != 0; left &= left - 1) {
       const auto at = static_cast<std::size_t>(__builtin_ctzll(left));
       const std::uint32_t row = one.child[at >> 3U];
       const std::uint32_t col = other.child[at & 7U];
@@ -275,7 +276,7 @@ private:
       }
       cluster_pairs_[pairs_++] = pair;
     }
-    if (any && met.clusters != 0) std::swap(cluster_pairs_[first], cluster_pairs_[before]);
+    if (any && overlaps.clusters != 0) std::swap(cluster_pairs_[first], cluster_pairs_[before]);
   }
 
   /// Returns false to stop.

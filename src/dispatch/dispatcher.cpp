@@ -132,8 +132,7 @@ Result<DispatchReport> Dispatcher::run(View<const DispatchQuery> queries, PairLi
     state.pool.wait_all();
     state.pool.set_spin(-1.0);
     static_cast<void>(state.pool.take_failure());
-    return make_error(ErrorCode::internal,
-                      std::string("the dispatch could not be carried out: ") + error.what());
+    return make_error(ErrorCode::internal, std::string("the dispatch failed: ") + error.what());
   }
 }
 

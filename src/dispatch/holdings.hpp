@@ -24,11 +24,11 @@ public:
   /// Starts with cores that hold nothing.
   void begin(std::uint32_t cores) {
     cores_ = cores;
-    forget();
+    clear();
   }
 
   /// Forgets what cores hold, in time proportional to that; keeps the memory of the tables.
-  void forget() {
+  void clear() {
     for (std::uint32_t number = 0; number < used_; ++number) {
       Body& body = bodies_[number];
       for (const std::uint32_t node : body.held) body.holders[node] = 0;

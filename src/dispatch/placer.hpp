@@ -87,7 +87,7 @@ public:
       at_.jobs = waiting_;
       if (at_.jobs.empty()) return true;
       if (at_.jobs.size() < window_) {
-        hear();
+        take_finished();
         if (!policy_.in_haste(at_)) return true;
       }
       if (!place()) return false;
@@ -132,7 +132,7 @@ private:
   }
 
   /// Learns which batches are done. Cores that have one left at most are claimed no longer.
-  void hear() {
+  void take_finished() {
     for (std::uint32_t core = 0; core < at_.cores; ++core) {
       if (known_out_[core] == 0) continue;
       const std::uint32_t out = cores_.outstanding(core);
@@ -146,7 +146,7 @@ private:
   void wait_for_unclaimed() {
     for (;;) {
       const std::uint32_t seen = cores_.seen();
-      hear();
+      take_finished();
       if (at_.unclaimed != 0) return;
       cores_.wait(seen);
     }
@@ -173,7 +173,7 @@ private:
   /// Works off what cores have not begun, the longest queues first.
   void take_back() {
     for (;;) {
-      hear();
+      take_finished();
       std::uint32_t core = at_.cores;
       for (std::uint32_t other = 0; other < at_.cores; ++other) {
         if (known_out_[other] == 0 || tried_[other] == known_out_[other]) continue;
@@ -187,7 +187,7 @@ private:
   /// Places one job that waits, or works it off.
   bool place() {
     if (limits_.caller_works) {
-      hear();
+      take_finished();
       if (at_.unclaimed == 0 || policy_.caller_takes(at_)) {
         work_here();
         return true;

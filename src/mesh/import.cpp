@@ -42,7 +42,8 @@ Result<std::string> extension_of(const std::string& path) {
   const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
   const std::size_t dot = name.find_last_of('.');
   if (dot == std::string::npos || dot + 1 == name.size()) {
-    return make_error(ErrorCode::bad_input, "the file name has no extension to tell its format",
+    return make_error(ErrorCode::bad_input,
+                      "the file name has no extension, which selects the format",
                       std::string("name it after its format: ") + formats);
   }
   std::string extension = name.substr(dot + 1);

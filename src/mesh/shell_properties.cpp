@@ -36,25 +36,25 @@ double area(const Corners& t) {
 }  // namespace
 
 ShellProperties shell_properties(const TriangleMesh& mesh) {
-  ShellProperties told;
+  ShellProperties properties;
   Vector moment = Vector::Zero();
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const Corners t = corners(mesh.triangle(i), Vector::Zero());
     const double share = area(t);
-    told.area_m2 += share;
+    properties.area_m2 += share;
     moment += ((t.a + t.b) + t.c) * (share / 3.0);
-    told.volume_m3 += dot(t.a, cross(t.b, t.c)) / 6.0;
+    properties.volume_m3 += dot(t.a, cross(t.b, t.c)) / 6.0;
   }
-  if (told.area_m2 == 0.0) return told;
-  told.center_m = moment / told.area_m2;
+  if (properties.area_m2 == 0.0) return properties;
+  properties.center_m = moment / properties.area_m2;
 
   // Over a triangle, the mean of p_i·p_j is (sum over corners of a_i·a_j + s_i·s_j) / 12, s being
   // the sum of the corners.
   std::array<double, 6> second{};  // means of xx, yy, zz, xy, xz, yz
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    const Corners t = corners(mesh.triangle(i), told.center_m);
+    const Corners t = corners(mesh.triangle(i), properties.center_m);
     const Vector s = (t.a + t.b) + t.c;
-    const double share = area(t) / told.area_m2 / 12.0;
+    const double share = area(t) / properties.area_m2 / 12.0;
     const auto mean = [&](int p, int q) {
       return share * (((t.a[p] * t.a[q] + t.b[p] * t.b[q]) + t.c[p] * t.c[q]) + s[p] * s[q]);
     };
@@ -65,13 +65,13 @@ ShellProperties shell_properties(const TriangleMesh& mesh) {
     second[4] += mean(0, 2);
     second[5] += mean(1, 2);
   }
-  told.inertia_per_kg_m2 = {second[1] + second[2],
-                            second[0] + second[2],
-                            second[0] + second[1],
-                            -second[3],
-                            -second[4],
-                            -second[5]};
-  return told;
+  properties.inertia_per_kg_m2 = {second[1] + second[2],
+                                  second[0] + second[2],
+                                  second[0] + second[1],
+                                  -second[3],
+                                  -second[4],
+                                  -second[5]};
+  return properties;
 }
 
 }  // namespace crashrank

@@ -44,7 +44,7 @@ Status transform_mesh(TriangleMesh& mesh, const ImportTransform& transform) {
     moved.emplace_back(apply(transform, vertex.cast<double>()).cast<float>());
     if (!moved.back().allFinite()) {
       return make_error(ErrorCode::bad_input,
-                        "the transform carries a vertex beyond the range of float32",
+                        "the transform moves a vertex beyond the range of float32",
                         "check scale and origin");
     }
   }

@@ -133,7 +133,7 @@ Result<FileBytes> file_bytes(const std::string& path, const LoadModelOptions& op
   }
   struct stat facts {};
   if (::fstat(file.number(), &facts) != 0) {
-    return file_error(ErrorCode::internal, path, "cannot look at it: " + why());
+    return file_error(ErrorCode::internal, path, "cannot read its status: " + why());
   }
   if (!S_ISREG(facts.st_mode)) {
     return file_error(ErrorCode::bad_input, path, "is not a file", "name a model file");

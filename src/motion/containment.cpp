@@ -29,7 +29,7 @@ public:
       : origin_(origin), axis_(axis), u_((axis + 1) % 3), v_((axis + 2) % 3), slack_(slack) {}
 
   /// `slack` is room for the rounding of corners turned into the tree's frame.
-  bool meets(const Box& box) const {
+  bool intersects(const Box& box) const {
     return origin_[u_] >= box.min[u_] - slack_ && origin_[u_] <= box.max[u_] + slack_ &&
            origin_[v_] >= box.min[v_] - slack_ && origin_[v_] <= box.max[v_] + slack_;
   }
@@ -123,7 +123,7 @@ bool contains_point(const AabbTree& tree, const Vector3d& point_m) {
   for (const Node& node : tree.nodes) {
     if (!node.is_leaf()) continue;
     for (RayParity& ray : rays) {
-      if (!ray.meets(node.box)) continue;
+      if (!ray.intersects(node.box)) continue;
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const std::array<Eigen::Vector3f, 3>& corner = tree.triangles[i].corner;
         ray.cross({in_tree_frame(tree, corner[0].cast<double>()),

@@ -229,11 +229,11 @@ ImpactSearch::Entry ImpactSearch::pair(std::uint32_t a, std::uint32_t b, double 
   return {a, b, free_until, guess};
 }
 
-Meeting ImpactSearch::follow(std::uint32_t slot_a, std::uint32_t slot_b, double from, double before,
-                             const Thresholds& thresholds, double give_up_m) {
+PairContact ImpactSearch::follow(std::uint32_t slot_a, std::uint32_t slot_b, double from,
+                                 double before, const Thresholds& thresholds, double give_up_m) {
   const TriangleD ta = to_double(a_.triangles[slot_a]);
   const Span span_a = span_of(ta);
-  Meeting meeting;
+  PairContact contact;
   double t = from;
   while (spend(work_.primitive_tests)) {
     const RelativeState s = state_at(t);
@@ -243,7 +243,7 @@ Meeting ImpactSearch::follow(std::uint32_t slot_a, std::uint32_t slot_b, double 
     const double less = thresholds.prove_m + s.margin;
     double next = t;
     if (gap.upper > thresholds.stop_m) {
-      if (gap.upper > give_up_m) return meeting;
+      if (gap.upper > give_up_m) return contact;
       double seconds = gap.lower > less
                            ? open_for(gap.lower - less, closing(gap.direction), s.acceleration)
                            : 0.0;
@@ -256,16 +256,16 @@ Meeting ImpactSearch::follow(std::uint32_t slot_a, std::uint32_t slot_b, double 
     }
     // A gap that cannot be advanced although it is wider than `stop_m` is so by rounding alone.
     if (next <= t) {
-      meeting.time = t;
-      meeting.slot_a = slot_a;
-      meeting.slot_b = slot_b;
-      meeting.gap = gap;
-      return meeting;
+      contact.time = t;
+      contact.slot_a = slot_a;
+      contact.slot_b = slot_b;
+      contact.gap = gap;
+      return contact;
     }
     t = next;
-    if (t >= before) return meeting;
+    if (t >= before) return contact;
   }
-  return meeting;
+  return contact;
 }
 
 /// The same of two triangles, along the axes of A's body and along their own normals.
@@ -303,15 +303,16 @@ void ImpactSearch::leaves(const Node& na, const Node& nb, double free_until) {
       const double open =
           std::max(free_until, open_until(to_double(a_.triangles[i]), tb, k, limit()));
       if (open >= limit()) continue;
-      const Meeting meeting =
+      const PairContact contact =
           follow(i, j, open, limit(), thresholds_, std::numeric_limits<double>::infinity());
-      if (meeting.time < best_.time) best_ = meeting;
+      if (contact.time < best_.time) best_ = contact;
       if (exhausted_) return;
     }
   }
 }
 
-Meeting ImpactSearch::first(double from, const Thresholds& thresholds, const Meeting& known) {
+PairContact ImpactSearch::first(double from, const Thresholds& thresholds,
+                                const PairContact& known) {
   thresholds_ = thresholds;
   best_ = known;
   std::vector<Entry>& stack = memory_.stack;

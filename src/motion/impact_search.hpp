@@ -31,7 +31,7 @@ struct Knot {
 };
 
 /// Two slots that touch at a time.
-struct Meeting {
+struct PairContact {
   double time = std::numeric_limits<double>::infinity();
   std::uint32_t slot_a = 0;
   std::uint32_t slot_b = 0;
@@ -69,15 +69,15 @@ public:
   ImpactSearch(const AabbTree& a, const Motion& motion_a, const AabbTree& b, const Motion& motion_b,
                double from, double until, const ImpactOptions& options, SearchMemory& memory);
 
-  /// The first meeting in [from, until], `time` infinite when there is none. `known` is a meeting
+  /// The first contact in [from, until], `time` infinite when there is none. `known` is a contact
   /// that the caller has already: nothing later is looked for. When the steps run out, `exhausted`
   /// is set and no surfaces touch before `proved_until`.
-  Meeting first(double from, const Thresholds& thresholds, const Meeting& known = {});
+  PairContact first(double from, const Thresholds& thresholds, const PairContact& known = {});
 
-  /// The first meeting of one pair of slots in [from, before); gives up once the pair is seen
+  /// The first contact of one pair of slots in [from, before); gives up once the pair is seen
   /// further apart than `give_up_m`.
-  Meeting follow(std::uint32_t slot_a, std::uint32_t slot_b, double from, double before,
-                 const Thresholds& thresholds, double give_up_m);
+  PairContact follow(std::uint32_t slot_a, std::uint32_t slot_b, double from, double before,
+                     const Thresholds& thresholds, double give_up_m);
 
   RelativeState state_at(double t);
 
@@ -110,7 +110,7 @@ private:
   void* stop_context_ = nullptr;
   SearchMemory& memory_;
   Thresholds thresholds_;
-  Meeting best_;
+  PairContact best_;
   RelativeState last_;  ///< the state asked for last: leaves ask for one time often
   bool last_ready_ = false;
   bool exhausted_ = false;

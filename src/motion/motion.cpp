@@ -188,7 +188,7 @@ Status Motion::become_timed(View<const TimedPose> poses) {
           i + 1,
           "it moves or turns too far from the one before for the time between: over 10 km/s or "
           "10,000 rad/s",
-          "mend its time");
+          "correct its time");
     }
   }
   return Success{};

@@ -180,7 +180,7 @@ public:
 private:
   void decide(detail::ImpactSearch& search, double from, Impact& impact) {
     const double tolerance = options_.tolerance_m;
-    const detail::Meeting near = search.first(from, {tolerance, tolerance * (1.0 - 1e-3)});
+    const detail::PairContact near = search.first(from, {tolerance, tolerance * (1.0 - 1e-3)});
     if (search.exhausted()) {
       impact.state = ImpactState::undecided;
       impact.time_s = search.proved_until();
@@ -192,9 +192,9 @@ private:
     }
     // Do they go on to touch? Mostly the two triangles that came near do so at once.
     const detail::Thresholds touching{std::min(touch_m, 1e-3 * tolerance), 0.0};
-    const detail::Meeting same =
+    const detail::PairContact same =
         search.follow(near.slot_a, near.slot_b, near.time, until_, touching, tolerance);
-    detail::Meeting touch = same;
+    detail::PairContact touch = same;
     if (same.time >= until_) touch = search.first(near.time, touching);
     if (search.exhausted()) {
       impact.state = ImpactState::undecided;
@@ -210,20 +210,20 @@ private:
       return;
     }
     impact.state = touches ? ImpactState::contact : ImpactState::grazing;
-    detail::Meeting told = near;
+    detail::PairContact reported = near;
     if (apart_between) {
-      told = touch;
+      reported = touch;
       impact.grazed = true;
       impact.graze_time_s = near.time;
     }
-    impact.time_s = told.time;
-    impact.gap_m = told.gap.upper;
-    impact.triangle_a = static_cast<std::int32_t>(a_.order[told.slot_a]);
-    impact.triangle_b = static_cast<std::int32_t>(b_.order[told.slot_b]);
-    impact.point_a_m = told.gap.point_a;
-    impact.point_b_m = told.gap.point_b;
-    impact.normal = told.gap.direction;
-    to_world(search.state_at(told.time).a_in_world, impact);
+    impact.time_s = reported.time;
+    impact.gap_m = reported.gap.upper;
+    impact.triangle_a = static_cast<std::int32_t>(a_.order[reported.slot_a]);
+    impact.triangle_b = static_cast<std::int32_t>(b_.order[reported.slot_b]);
+    impact.point_a_m = reported.gap.point_a;
+    impact.point_b_m = reported.gap.point_b;
+    impact.normal = reported.gap.direction;
+    to_world(search.state_at(reported.time).a_in_world, impact);
   }
 
   /// Whether the surfaces are seen further apart than the tolerance between two times.

@@ -93,22 +93,22 @@ void doubt_shapes(const Scenario& scenario, View<const Model> models, const Rank
     const Plausible* const known = plausible(model.kind);
     if (known == nullptr) continue;
     const Eigen::Vector3d extent_m = models[i].mesh.bounds().extent().cast<double>();
-    const std::string who =
+    const std::string body_text =
         fmt::format("models.{}: the {} is {} (length x width x height)", model.name,
                     body_kind_name(model.kind), size_text(extent_m));
     const double longest = extent_m.maxCoeff();
     if (longest < known->min_length_m || longest > known->max_length_m) {
       doubts.push_back(fmt::format("{}, but such a body is {:g} to {:g} m long; check its scale",
-                                   who, known->min_length_m, known->max_length_m));
+                                   body_text, known->min_length_m, known->max_length_m));
     }
     if (!drives(model.kind)) continue;
     if (const auto turned = guess_orientation(extent_m, model.transform)) {
       doubts.push_back(fmt::format(
-          "{}: it seems to lie {}; read its mesh with forward {} (or its opposite) and up {}", who,
-          turned->lies, turned->forward, turned->up));
+          "{}: it seems to lie {}; read its mesh with forward {} (or its opposite) and up {}",
+          body_text, turned->lies, turned->forward, turned->up));
     } else if (model.kind == BodyKind::car && lies_on_its_side(extent_m)) {
       doubts.push_back(fmt::format(
-          "{}: it is higher than wide; does it lie on its side? Check up and forward", who));
+          "{}: it is higher than wide; does it lie on its side? Check up and forward", body_text));
     }
   }
 }

@@ -102,16 +102,18 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
     const CandidateResult& ranked = result.ranking[place];
     const Candidate& candidate = result.candidates[ranked.candidate];
     const double until_s = followed_s(scenario, ranked);
-    const std::string who = fmt::format("'{}', in place {}, ", candidate.name, ranked.place);
-    if (!ranked.feasible) slips.add(who + detail::demand_words(ranked.demand));
+    const std::string candidate_text =
+        fmt::format("'{}', in place {}, ", candidate.name, ranked.place);
+    if (!ranked.feasible) slips.add(candidate_text + detail::demand_words(ranked.demand));
     if (!candidate.motion.holds_poses()) continue;
     const double cut = cut_speed_mps(candidate.motion, until_s);
     if (cut > moves_mps) {
-      ends.add(who + fmt::format("at {:g} s and {:.1f} m/s", candidate.motion.rest_time(), cut));
+      ends.add(candidate_text +
+               fmt::format("at {:g} s and {:.1f} m/s", candidate.motion.rest_time(), cut));
     }
     const double begins = candidate.motion.velocity_at(0.0).linear_mps.norm();
     if (std::abs(begins - speed) > 1.0 + 0.1 * speed) {
-      jumps.add(who + fmt::format("at {:.1f} m/s", begins));
+      jumps.add(candidate_text + fmt::format("at {:.1f} m/s", begins));
     }
   }
   if (slips.count > 0) {

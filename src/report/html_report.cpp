@@ -146,8 +146,9 @@ private:
       out_ += ".</p>\n";
     } else if (!result_.samples.empty() && result_.ranking.size() > 1) {
       out_ += fmt::format(
-          "<p class='note' id='separability'>Every place can be told from the next: no order turns "
-          "round in more than {:.0f} % of {} samples of what is not known, nor with half the steps "
+          "<p class='note' id='separability'>Every place is separable from the next: no order "
+          "reverses "
+          "in more than {:.0f} % of {} samples of what is not known, nor with half the steps "
           "or 1 mm aside.</p>\n",
           100.0 * separable_share, range_sample_count(result_));
     }

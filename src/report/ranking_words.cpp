@@ -144,8 +144,8 @@ std::vector<std::string> pushed_words(const Scenario& scenario, const RankResult
   if (left_out > 0) {
     words.push_back(
         left_out == 1
-            ? std::string("... and 1 more collision of others that hurts somebody")
-            : fmt::format("... and {} more collisions of others that hurt somebody", left_out));
+            ? std::string("... and 1 more collision of others that injures people")
+            : fmt::format("... and {} more collisions of others that injure people", left_out));
   }
   return words;
 }
@@ -232,12 +232,12 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
   if (!first.separable && first.overtaken > separable_share) {
     text += fmt::format(
         ". The two are not separable: in {:.0f} % of {} samples of what is not known their order "
-        "turns round",
+        "reverses",
         100.0 * first.overtaken, range_sample_count(result));
   } else if (!first.separable) {
     text +=
         ". The two are not separable: simulated with half the steps or 1 mm aside, their order may "
-        "turn round";
+        "reverse";
   }
   return text + "." + other_view(scenario, models, result, first, second);
 }

@@ -203,7 +203,7 @@ std::vector<std::string> not_separable_words(const RankResult& result, std::size
     if (next.place == ranked.place || !ranked.score || !next.score) continue;
     const std::string why = *ranked.score == *next.score ? std::string("equal scores")
                             : ranked.overtaken > separable_share
-                                ? fmt::format("their order turns round in {:.0f} % of {} samples",
+                                ? fmt::format("the order reverses in {:.0f} % of {} samples",
                                               100.0 * ranked.overtaken, range_sample_count(result))
                                 : std::string("half the steps or 1 mm aside may turn their order");
     words.push_back(
@@ -217,7 +217,7 @@ std::vector<std::string> harm_words(const HarmOptions& harm) {
   const HarmRanges& r = harm.ranges;
   std::vector<std::string> lines;
   lines.push_back(fmt::format(
-      "Harm counts {} by the curves of {}; the weights are a choice that somebody answers for: ego "
+      "Harm counts {} by the curves of {}; the weights are a choice of the user: ego "
       "occupant {:g}, other occupant {:g}, pedestrian {:g}, cyclist {:g}, motorcyclist {:g}, a MJ "
       "of deformation {:g}.",
       risk_outcome(harm.model), risk_model_name(harm.model), w.ego_occupant, w.other_occupant,

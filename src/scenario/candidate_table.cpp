@@ -236,14 +236,14 @@ private:
 Status add_candidate_table(const std::string& text, const std::string& file,
                            std::vector<ListedCandidate>& listed) {
   if (text.size() > limits::table_bytes) {
-    return told_of(file, {ErrorCode::limit_exceeded,
-                          {},
-                          {},
-                          "is larger than 64 MiB",
-                          "rank its candidates in parts"});
+    return error_in_file(file, {ErrorCode::limit_exceeded,
+                                {},
+                                {},
+                                "is larger than 64 MiB",
+                                "rank its candidates in parts"});
   }
   const Status read = TableReader(text, listed).read();
-  if (!read.ok()) return told_of(file, read.error());
+  if (!read.ok()) return error_in_file(file, read.error());
   return Success{};
 }
 

@@ -39,7 +39,7 @@ void refuse_at(Status& status, const std::string& path, const std::string& reaso
   if (status.ok()) status = Error{code, {}, path, reason, remedy};
 }
 
-Error told_of(const std::string& file, Error error) {
+Error error_in_file(const std::string& file, Error error) {
   error.file = file;
   for (std::string* const text : {&error.place, &error.reason, &error.remedy}) {
     *text = printable(*text, 4096);

@@ -53,7 +53,7 @@ private:
 
 /// The error as callers get it: with its file, and with nothing in its texts, some of which quote
 /// the document, that a terminal or a log would obey.
-Error told_of(const std::string& file, Error error);
+Error error_in_file(const std::string& file, Error error);
 
 /// Puts an error into a status that has none yet.
 void refuse_at(Status& status, const std::string& path, const std::string& reason,

@@ -135,7 +135,7 @@ Result<json> parse_json(const std::string& text) {
                  {},
                  line_and_column(text, error.byte),
                  error.byte > text.size() ? "the text ends too early" : "this is not JSON",
-                 "mend the text there or just before; JSON has neither comments nor trailing "
+                 "correct the text there or just before; JSON has neither comments nor trailing "
                  "commas, NaN nor Infinity"};
   } catch (const json::exception&) {
     return Error{ErrorCode::bad_input,

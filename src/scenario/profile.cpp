@@ -18,7 +18,7 @@ Result<HarmOptions> parse(const std::string& text, const std::string& file,
     return Error{ErrorCode::limit_exceeded, file, {}, "is larger than 1 MiB", "shorten it"};
   }
   Result<nlohmann::json> document = detail::parse_json(text);
-  if (!document) return detail::told_of(file, document.error());
+  if (!document) return detail::error_in_file(file, document.error());
   Status status = Success{};
   const detail::JsonObject root(
       *document, {}, status,
@@ -33,7 +33,7 @@ Result<HarmOptions> parse(const std::string& text, const std::string& file,
   root.text("description", text_characters);
   HarmOptions harm = otherwise;
   if (status.ok()) detail::read_harm(root, harm);
-  if (!status.ok()) return detail::told_of(file, status.error());
+  if (!status.ok()) return detail::error_in_file(file, status.error());
   return harm;
 }
 

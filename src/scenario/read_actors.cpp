@@ -31,7 +31,7 @@ ActorMotion read_motion(const JsonObject& object) {
   motion.poses = read_poses(object);
   if (!object.has("poses")) return motion;
   for (const char* key : {"pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps"}) {
-    if (object.has(key)) object.refuse(key, "stands beside poses", "keep one of them");
+    if (object.has(key)) object.refuse(key, "is given together with poses", "keep one of them");
   }
   return motion;
 }
@@ -45,7 +45,8 @@ void read_predictions(const JsonObject& object, ScenarioActor& actor) {
   const json* const predictions = object.array("predictions", 1, limits::predictions);
   if (predictions == nullptr) return;
   for (const char* key : {"pose", "poses", "speed_mps", "acceleration_mps2", "yaw_rate_dps"}) {
-    if (object.has(key)) object.refuse(key, "stands beside predictions", "keep one of them");
+    if (object.has(key))
+      object.refuse(key, "is given together with predictions", "keep one of them");
   }
   for (std::size_t i = 0; i < predictions->size() && object.status().ok(); ++i) {
     const JsonObject each(

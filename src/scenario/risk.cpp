@@ -37,9 +37,9 @@ Result<RiskMeasure> risk_from_name(const std::string& name) {
     if (!has_level(kind)) return RiskMeasure{kind, 0.0};
     const char* const end = name.data() + name.size();
     double level = 0.0;
-    const auto [rest, trouble] =
+    const auto [rest, error] =
         std::from_chars(name.data() + colon + 1, end, level, std::chars_format::fixed);
-    if (trouble == std::errc{} && rest == end && level > 0.0 && level < 1.0) {
+    if (error == std::errc{} && rest == end && level > 0.0 && level < 1.0) {
       return RiskMeasure{kind, level};
     }
   }

@@ -25,11 +25,11 @@ public:
 
   /// `unit`: what a number as scenarios have it is multiplied by to be the library's.
   void within(const std::string& path, double number, NumberRange range, double unit = 1.0) {
-    const double told = number / unit;
+    const double stated = number / unit;
     if (!std::isfinite(number)) {
       refuse(path, "is not a finite number", give_one_in(range));
-    } else if (!range.holds(told) && !range.holds(told * rounding)) {
-      refuse(path, out_of_range(told), give_one_in(range));
+    } else if (!range.holds(stated) && !range.holds(stated * rounding)) {
+      refuse(path, out_of_range(stated), give_one_in(range));
     }
   }
 
@@ -308,7 +308,7 @@ Status check_probabilities(const Scenario& scenario) {
     if (uncertain && !scenario.futures.empty()) {
       const bool predicted = !actor.predictions.empty();
       check.refuse(path + (predicted ? ".predictions" : ".existence_probability"),
-                   "stands beside futures", "keep one of them");
+                   "is given together with futures", "keep one of them");
     }
   }
   if (scenario.futures.size() > limits::futures) {

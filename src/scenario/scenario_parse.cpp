@@ -165,10 +165,10 @@ ListedCandidate read_candidate(const json& value, const std::string& path, Statu
   }
   if (object.has("poses")) {
     for (const char* key : {"acceleration_mps2", "steering_deg", "yaw_rate_dps"}) {
-      if (object.has(key)) object.refuse(key, "stands beside poses", "keep one of them");
+      if (object.has(key)) object.refuse(key, "is given together with poses", "keep one of them");
     }
   } else if (object.has("steering_deg") && object.has("yaw_rate_dps")) {
-    object.refuse("yaw_rate_dps", "stands beside steering_deg", "keep one of them");
+    object.refuse("yaw_rate_dps", "is given together with steering_deg", "keep one of them");
   }
   return candidate;
 }
@@ -284,14 +284,14 @@ Result<detail::ParsedScenario> parse(const std::string& text, const std::string&
         ErrorCode::limit_exceeded, file, {}, "is larger than 16 MiB", "split the scenario"};
   }
   Result<json> document = detail::parse_json(text);
-  if (!document) return detail::told_of(file, document.error());
+  if (!document) return detail::error_in_file(file, document.error());
   Status status = Success{};
   detail::ParsedScenario parsed = read_scenario(*document, status);
   Scenario& scenario = parsed.scenario;
   if (status.ok()) status = detail::check_names(scenario);
   if (status.ok()) status = detail::check_probabilities(scenario);
   if (status.ok()) status = detail::check_road(scenario.road);
-  if (!status.ok()) return detail::told_of(file, status.error());
+  if (!status.ok()) return detail::error_in_file(file, status.error());
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
   return parsed;
 }
@@ -300,11 +300,11 @@ Result<Scenario> parse_alone(const std::string& text, const std::string& file) {
   Result<detail::ParsedScenario> parsed = parse(text, file);
   if (!parsed) return parsed.error();
   if (!parsed->candidate_table.empty()) {
-    return detail::told_of(file, {ErrorCode::bad_input,
-                                  {},
-                                  "candidates.table",
-                                  "names a file, and text alone is read",
-                                  "load the scenario from its file, or list the candidates"});
+    return detail::error_in_file(file, {ErrorCode::bad_input,
+                                        {},
+                                        "candidates.table",
+                                        "names a file, and text alone is read",
+                                        "load the scenario from its file, or list the candidates"});
   }
   return std::move(parsed->scenario);
 }

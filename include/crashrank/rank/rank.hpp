@@ -319,7 +319,7 @@ struct CandidateResult {
   bool separable = true;
 };
 
-/// Two places are separable while their order turns round in no more than this share of the
+/// Two places are separable while their order reverses in no more than this share of the
 /// samples. Since a sample holds for all candidates alike, what is wrong in the same way for both
 /// does not count against them, as it would if their intervals were compared.
 inline constexpr double separable_share = 0.05;

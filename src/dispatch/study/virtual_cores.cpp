@@ -57,7 +57,7 @@ void VirtualCores::finish(Core& core) {
     back_free_ = std::max(back_free_, now_) + bytes / machine_.link_bytes_per_s;
     heard_at = back_free_ + machine_.link_latency_s;
   }
-  core.heard.push_back(heard_at);
+  core.finished_at.push_back(heard_at);
   core.queue.pop_front();
   core.idle_since = now_;
   // Waking the main thread keeps the core busy.
@@ -113,7 +113,7 @@ void VirtualCores::step(double until) {
     } else if (core.phase == Phase::idle && !core.queue.empty()) {
       next = std::min(next, core.queue.front().ready_at);
     }
-    if (!core.heard.empty()) next = std::min(next, core.heard.front());
+    if (!core.finished_at.empty()) next = std::min(next, core.finished_at.front());
   }
   next = std::max(next, now_);
   const double passed = next - now_;
@@ -126,8 +126,8 @@ void VirtualCores::step(double until) {
       batch.remaining -= passed;
       if (batch.remaining <= 1e-12) finish(core);  // a picosecond: below what doubles resolve
     }
-    while (!core.heard.empty() && core.heard.front() <= now_) {
-      core.heard.pop_front();
+    while (!core.finished_at.empty() && core.finished_at.front() <= now_) {
+      core.finished_at.pop_front();
       --core.outstanding;
       ++heard_;
     }

@@ -48,7 +48,7 @@ public:
   void wait(std::uint32_t seen);
   /// The main thread works.
   void work(double seconds);
-  /// Waits until all is done and heard of.
+  /// Waits until the main thread knows that all is done.
   void wait_all();
   /// The main thread wakes the workers, so that they spin when their work comes.
   void rouse();
@@ -78,9 +78,9 @@ private:
   };
   struct Core {
     Batch filling;
-    std::deque<Batch> queue;        ///< sent; the front one is in work
-    std::deque<double> heard;       ///< when the main thread will learn of finished ones
-    std::uint32_t outstanding = 0;  ///< as the main thread knows
+    std::deque<Batch> queue;         ///< sent; the front one is in work
+    std::deque<double> finished_at;  ///< when the main thread will learn of finished ones
+    std::uint32_t outstanding = 0;   ///< as the main thread knows
     Phase phase = Phase::idle;
     double slice_ends = never;  ///< when another thread that waits may take its processor
     double idle_since = -never;

@@ -77,7 +77,7 @@ Result<Content> look_at_collada(int descriptor, Content content) {
       if (end == std::string::npos || end - at > overlap) continue;
       const double metres = unit_in_metres(std::string_view(text).substr(at, end - at));
       if (!(metres > 0.0) || !std::isfinite(metres)) {
-        Error error = refuse("the unit is not a positive length", "mend the attribute meter");
+        Error error = refuse("the unit is not a positive length", "correct the attribute meter");
         error.place = "<unit>";
         return error;
       }

@@ -107,7 +107,7 @@ public:
         const unsigned index = face.mIndices[c];
         if (index >= source.mNumVertices) return bad("part '" + name + "'", "a face lost a vertex");
         if (place[index] == unseen) {
-          place[index] = carry(visit.to_file, source.mVertices[index]);
+          place[index] = transform(visit.to_file, source.mVertices[index]);
           if (place[index] == unseen) {
             return bad("part '" + name + "', vertex " + std::to_string(index),
                        "its coordinates are not finite numbers of single precision");
@@ -134,7 +134,7 @@ public:
   }
 
 private:
-  std::uint32_t carry(const Affine& to_file, const aiVector3D& vertex) {
+  std::uint32_t transform(const Affine& to_file, const aiVector3D& vertex) {
     const Eigen::Vector3d point = to_file(Eigen::Vector3d(vertex.x, vertex.y, vertex.z));
     const Eigen::Vector3f body = apply(transform_, point).cast<float>();
     return body.allFinite() ? pool_.index_of(body) : unseen;

@@ -47,7 +47,7 @@ bool begins_with_point(std::string_view text) {
 }
 
 Error at_line(std::size_t number, std::string reason,
-              std::string remedy = "mend the line, or export the file again") {
+              std::string remedy = "correct the line, or export the file again") {
   Error error = make_error(ErrorCode::bad_input, std::move(reason), std::move(remedy));
   error.place = "line " + std::to_string(number);
   return error;

@@ -62,7 +62,7 @@ Error cut_off(std::int64_t found, std::int64_t promised, const char* things) {
 Error bad_face(std::size_t line, std::int64_t face, const std::string& fault) {
   Error error = make_error(
       ErrorCode::bad_input, "face " + std::to_string(face) + " " + fault,
-      "mend the line (faces and vertices are numbered from 0), or export the file again");
+      "correct the line (faces and vertices are numbered from 0), or export the file again");
   error.place = "line " + std::to_string(line);
   return error;
 }
