@@ -66,7 +66,12 @@ def main(words: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("crashrank-batch: interrupted", file=sys.stderr)
         return INTERRUPTED
-    return _end(options, run, outcome)
+    try:
+        return _end(options, run, outcome)
+    except BrokenPipeError:
+        # Whoever read standard output has ended; what Python still holds of it goes nowhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
@@ -88,14 +93,15 @@ def _end(options: argparse.Namespace, run: Run, outcome: Outcome) -> int:
             file=sys.stderr,
         )
     if options.json:
-        print(json.dumps(outcome.to_dict(), ensure_ascii=False))
+        print(json.dumps(outcome.to_dict(), ensure_ascii=False), flush=True)
     else:
         ranked = outcome.done_rows - outcome.found_rows
         print(
             f"{outcome.done_rows} of {outcome.rows} scenes in {outcome.parts} parts, "
             f"{outcome.errors} with an error; {ranked} ranked in {outcome.seconds:.1f} s, "
             f"{run.progress.rate:.3g} a second\n"
-            f"results {outcome.results.hex}\n{folder / SUMMARY}"
+            f"results {outcome.results.hex}\n{folder / SUMMARY}",
+            flush=True,
         )
     if outcome.interrupted:
         return INTERRUPTED

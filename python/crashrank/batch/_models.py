@@ -12,7 +12,7 @@ from .._errors import wrong_type
 from .._model import Model, load_model
 from ._hashes import MISSING, file_hash, json_digest
 
-# About 250 bytes a triangle: 2 GB at most in a process. Used models are never dropped.
+# About 170 bytes a triangle: 1.4 GB at most in a process, and what the scenarios of a part use.
 MOST_TRIANGLES = 8_000_000
 
 # One a process: workers of every engine rank row after row with it.
