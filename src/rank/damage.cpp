@@ -167,8 +167,8 @@ void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& 
   const DamageQuery& asked = plan.query;
   const Body& a = body_of(scene, asked.a);
   const Body& b = scene.actors[asked.b];
-  scratch.a.clear(a.model->mesh.size());
-  scratch.b.clear(b.model->mesh.size());
+  scratch.a.clear(a.model->mesh.size(), a.model->tree.nodes.size());
+  scratch.b.clear(b.model->mesh.size(), b.model->tree.nodes.size());
   scratch.overlaps.clear();
 
   if (asked.triangle_a >= 0 && asked.triangle_b >= 0) {

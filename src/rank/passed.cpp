@@ -177,20 +177,26 @@ std::uint64_t add_passed(const Body& moving, const Pose& first, const Pose& last
     return path == Path::crossing;
   };
   scratch.near.assign(1, 0);
-  scratch.visits.assign(1, {0, 0, 1});
+  scratch.visits.assign(1, {0, 0, 1, false});
   while (!scratch.visits.empty()) {
     const PassedScratch::Visit visit = scratch.visits.back();
     scratch.visits.pop_back();
+    if (set.is_full(visit.node)) continue;
     const Node& node = tree.nodes[visit.node];
-    if (node.is_leaf() && holds(set, tree, node)) continue;
+    // Most of what is near was passed at an earlier pose.
+    const bool is_full = node.is_leaf() ? holds(set, tree, node)
+                                        : set.is_full(node.first) && set.is_full(node.first + 1);
+    if (is_full) set.note_full(visit.node);
+    if (is_full || visit.is_done) continue;
     list_near(other, swept(node.box), visit.begin, visit.end, scratch.near);
     begin = visit.end;
     end = scratch.near.size();
     if (end == begin) continue;
     if (!node.is_leaf()) {
       const auto last_near = static_cast<std::uint32_t>(end);
-      scratch.visits.push_back({node.first + 1, visit.end, last_near});
-      scratch.visits.push_back({node.first, visit.end, last_near});
+      scratch.visits.push_back({visit.node, 0, 0, true});
+      scratch.visits.push_back({node.first + 1, visit.end, last_near, false});
+      scratch.visits.push_back({node.first, visit.end, last_near, false});
       continue;
     }
     for (std::uint32_t slot = node.first; slot < node.first + node.count; ++slot) {

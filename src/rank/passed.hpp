@@ -16,6 +16,7 @@ struct PassedScratch {
     std::uint32_t node = 0;
     std::uint32_t begin = 0;
     std::uint32_t end = 0;
+    bool is_done = false;  ///< all below it has been visited
   };
   std::vector<Path> path;  ///< by vertex
   std::vector<Visit> visits;
