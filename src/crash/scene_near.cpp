@@ -21,6 +21,14 @@ void SceneRun::measure(const Vehicle& vehicle, Member& m) {
   m.rim_m = std::hypot(std::abs(m.box_x) + m.half_x, std::abs(m.box_y) + m.half_y);
 }
 
+/// No more than their gap: that of circles around them.
+double SceneRun::least_gap_m(std::size_t i, std::size_t j) const {
+  constexpr double rounding_m = 1e-6;
+  const PlanarBody& p = body(i);
+  const PlanarBody& q = body(j);
+  return plane_length(p.x - q.x, p.y - q.y) - (members_[i].rim_m + members_[j].rim_m) - rounding_m;
+}
+
 double SceneRun::gap_m(std::size_t i, std::size_t j) const {
   return gap_m(members_[i], body(i), members_[j], body(j));
 }
@@ -109,6 +117,11 @@ void SceneRun::list_near(std::size_t i) {
   const Vehicle& own = *bodies_[i].vehicle;
   for (std::size_t j = 0; j < bodies_.size(); ++j) {
     if (j == i || !can_press(own, *bodies_[j].vehicle)) continue;
+    // What keeps its plan is where it was placed last, or as far from there as plans get.
+    const double moved_m = members_[j].state == State::planned
+                               ? fastest_plan_mps_ * (now_s_ - members_[j].placed_s)
+                               : 0.0;
+    if (least_gap_m(i, j) - moved_m > listed_m) continue;
     const PlanarBody at =
         members_[j].state == State::planned ? make_planar(given(j), origin_m_) : body(j);
     const double gap = gap_m(m, body(i), members_[j], at);
