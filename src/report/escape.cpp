@@ -18,6 +18,8 @@ bool is_deceptive(std::uint32_t c) {
          (c >= 0x2060 && c <= 0x206f) || c == 0x061c || c == 0xfeff;
 }
 
+std::string named_text(std::uint32_t c) { return fmt::format("\\u{{{:04x}}}", c); }
+
 // What XML 1.0 section 2.2 calls Char, less the C1 controls it discourages.
 bool is_xml_char(std::uint32_t c) {
   if (c == '\t' || c == '\n' || c == '\r') return true;
@@ -41,7 +43,7 @@ std::string escape_terminal(const std::string& text) {
     if (!c.valid || (is_control(c.value) && c.value < 0x80)) {
       out += fmt::format("\\x{:02x}", c.value);
     } else if (is_control(c.value) || is_deceptive(c.value)) {
-      out += fmt::format("\\u{{{:04x}}}", c.value);
+      out += named_text(c.value);
     } else {
       out += bytes;
     }
@@ -54,6 +56,10 @@ std::string escape_xml(const std::string& text) {
   each(text, [&](const detail::CodePoint& c, std::string_view bytes) {
     if (!c.valid || !is_xml_char(c.value)) {
       out += "\xef\xbf\xbd";
+      return;
+    }
+    if (is_deceptive(c.value)) {
+      out += named_text(c.value);
       return;
     }
     switch (c.value) {

@@ -35,6 +35,10 @@ TEST(Escape, XmlTextStaysText) {
   EXPECT_EQ(escape_xml("<script a=\"b\">'&"), "&lt;script a=&quot;b&quot;&gt;&#39;&amp;");
   EXPECT_EQ(escape_xml("a\x1b\xff"), "a\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(escape_xml("tür"), "tür");
+  EXPECT_EQ(escape_xml("saloon \xe2\x80\xae"
+                       "9.0"),
+            "saloon \\u{202e}9.0");
+  EXPECT_EQ(escape_xml("\xd8\x9c\xe2\x81\xa6x\xe2\x81\xa9"), "\\u{061c}\\u{2066}x\\u{2069}");
 }
 
 TEST(Escape, FileNamesStayInTheirFolder) {

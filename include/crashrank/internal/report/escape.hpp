@@ -15,7 +15,8 @@ namespace crashrank {
 CRASHRANK_API std::string escape_terminal(const std::string& text);
 
 /// For XML, SVG and HTML, in text and in quoted attributes: & < > " ' become entities; characters
-/// that XML 1.0 forbids and bytes that are not UTF-8 become U+FFFD.
+/// that XML 1.0 forbids and bytes that are not UTF-8 become U+FFFD; those that turn the writing
+/// direction become \u{NNNN} as on a terminal, so that no name turns what stands beside it.
 CRASHRANK_API std::string escape_xml(const std::string& text);
 
 /// For a file's name: letters, digits, '.', '_' and '-' stay, anything else becomes '_'; no leading
