@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -21,6 +22,7 @@ using namespace crashrank;
 struct Options {
   std::vector<std::string> scenarios;
   std::size_t worlds = 2000;
+  double seconds = std::numeric_limits<double>::infinity();  ///< for each scenario
   std::size_t sampled = 64;
   std::size_t listed = 0;
   std::uint64_t seed = 1;
@@ -64,8 +66,12 @@ public:
       std::vector<double> weights;
       for (const JointFuture& future : world.futures) weights.push_back(future.probability);
       std::discrete_distribution<std::size_t> pick(weights.begin(), weights.end());
-      for (const FutureMotion& moved : world.futures[pick(random_)].motions) {
+      const JointFuture& future = world.futures[pick(random_)];
+      for (const FutureMotion& moved : future.motions) {
         static_cast<ActorMotion&>(world.actors[moved.actor]) = moved.motion;
+      }
+      for (const std::size_t actor : future.absent) {
+        world.actors[actor].existence_probability = 0.0;
       }
       world.futures.clear();
     }
@@ -147,7 +153,13 @@ double compare(const std::string& file, const Options& o) {
   if (!ranker) refuse(ranker.error());
   std::vector<Mean> means(candidates->size());
   Worlds worlds(scenario, o.seed);
-  for (std::size_t world = 0; world < o.worlds; ++world) {
+  std::size_t drawn_worlds = 0;
+  const auto start = std::chrono::steady_clock::now();
+  const auto in_time = [&] {
+    const std::chrono::duration<double> past = std::chrono::steady_clock::now() - start;
+    return past.count() < o.seconds;
+  };
+  for (; drawn_worlds < o.worlds && in_time(); ++drawn_worlds) {
     const Result<std::vector<Motion>> motions = worlds.motions();
     if (!motions) refuse(motions.error());
     std::vector<Candidate> moved = *candidates;
@@ -183,7 +195,7 @@ double compare(const std::string& file, const Options& o) {
     furthest = std::max(furthest, away / error);
   }
   std::printf("%s,%zu,%zu,%zu,%zu,%.4g,%.4g,%zu,%zu,%.2f,%s\n", made->name.c_str(), means.size(),
-              o.worlds, stratified->futures.futures, compared, highest, widest, beyond,
+              drawn_worlds, stratified->futures.futures, compared, highest, widest, beyond,
               compared == 0 ? 0 : beyond * 100 / compared, furthest,
               stratified->ranking.front().candidate == first ? "yes" : "no");
   std::fflush(stdout);
@@ -198,6 +210,7 @@ int main(int argc, char** argv) {
   app.add_option("scenarios", o.scenarios, "files with predictions or errors of states")
       ->required();
   app.add_option("--worlds", o.worlds, "drawn one by one");
+  app.add_option("--seconds", o.seconds, "fewer worlds of a scenario where they take longer");
   app.add_option("--futures", o.sampled, "of the stratified sample");
   app.add_option("--listed", o.listed,
                  "so many of the listed candidates instead of the grid of 225");

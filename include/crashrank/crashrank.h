@@ -309,6 +309,11 @@ CRASHRANK_API crashrank_status crashrank_scenario_add_future_motion(crashrank_sc
                                                                     size_t future, size_t actor,
                                                                     const crashrank_motion* motion,
                                                                     crashrank_error* error);
+/// Leaves an actor out of the future with that index: it does not exist in it. At most once, and
+/// not where it has a motion there, which crashrank_rank checks. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_scenario_add_future_absence(crashrank_scenario* scenario,
+                                                                     size_t future, size_t actor,
+                                                                     crashrank_error* error);
 /// Sets how the scores of several futures become one: "expected" (the default), "worst", "cvar:X"
 /// or "quantile:X" with X above 0 and below 1. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_scenario_set_risk(crashrank_scenario* scenario,

@@ -73,7 +73,7 @@ crashrank_status crashrank_scenario_add_future(crashrank_scenario* scenario, dou
                                                crashrank_error* error) {
   if (const char* null = c::first_null({{"scenario", scenario}})) return refuse_null(null, error);
   return guarded(error, [&]() -> crashrank_status {
-    scenario->scenario.futures.push_back({probability, {}});
+    scenario->scenario.futures.push_back({probability, {}, {}});
     return CRASHRANK_OK;
   });
 }
@@ -94,6 +94,21 @@ crashrank_status crashrank_scenario_add_future_motion(crashrank_scenario* scenar
     Result<ActorMotion> made = read_motion(*motion);
     if (!made) return refuse(made.error(), error);
     scenario->scenario.futures[future].motions.push_back({actor, std::move(*made)});
+    return CRASHRANK_OK;
+  });
+}
+
+crashrank_status crashrank_scenario_add_future_absence(crashrank_scenario* scenario, size_t future,
+                                                       size_t actor, crashrank_error* error) {
+  if (const char* null = c::first_null({{"scenario", scenario}})) return refuse_null(null, error);
+  return guarded(error, [&]() -> crashrank_status {
+    if (future >= scenario->scenario.futures.size()) {
+      return refuse(CRASHRANK_USAGE, "future: the scenario has no such future", error);
+    }
+    if (actor >= scenario->scenario.actors.size()) {
+      return refuse(CRASHRANK_USAGE, "actor: the scenario has no such actor", error);
+    }
+    scenario->scenario.futures[future].absent.push_back(actor);
     return CRASHRANK_OK;
   });
 }

@@ -88,7 +88,7 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
     const auto same_motion = [](const FutureMotion& p, const FutureMotion& q) {
       return p.actor == q.actor;
     };
-    return a.probability == b.probability &&
+    return a.probability == b.probability && a.absent == b.absent &&
            std::equal(a.motions.begin(), a.motions.end(), b.motions.begin(), b.motions.end(),
                       same_motion);
   };

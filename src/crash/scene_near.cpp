@@ -5,12 +5,6 @@
 #include <limits>
 
 namespace crashrank::detail {
-namespace {
-
-/// Bodies nearer than this are in each other's lists, m.
-constexpr double listed_m = 5.0;
-
-}  // namespace
 
 void SceneRun::measure(const Vehicle& vehicle, Member& m) {
   const Silhouettes& s = vehicle.silhouettes;
@@ -110,9 +104,6 @@ void SceneRun::list_near(std::size_t i) {
   Member& m = members_[i];
   m.near = 0;
   m.slack_m = listed_m;
-  if (options_.records_lists && listings_.size() < most_listings) {
-    listings_.push_back({now_s_, static_cast<std::uint32_t>(i), body(i)});
-  }
   std::uint32_t* const list = near_.data() + i * most_near;
   const Vehicle& own = *bodies_[i].vehicle;
   for (std::size_t j = 0; j < bodies_.size(); ++j) {
@@ -139,22 +130,6 @@ void SceneRun::list_near(std::size_t i) {
     }
     if (gap_m(i, list[furthest]) > gap) list[furthest] = static_cast<std::uint32_t>(j);
   }
-}
-
-bool SceneRun::would_list(const SceneBody& body) const {
-  if (listings_.size() == most_listings) return true;
-  Member member;
-  measure(*body.vehicle, member);
-  ContactBody given;
-  given.vehicle = body.vehicle;
-  for (const Listing& listing : listings_) {
-    if (!can_press(*bodies_[listing.body].vehicle, *body.vehicle)) continue;
-    body.plan->state_at(listing.time_s, given.pose, given.velocity);
-    if (!body.vehicle->movable()) given.velocity = {};
-    const PlanarBody at = make_planar(given, origin_m_);
-    if (!(gap_m(members_[listing.body], listing.at, member, at) > listed_m)) return true;
-  }
-  return false;
 }
 
 void SceneRun::list_near() {

@@ -34,7 +34,8 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   live_.reserve(most_at_once);
   spare_.reserve(most_at_once);
   contacts_.reserve(most_contacts);
-  listings_.reserve(most_listings);
+  track_steps_.reserve(most_tracked_steps);
+  track_.reserve(most_tracked);
   memory_.pairs.resize(most_pairs);
   for (BodyPair& pair : memory_.pairs) {
     pair.of_first.resize(pieces);
@@ -66,7 +67,10 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   first_run_ = nullptr;
   start_s_ = now_s_ = step_begin_s_ = placed_s_ = last_force_s_ = start_s;
   fastest_plan_mps_ = options.fastest_plan_mps;
-  listings_.clear();
+  track_steps_.clear();
+  track_.clear();
+  track_ends_ = false;
+  track_step_s_ = 0.0;
   crowded_ = false;
   steps_ = 0;
   ended_work_ = 0;
@@ -92,9 +96,10 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   }
   over_ = bodies.size() < 2;
   if (over_) return;
-  fastest_mps_ = fastest_plan_mps_;
+  track_fastest_mps_ = fastest_mps_ = fastest_plan_mps_;
   join_chain(first);
   list_near();
+  track(0.0);
   open_contacts();
   first_run_ = live_with(first, partner);
   partner_ = partner;
@@ -355,6 +360,7 @@ void SceneRun::step() {
     for (std::size_t k = 0; k < members_[i].near; ++k) place(near_[i * most_near + k]);
   }
   open_contacts();
+  track(step_s);
   feel(step_s);
   for (const std::uint32_t k : live_) {
     ContactRun& run = runs_[k];
@@ -376,6 +382,7 @@ void SceneRun::step() {
     b.move(0.5 * step_s);
     fastest_mps_ = std::max(fastest_mps_, rim_speed(b, m.rim_m));
   }
+  track_fastest_mps_ = std::max(track_fastest_mps_, fastest_mps_);
   now_s_ += 0.5 * step_s;
   ++steps_;
   for (std::size_t k = 0; k < live_.size();) {

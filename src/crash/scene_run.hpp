@@ -43,9 +43,9 @@ struct SceneOptions {
   double after_last_contact_s = 3.0;          ///< the scene ends so long after the last force
   double until_s = 0.0;                       ///< but while anything moves not before this time
   double longest_s = 30.0;                    ///< and so long after its start at the latest
-  /// Bodies that are asked about with `would_list` are no faster on their plans.
+  /// Bodies that are asked about with `would_act` are no faster on their plans.
   double fastest_plan_mps = 0.0;
-  bool records_lists = false;  ///< needed by `would_list`
+  bool records_track = false;  ///< needed by `would_act`
 };
 
 /// A contact between two bodies of a scene. Its velocities are those of the contact law's end; what
@@ -117,10 +117,11 @@ public:
   bool touched(std::size_t i) const { return members_[i].state >= State::free; }
   /// Pose of its origin now.
   Pose pose(std::size_t i) const { return given(i).pose; }
-  /// Whether a body that follows its plan would have come so near the chain that it was listed. A
-  /// body that is not listed changes no bit of a run: with it, without it or on another such plan
-  /// all steps, contacts and outcomes are the same.
-  bool would_list(const SceneBody& body) const;
+  /// Whether a body that follows its plan might have come so near the chain as to press or to
+  /// shorten a step. One that has not changes no bit of a run: with it, without it or on another
+  /// such plan all steps, contacts and outcomes are the same. `most_bodies`: no run that this one
+  /// is compared with has more bodies.
+  bool would_act(const SceneBody& body, std::size_t most_bodies) const;
   /// Some bodies were too many to be followed: see the limits.
   bool crowded() const noexcept { return crowded_; }
   std::uint64_t steps() const noexcept { return steps_; }
@@ -128,14 +129,31 @@ public:
   std::uint64_t work() const noexcept;
 
 private:
-  /// When and where the bodies near one of the chain were listed.
-  struct Listing {
+  /// A step, as it is when contacts are opened, in its middle.
+  struct TrackedStep {
     double time_s = 0.0;
-    std::uint32_t body = 0;
-    PlanarBody at;
+    double step_s = 0.0;
+    double before_s = 0.0;    ///< the step before
+    std::uint32_t first = 0;  ///< of its bodies in `track_`, in the order of the chain
+    std::uint32_t count = 0;
   };
-  /// Enough for most scenes; after more every body counts as listed.
-  static constexpr std::size_t most_listings = 8192;
+  /// Where a body of the chain is then, and how it moves: to a millimetre is enough.
+  struct TrackedBody {
+    float x = 0.0F;
+    float y = 0.0F;
+    float cosine = 1.0F;
+    float sine = 0.0F;
+    float vx = 0.0F;
+    float vy = 0.0F;
+    float spin = 0.0F;
+
+    PlanarBody body() const;
+  };
+  /// Enough for most scenes; after more every body counts as acting.
+  static constexpr std::size_t most_tracked = std::size_t{1} << 17U;
+  static constexpr std::size_t most_tracked_steps = std::size_t{1} << 14U;
+  /// Bodies nearer than this are in each other's lists, m.
+  static constexpr double listed_m = 5.0;
   /// Bodies nearer than this may press within the next steps, m.
   static constexpr double live_m = 0.15;
 
@@ -178,6 +196,9 @@ private:
   static void measure(const Vehicle& vehicle, Member& member);
   double closing_bound(std::size_t i, std::size_t j) const;
   bool lists(std::size_t i, std::size_t j) const;
+  void track(double step_s);
+  bool comes_near(const SceneBody& body, const Member& member, std::size_t place,
+                  double more_m) const;
   void list_near();
   void list_near(std::size_t i);
   template <typename Each> void each_near_pair(Each each);
@@ -214,7 +235,11 @@ private:
   std::vector<std::uint32_t> live_;   ///< runs that go on
   std::vector<std::uint32_t> spare_;  ///< runs that do not
   std::vector<SceneContact> contacts_;
-  std::vector<Listing> listings_;
+  std::vector<TrackedStep> track_steps_;
+  std::vector<TrackedBody> track_;
+  bool track_ends_ = false;                ///< there was more than room
+  double track_step_s_ = 0.0;              ///< the last one's
+  double track_fastest_mps_ = 0.0;         ///< of any point of the chain
   const ContactRun* first_run_ = nullptr;  ///< with the first body's partner
   std::size_t partner_ = 0;
   double start_s_ = 0.0;

@@ -44,7 +44,8 @@ SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
   // A candidate that touches nobody is looked at until the horizon, and so is what follows here.
   options.until_s = scene.slice_s.back();
   options.fastest_plan_mps = scene.fastest_plan_mps;
-  options.records_lists = scene.futures.size() > 1 && !scene.futures.displaces_ego();
+  options.records_track =
+      (scene.futures.size() > 1 || scene.futures.leaves_out()) && !scene.futures.displaces_ego();
   return options;
 }
 
@@ -150,7 +151,7 @@ void CrashChain::feel(const Scene& scene, std::vector<char>& felt) const {
     SceneBody body;
     body.vehicle = &scene.actors[plans[p].actor].vehicle;
     body.plan = &plans[p].motion;
-    if (run_.would_list(body)) felt[p] = 1;
+    if (run_.would_act(body, scene.actors.size() + 1)) felt[p] = 1;
   }
 }
 

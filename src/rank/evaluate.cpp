@@ -90,6 +90,7 @@ void simulate(const Scene& scene, const Motion& ego, std::size_t future, const C
   scratch.chain.begin(scene, ego, future, first, sample);
   scratch.chain.finish();
   scratch.chain.feel(scene, scratch.felt);
+  scratch.felt_left_out = scratch.felt_left_out || scene.futures.feels_left_out(scratch.felt);
   scratch.chain.effects(effects, scratch.order);
   work.crash_steps += scratch.chain.run().steps();
   work.crash_pieces += scratch.chain.run().work();
@@ -330,10 +331,10 @@ void Scratch::prepare(const Scene& scene) {
   hits.reserve(futures.plans.size());
   felt.resize(futures.plans.size());
   way.reserve(scene.ways.steps + 1);
-  first_s.reserve(futures.size());
-  until_s.reserve(futures.size());
-  weighted.reserve(futures.size());
-  for (auto* const each : {&same, &open, &others}) each->reserve(futures.size());
+  first_s.reserve(futures.most_futures());
+  until_s.reserve(futures.most_futures());
+  weighted.reserve(futures.most_futures());
+  for (auto* const each : {&same, &open, &others}) each->reserve(futures.most_futures());
   way.reserve(scene.ways.steps + 1);
   chain.prepare(scene);
   effects.reserve(SceneRun::most_contacts + 1);
@@ -376,6 +377,7 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
     CandidateResult result =
         combine_futures(scene, std::move(results), approaches.outcomes, scratch);
     add_manoeuvre(scene, candidate, leaving, scratch, result);
+    result.searched = true;
     return result;
   }
   CandidateResult result;

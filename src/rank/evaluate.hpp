@@ -33,6 +33,7 @@ struct Scratch {
   std::vector<double> first_s;  ///< by future, while hits are searched
   std::vector<double> until_s;
   std::vector<char> felt;               ///< by plan, see Futures::split
+  bool felt_left_out = false;           ///< see Futures::feels_left_out; of all since it was false
   std::vector<std::uint32_t> same;      ///< futures that share an outcome
   std::vector<std::uint32_t> open;      ///< and those still to be evaluated
   std::vector<std::uint32_t> others;    ///< while these are split

@@ -52,7 +52,8 @@ private:
 
 }  // namespace
 
-Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result) {
+Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result,
+                           bool& felt_left_out) {
   if (options.depth > max_distribution_depth) {
     return make_error(ErrorCode::usage, "the distribution depth is 16 at most");
   }
@@ -120,6 +121,7 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
     if (!done) return done;
   }
   for (const RankWork& spent : work) result.work += spent;
+  for (const Scratch& own : scratch) felt_left_out = felt_left_out || own.felt_left_out;
   return Success{};
 }
 

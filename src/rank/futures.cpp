@@ -23,6 +23,7 @@ bool has_errors(const Scenario& scenario) {
 Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   Futures made;
   made.actors_ = scenario.actors.size();
+  made.left_out_.assign(made.actors_, 0);
   Status sound = Success{};
   const auto add = [&](std::size_t actor, const ActorMotion& motion, double probability,
                        const std::string& place) {
@@ -49,17 +50,26 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
       add(i, prediction, prediction.probability / sum,
           place + ".predictions[" + std::to_string(k) + "]");
     }
+    double present = 1.0;
     std::size_t moved = 0;
+    std::size_t absences = 0;
     for (std::size_t f = 0; f < scenario.futures.size(); ++f) {
       for (const FutureMotion& motion : scenario.futures[f].motions) {
         if (motion.actor != i) continue;
         ++moved;
         add(i, motion.motion, 1.0, "futures[" + std::to_string(f) + "].motions." + actor.name);
       }
+      const std::vector<std::size_t>& missing = scenario.futures[f].absent;
+      if (std::find(missing.begin(), missing.end(), i) == missing.end()) continue;
+      ++absences;
+      present -= scenario.futures[f].probability;
     }
-    if (actor.predictions.empty() && (moved == 0 || moved < scenario.futures.size())) {
+    if (actor.predictions.empty() && (moved == 0 || moved + absences < scenario.futures.size())) {
       add(i, actor, 1.0, place);
     }
+    // However seldom: it is not certain.
+    constexpr double nearly = 1.0 - 1e-15;
+    if (absences > 0) made.existence_.back() = std::clamp(present, 0.0, nearly);
   }
   if (!sound) return sound.error();
   made.own_plans_ = made.plans.size();
@@ -73,31 +83,77 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
     summary.combinations = static_cast<double>(scenario.futures.size());
     made.read_joint(scenario);
   } else {
-    summary.combinations = 1.0;
-    for (std::size_t i = 0; i < made.actors_; ++i) {
-      constexpr double countable = 1e300;
-      summary.combinations =
-          std::min(summary.combinations * static_cast<double>(made.choices(i)), countable);
-    }
+    summary.combinations = made.count_combinations();
   }
-  const bool lists = made.is_joint() || summary.combinations <= double{most_combinations};
+  made.strata_.prepare(summary.sampled);
+  if (summary.has_state_errors) made.read_errors(scenario);
+  if (made.can_leave_out()) {
+    made.probability_.reserve(most_combinations);
+    made.plan_of_.reserve(most_combinations * made.actors_);
+  }
+  made.list_futures();
+  return made;
+}
+
+/// Lists all futures, or draws a sample where they are too many.
+void Futures::list_futures() {
+  const double combined = is_joint() ? summary.combinations : count_combinations();
+  const bool lists = is_joint() || combined <= double{most_combinations};
+  summary.sampled = 0;
   if (summary.has_state_errors || !lists) {
     summary.method = FutureMethod::sampled;
-    made.strata_.prepare(summary.sampled);
-    made.read_errors(scenario);
-    made.add_sample();
+    summary.sampled = strata_.samples();
+    add_sample();
+  } else if (is_joint()) {
+    summary.method = FutureMethod::joint;
+    add_joint();
   } else {
-    summary.sampled = 0;
-    if (made.is_joint()) {
-      summary.method = FutureMethod::joint;
-      made.add_joint();
-    } else {
-      summary.method = summary.combinations > 1.0 ? FutureMethod::all : FutureMethod::certain;
-      made.add_combinations();
-    }
+    summary.method = summary.combinations > 1.0 ? FutureMethod::all : FutureMethod::certain;
+    add_combinations();
   }
-  summary.futures = made.size();
-  return made;
+  summary.futures = size();
+}
+
+double Futures::count_combinations() const {
+  constexpr double countable = 1e300;
+  double count = 1.0;
+  for (std::size_t i = 0; i < actors_; ++i) {
+    count = std::min(count * static_cast<double>(combined_choices(i)), countable);
+  }
+  return count;
+}
+
+bool Futures::can_leave_out() const noexcept {
+  return !is_joint() && !summary.has_state_errors && summary.combinations > 1.0;
+}
+
+bool Futures::combine_reached(const std::vector<char>& reached) {
+  const std::size_t before = summary.left_out;
+  bool same = true;
+  summary.left_out = 0;
+  for (std::size_t i = 0; i < actors_; ++i) {
+    const char out = reached[i] == 0 && choices(i) > 1 ? 1 : 0;
+    same = same && out == left_out_[i];
+    left_out_[i] = out;
+    summary.left_out += static_cast<std::size_t>(out);
+  }
+  // Draws do not depend on each other: in a sample an actor that is left out changes nothing.
+  if (summary.left_out > 0 && count_combinations() > double{most_combinations}) {
+    std::fill(left_out_.begin(), left_out_.end(), char{0});
+    summary.left_out = 0;
+    same = before == 0;
+  }
+  if (same) return false;
+  list_futures();
+  return true;
+}
+
+bool Futures::feels_left_out(const std::vector<char>& felt) const {
+  if (!leaves_out()) return false;
+  for (std::size_t p = 0; p < own_plans_; ++p) {
+    if (felt[p] != 0 && left_out_[plans[p].actor] != 0) return true;
+  }
+  return false;
 }
 
 void Futures::note_followed() {
@@ -107,6 +163,10 @@ void Futures::note_followed() {
     for (std::size_t i = 0; i < actors_; ++i) {
       if (const std::uint32_t p = plan(f, i); p != absent) followed_[p] = 1;
     }
+  }
+  for (std::size_t p = 0; p < own_plans_; ++p) {
+    const std::size_t actor = plans[p].actor;
+    if (left_out_[actor] != 0 && existence_[actor] > 0.0) followed_[p] = 1;
   }
 }
 
@@ -150,6 +210,7 @@ void Futures::read_joint(const Scenario& scenario) {
     for (std::size_t i = 0; i < actors_; ++i) joint_plans_.push_back(first_plan_[i + 1] - 1);
     for (const FutureMotion& moved : future.motions)
       joint_plans_[row + moved.actor] = next[moved.actor]++;
+    for (const std::size_t actor : future.absent) joint_plans_[row + actor] = absent;
   }
 }
 
@@ -164,17 +225,17 @@ void Futures::add_joint() {
 void Futures::add_combinations() {
   probability_.clear();
   plan_of_.clear();
-  std::vector<std::size_t>::size_type count = 1;
-  for (std::size_t i = 0; i < actors_; ++i) count *= choices(i);
+  const auto count = static_cast<std::size_t>(count_combinations());
   likeliest_ = 0;
   for (std::size_t f = 0; f < count; ++f) {
     double probability = 1.0;
     bool is_likeliest = true;
     std::size_t rest = f;
     for (std::size_t i = 0; i < actors_; ++i) {
-      const std::size_t choice = rest % choices(i);
-      rest /= choices(i);
-      probability *= choice_probability(i, choice);
+      const bool is_out = left_out_[i] != 0;
+      const std::size_t choice = is_out ? likeliest_choice(i) : rest % choices(i);
+      rest /= combined_choices(i);
+      if (!is_out) probability *= choice_probability(i, choice);
       is_likeliest = is_likeliest && choice == likeliest_choice(i);
       plan_of_.push_back(plan_of_choice(i, choice));
     }
@@ -303,11 +364,7 @@ void Futures::split(std::size_t future, const std::vector<char>& felt,
 
 void Futures::weigh(View<const double> probabilities) {
   for (std::size_t p = 0; p < own_plans_; ++p) plans[p].probability = probabilities[p];
-  if (summary.method == FutureMethod::sampled) {
-    add_sample();
-  } else {
-    add_combinations();
-  }
+  list_futures();
 }
 
 }  // namespace crashrank::detail

@@ -7,6 +7,7 @@
 #include "crashrank/scenario/scenario.hpp"
 #include "rank/strata.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -76,6 +77,22 @@ public:
   /// Whether an actor exists in every future and follows one plan without errors.
   bool is_certain(std::size_t actor) const;
 
+  /// Whether leaving out actors that no candidate reaches may make fewer futures of them.
+  bool can_leave_out() const noexcept;
+  /// Combines the choices of those actors alone that may be reached: all others do what is
+  /// likeliest of them, in every future. Nothing changes where even so there are too many
+  /// combinations. Allocates nothing. False where the futures are the ones that they were.
+  bool combine_reached(const std::vector<char>& reached);
+  /// Whether some actor does what is likeliest of it in every future, since none reaches it.
+  bool leaves_out() const noexcept { return summary.left_out > 0; }
+  /// Whether one of the plans that are felt is of an actor that was left out: what was found so far
+  /// holds for its likeliest choice alone.
+  bool feels_left_out(const std::vector<char>& felt) const;
+  /// How many futures there may be at most, whichever actors are left out.
+  std::size_t most_futures() const noexcept {
+    return can_leave_out() ? std::max(size(), most_combinations) : size();
+  }
+
   /// Removes from `futures`, sorted, those that differ from `future`, which stays, in a plan that
   /// is felt, and appends them to `others`: `felt` by plan.
   void split(std::size_t future, const std::vector<char>& felt, std::vector<std::uint32_t>& futures,
@@ -98,6 +115,7 @@ private:
   void add_joint();
   void read_errors(const Scenario& scenario);
   void note_followed();
+  void list_futures();
   void add_combinations();
   void add_sample();
   void draw(std::size_t actor);
@@ -105,6 +123,11 @@ private:
   /// Of the choice of that index: plans, then not to exist.
   double choice_probability(std::size_t actor, std::size_t choice) const;
   std::size_t choices(std::size_t actor) const;
+  /// The same; one where the actor is left out: its likeliest.
+  std::size_t combined_choices(std::size_t actor) const {
+    return left_out_[actor] != 0 ? 1 : choices(actor);
+  }
+  double count_combinations() const;
   std::uint32_t plan_of_choice(std::size_t actor, std::size_t choice) const;
   std::size_t likeliest_choice(std::size_t actor) const;
 
@@ -115,6 +138,7 @@ private:
   std::vector<double> probability_;        ///< by future
   std::vector<std::uint32_t> plan_of_;     ///< by future and actor
   std::vector<char> followed_;             ///< by plan
+  std::vector<char> left_out_;             ///< by actor
   std::size_t own_plans_ = 0;
   std::vector<double> joint_;               ///< probability of each joint future
   std::vector<std::uint32_t> joint_plans_;  ///< by joint future and actor

@@ -142,14 +142,19 @@ void put_in_order(RankResult& result) {
   const auto demoted = [&](const CandidateResult& c) {
     return !c.feasible && result.infeasible != Infeasible::keep;
   };
+  const auto followable = [&](const CandidateResult& c) {
+    return !demoted(c) && (c.score || c.searched || result.infeasible == Infeasible::keep);
+  };
   const bool all_demoted = std::all_of(ranking.begin(), ranking.end(), demoted);
+  const bool any_followable = std::any_of(ranking.begin(), ranking.end(), followable);
   for (const CandidateResult& c : ranking) {
-    if (demoted(c) && !all_demoted) continue;
+    if (!all_demoted && !followable(c)) continue;
     lowest_high = std::min(lowest_high, c.score.value_or(c.score_interval.highest));
   }
   bool winner_seen = false;
   for (const CandidateResult& c : ranking) {
-    if (demoted(c) && !all_demoted) continue;
+    // Where nobody is known to be followed, even what is demoted may come first.
+    if (demoted(c) && any_followable) continue;
     const bool beaten = c.score.has_value() && winner_seen;
     winner_seen = winner_seen || c.score.has_value();
     if (!beaten && c.score_interval.lowest <= lowest_high) result.in_race.push_back(c.candidate);

@@ -5,15 +5,51 @@
 #include "rank/evaluate_on_workers.hpp"
 #include "rank/order.hpp"
 #include "rank/progress.hpp"
+#include "rank/reach.hpp"
 #include "rank/scene.hpp"
 #include "scenario/scenario_check.hpp"
 
 #include <chrono>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace crashrank {
 namespace {
+
+/// Evaluates all candidates. `felt_left_out` becomes true as Scratch's does.
+Status evaluate_all(const detail::Scene& scene, const RankOptions& options, RankResult& result,
+                    bool& felt_left_out) {
+  const std::size_t count = result.candidates.size();
+  if (options.workers > 1 && count > 0) {
+    return detail::evaluate_on_workers(scene, options, result, felt_left_out);
+  }
+  detail::RankProgress progress(options, count);
+  detail::Scratch scratch;
+  progress.watch(scratch);
+  for (std::size_t i = 0; i < count; ++i) {
+    result.ranking[i] = detail::evaluate(scene, result.candidates[i], scratch, result.work);
+    if (result.ranking[i].score) progress.advance();
+  }
+  felt_left_out = felt_left_out || scratch.felt_left_out;
+  return Success{};
+}
+
+/// The same in futures that leave out who is far away; where a crash reaches one of these, once
+/// more in those that leave out nobody.
+Status evaluate_in_futures(detail::Scene& scene, const RankOptions& options, RankResult& result) {
+  std::vector<char> reached(scene.actors.size());
+  detail::leave_out_far(scene, {result.candidates.data(), result.candidates.size()}, reached,
+                        result.work.box_tests);
+  bool felt_left_out = false;
+  Status done = evaluate_all(scene, options, result, felt_left_out);
+  if (done && felt_left_out) {
+    detail::leave_out_none(scene, reached);
+    done = evaluate_all(scene, options, result, felt_left_out);
+  }
+  result.futures = scene.futures.summary;
+  return done;
+}
 
 Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> models,
                                  const RankOptions& options) {
@@ -25,7 +61,7 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
     if (!weighed) return weighed.error();
   }
   RankResult result;
-  const Result<detail::Scene> scene = detail::make_scene(scenario, models, options, result);
+  Result<detail::Scene> scene = detail::make_scene(scenario, models, options, result);
   if (!scene) return scene.error();
   result.measure = scene->measure;
   result.harm = scene->harm;
@@ -39,18 +75,8 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   const std::size_t count = result.candidates.size();
   result.ranking.resize(count);
   result.work = scene->work;
-  if (options.workers > 1 && count > 0) {
-    const Status shared = detail::evaluate_on_workers(*scene, options, result);
-    if (!shared) return shared.error();
-  } else {
-    detail::RankProgress progress(options, count);
-    detail::Scratch scratch;
-    progress.watch(scratch);
-    for (std::size_t i = 0; i < count; ++i) {
-      result.ranking[i] = detail::evaluate(*scene, result.candidates[i], scratch, result.work);
-      if (result.ranking[i].score) progress.advance();
-    }
-  }
+  const Status evaluated = evaluate_in_futures(*scene, options, result);
+  if (!evaluated) return evaluated.error();
   for (std::size_t i = 0; i < count; ++i) result.ranking[i].candidate = i;
   detail::put_in_order(result);
   return result;

@@ -1,51 +1,106 @@
 #include "rank/order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace crashrank::detail {
 namespace {
 
-/// Where scores are open, a candidate stands behind those whose scores are lower whatever is found
-/// out, and before those whose scores are higher.
-void places_by_intervals(RankResult& result) {
-  std::vector<CandidateResult>& ranking = result.ranking;
+/// Whether the vehicle can follow a candidate, as far as that decides its place: those that are
+/// demoted stand behind all that are not.
+enum Tier : std::uint8_t { followable, undecided, demoted, tiers };
+
+Tier tier_of(const CandidateResult& c, Infeasible infeasible) {
+  if (infeasible == Infeasible::keep) return followable;
+  if (!c.feasible) return demoted;
+  return c.score || c.searched ? followable : undecided;
+}
+
+double lowest_of(const CandidateResult& c) { return c.score.value_or(c.score_interval.lowest); }
+double highest_of(const CandidateResult& c) { return c.score.value_or(c.score_interval.highest); }
+
+/// Whether `a` stands before `b` by tier and score, whatever is found out.
+bool surely_before(const CandidateResult& a, const CandidateResult& b, Infeasible infeasible) {
+  const Tier p = tier_of(a, infeasible);
+  const Tier q = tier_of(b, infeasible);
+  if (p == followable && q == demoted) return true;
+  return p <= q && !(p == undecided && q == undecided) && highest_of(a) < lowest_of(b);
+}
+
+/// Ends of the intervals of those in a tier, rising.
+struct TierEnds {
   std::vector<double> lowest;
   std::vector<double> highest;
-  for (const CandidateResult& c : ranking) {
-    lowest.push_back(c.score_interval.lowest);
-    highest.push_back(c.score_interval.highest);
+
+  void sort() {
+    std::sort(lowest.begin(), lowest.end());
+    std::sort(highest.begin(), highest.end());
   }
-  std::sort(lowest.begin(), lowest.end());
-  std::sort(highest.begin(), highest.end());
-  for (CandidateResult& c : ranking) {
-    const auto before =
-        std::lower_bound(highest.begin(), highest.end(), c.score_interval.lowest) - highest.begin();
-    const auto behind =
-        lowest.end() - std::upper_bound(lowest.begin(), lowest.end(), c.score_interval.highest);
-    // Those tied with it overlap it and never stand before it. Where all else is level, the order
-    // of the ranking decides.
-    const std::size_t worst = ranking.size() - c.sharing - static_cast<std::size_t>(behind);
-    c.best_place = std::min(c.place - 1, static_cast<std::size_t>(before));
-    c.worst_place = std::max(c.place - 1, worst);
-    if (!result.proved) continue;
-    if (c.place == 1) {
-      c.worst_place = 0;
+  std::size_t all_below(double score) const {
+    return static_cast<std::size_t>(std::lower_bound(highest.begin(), highest.end(), score) -
+                                    highest.begin());
+  }
+  std::size_t all_above(double score) const {
+    return static_cast<std::size_t>(lowest.end() -
+                                    std::upper_bound(lowest.begin(), lowest.end(), score));
+  }
+};
+
+/// How many stand before a candidate, and how many do not, by `surely_before`.
+void count_by_tiers(const std::array<TierEnds, tiers>& ends, Tier tier, CandidateResult& c,
+                    std::size_t& before, std::size_t& behind) {
+  for (const Tier other : {followable, undecided, demoted}) {
+    const TierEnds& of = ends[other];
+    if (tier == undecided && other == undecided) continue;
+    if (other < tier) {
+      before +=
+          other == followable && tier == demoted ? of.highest.size() : of.all_below(lowest_of(c));
+    } else if (other > tier) {
+      behind +=
+          tier == followable && other == demoted ? of.lowest.size() : of.all_above(highest_of(c));
     } else {
-      c.best_place = std::max<std::size_t>(c.best_place, 1);
+      before += of.all_below(lowest_of(c));
+      behind += of.all_above(highest_of(c));
     }
   }
 }
 
-/// Whether the scores of two candidates differ, whatever value they take within their intervals.
-bool scores_differ(const CandidateResult& a, const CandidateResult& b) {
-  if (a.score && b.score) return *a.score != *b.score;
-  const double lowest_a = a.score.value_or(a.score_interval.lowest);
-  const double lowest_b = b.score.value_or(b.score_interval.lowest);
-  return a.score.value_or(a.score_interval.highest) < lowest_b ||
-         b.score.value_or(b.score_interval.highest) < lowest_a;
+/// Where scores are open, a candidate stands behind those that stand before it whatever is found
+/// out, and before those behind it.
+void places_by_intervals(RankResult& result) {
+  std::vector<CandidateResult>& ranking = result.ranking;
+  std::array<TierEnds, tiers> ends;
+  for (const CandidateResult& c : ranking) {
+    TierEnds& own = ends[tier_of(c, result.infeasible)];
+    own.lowest.push_back(lowest_of(c));
+    own.highest.push_back(highest_of(c));
+  }
+  for (TierEnds& each : ends) each.sort();
+  for (std::size_t first = 0, end = 0; first < ranking.size(); first = end) {
+    // What is known of those with equal scores decides between them.
+    end = first + 1;
+    const Tier tier = tier_of(ranking[first], result.infeasible);
+    const std::optional<double>& score = ranking[first].score;
+    while (score && end < ranking.size() && ranking[end].score == score &&
+           tier_of(ranking[end], result.infeasible) == tier) {
+      ++end;
+    }
+    for (std::size_t i = first; i < end; ++i) {
+      CandidateResult& c = ranking[i];
+      std::size_t before = c.place - 1 - std::min(first, c.place - 1);
+      std::size_t not_before = end - first - 1 - before;
+      count_by_tiers(ends, tier, c, before, not_before);
+      c.best_place = before;
+      c.worst_place = ranking.size() - 1 - not_before;
+      const bool wins = result.in_race.size() == 1 && result.in_race.front() == c.candidate;
+      if (wins) c.worst_place = c.best_place;
+    }
+  }
 }
 
 }  // namespace
@@ -54,16 +109,16 @@ void tell_stability(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   assign_places(result);
   // What the vehicle cannot follow stands behind in every sample.
-  const auto demoted = [&](const CandidateResult& c) {
-    return !c.feasible && result.infeasible != Infeasible::keep;
+  const auto is_demoted = [&](const CandidateResult& c) {
+    return tier_of(c, result.infeasible) == demoted;
   };
   for (CandidateResult& c : ranking) {
     c.best_place = c.place - 1;
     c.worst_place = c.place - 1;
   }
   for (std::size_t i = 0; i + 1 < ranking.size(); ++i) {
-    ranking[i].separable =
-        demoted(ranking[i]) != demoted(ranking[i + 1]) || scores_differ(ranking[i], ranking[i + 1]);
+    ranking[i].separable = surely_before(ranking[i], ranking[i + 1], result.infeasible) ||
+                           surely_before(ranking[i + 1], ranking[i], result.infeasible);
   }
   if (!result.complete) {
     places_by_intervals(result);
@@ -82,7 +137,7 @@ void tell_stability(RankResult& result) {
     std::iota(order.begin(), order.end(), std::size_t{0});
     // Where a sample tells no difference, the ranking's own order stands.
     std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
-      if (demoted(ranking[p]) != demoted(ranking[q])) return demoted(ranking[q]);
+      if (is_demoted(ranking[p]) != is_demoted(ranking[q])) return is_demoted(ranking[q]);
       return ranking[p].sample_scores[sample] < ranking[q].sample_scores[sample];
     });
     std::size_t place = 0;
@@ -98,7 +153,7 @@ void tell_stability(RankResult& result) {
   }
   const std::size_t counted = range_sample_count(result);
   for (std::size_t place = 0; place + 1 < known; ++place) {
-    if (demoted(ranking[place]) != demoted(ranking[place + 1])) continue;
+    if (is_demoted(ranking[place]) != is_demoted(ranking[place + 1])) continue;
     std::size_t turned = 0;
     for (std::size_t sample = 0; sample < samples; ++sample) {
       if (is_numerical(result.samples[sample])) continue;

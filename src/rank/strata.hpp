@@ -16,6 +16,7 @@ class Strata {
 public:
   /// Room for so many samples: nothing allocates after it.
   void prepare(std::size_t samples);
+  std::size_t samples() const noexcept { return order_.size(); }
   /// One number in [0, 1) for each sample, valid until the next draw.
   const std::vector<double>& draw(std::uint64_t seed);
   /// The errors of a body's state, one for each sample: of four dimensions of that seed.

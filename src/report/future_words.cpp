@@ -34,7 +34,11 @@ std::string method_words(const FutureSummary& summary) {
     case FutureMethod::joint:
       return fmt::format("{} joint futures are listed.", summary.futures);
     case FutureMethod::all:
-      return fmt::format("All {} combinations of predictions are evaluated.", summary.futures);
+      return fmt::format("All {} combinations of predictions{} are evaluated.", summary.futures,
+                         summary.left_out == 0
+                             ? std::string()
+                             : fmt::format(" that matter ({} of the others {} too far away)",
+                                           summary.left_out, summary.left_out == 1 ? "is" : "are"));
     case FutureMethod::sampled:
       if (summary.has_state_errors) {
         return fmt::format(

@@ -229,9 +229,17 @@ private:
       out_ += "<td class='n'>" + detail::interval_text(ranked) + "</td><td class='n roomy'>" +
               detail::places_text(ranked) + "</td>";
     }
+    if (ranked.first_touch) {
+      const FirstTouch& touch = *ranked.first_touch;
+      out_ += fmt::format(
+          "<td>{}</td><td class='n roomy'>{:.3f}</td><td class='n roomy'>{}</td></tr>\n",
+          escape_xml(scenario_.actors[touch.actor].name), touch.time_of_impact_s,
+          detail::fixed_text(touch.closing_speed_mps, 1));
+      return;
+    }
     if (ranked.contacts.empty()) {
       out_ += "<td colspan='3' class='free'>";
-      out_ += ranked.score ? escape_xml(detail::passing_words(scenario_, ranked)) : "not known yet";
+      out_ += escape_xml(detail::passing_words(scenario_, ranked));
       out_ += "</td></tr>\n";
       return;
     }

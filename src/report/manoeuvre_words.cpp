@@ -43,6 +43,7 @@ std::string leaving_words(const CandidateResult& ranked) {
 }
 
 std::string passing_words(const Scenario& scenario, const CandidateResult& ranked) {
+  if (!ranked.score && !ranked.searched) return "not known yet";
   std::string words = ranked.grazes.empty() ? "nothing" : "nothing, but grazes";
   // Both are 0 for a candidate that has a contact in another future.
   if (ranked.collision_probability > 0.0) return words;

@@ -10,7 +10,7 @@ namespace crashrank::detail {
 std::string demand_words(const ManoeuvreDemand& demand);
 
 /// What a candidate without contact hits, with its least distance and time gap: "nothing, 0.84 m
-/// from kerb, 1.20 s from van".
+/// from kerb, 1.20 s from van"; "not known yet" before contacts are searched.
 std::string passing_words(const Scenario& scenario, const CandidateResult& ranked);
 
 /// When and how fast a wheel leaves the road: "leaves the road after 1.31 s at 17.2 m/s"; empty

@@ -283,6 +283,9 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
   const CandidateResult& ranked = result.ranking[place];
   const Candidate& candidate = result.candidates[ranked.candidate];
   const bool sampled = !needs_crash(result.measure) || !result.samples.empty();
+  const bool searched = ranked.score || ranked.searched;
+  const bool tells_feasible =
+      ranked.score || (ranked.searched && result.infeasible != Infeasible::keep);
   Json contacts = Json::array();
   for (const detail::AnyContact& contact : detail::contacts_in_order(ranked)) {
     contacts.push_back(contact.own != nullptr ? contact_json(scenario, models, *contact.own)
@@ -297,7 +300,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"rank", ranked.place},
       {"candidate", candidate.name},
       {"tied_with", tied_json(result, place)},
-      {"feasible", ranked.score || !ranked.feasible ? Json(ranked.feasible) : Json(nullptr)},
+      {"feasible", tells_feasible || !ranked.feasible ? Json(ranked.feasible) : Json(nullptr)},
       {"grip_demand", ranked.score ? Json(ranked.demand.grip) : Json(nullptr)},
       {"demand", ranked.score ? demand_json(ranked.demand) : Json(nullptr)},
       {"leaves_road", leaving_json(ranked)},
@@ -317,11 +320,11 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"places", Json::array({ranked.best_place + 1, ranked.worst_place + 1})},
       {"separable_from_next", sampled ? Json(ranked.separable) : Json(nullptr)},
       {"overtaken_share", sampled ? Json(ranked.overtaken) : Json(nullptr)},
-      {"collision_probability", ranked.score ? Json(ranked.collision_probability) : Json(nullptr)},
+      {"collision_probability", searched ? Json(ranked.collision_probability) : Json(nullptr)},
       {"people", people_json(scenario, ranked)},
       {"futures", futures_json(scenario, ranked)},
       {"sampling_error", ranked.sampling_error ? Json(*ranked.sampling_error) : Json(nullptr)},
-      {"collides", ranked.score || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
+      {"collides", searched || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
       {"contacts", std::move(contacts)},
       {"crowded", ranked.crowded},
       {"other", nullptr},
@@ -329,6 +332,11 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"closing_speed_mps", nullptr},
       {"delta_v_mps", nullptr},
       {"pdof_deg", nullptr}};
+  if (ranked.first_touch) {
+    entry["other"] = scenario.actors[ranked.first_touch->actor].name;
+    entry["time_of_impact_s"] = ranked.first_touch->time_of_impact_s;
+    entry["closing_speed_mps"] = ranked.first_touch->closing_speed_mps;
+  }
   if (!ranked.contacts.empty()) {
     const Contact& first = ranked.contacts.front();
     entry["other"] = scenario.actors[first.actor].name;
@@ -424,6 +432,7 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
                   {"evaluated", result.futures.futures},
                   {"sampled", result.futures.sampled},
                   {"combinations", result.futures.combinations},
+                  {"left_out", result.futures.left_out},
                   {"risk", risk_name(result.futures.risk)}}},
                 {"infeasible", infeasible_name(result.infeasible)},
                 {"dropped", std::move(dropped)},

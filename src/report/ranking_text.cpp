@@ -42,12 +42,16 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
     row.push_back(detail::places_text(ranked));
   }
   if (result.futures.method != FutureMethod::certain) {
-    row.push_back(ranked.score ? fmt::format("{:.0f} %", 100.0 * ranked.collision_probability)
-                               : std::string());
+    row.push_back(ranked.score || ranked.searched
+                      ? fmt::format("{:.0f} %", 100.0 * ranked.collision_probability)
+                      : std::string());
   }
   if (ranked.contacts.empty()) {
-    if (!ranked.score) {
-      row.emplace_back("not known yet");
+    if (ranked.first_touch) {
+      const FirstTouch& first = *ranked.first_touch;
+      row.push_back(scenario.actors[first.actor].name);
+      row.push_back(fmt::format("{:.3f}", first.time_of_impact_s));
+      row.push_back(detail::fixed_text(first.closing_speed_mps, 1));
     } else {
       row.push_back(detail::passing_words(scenario, ranked));
     }

@@ -145,7 +145,7 @@ std::vector<std::string> score_texts(const RankResult& result) {
     if (!ranked.score) {
       std::string text = fmt::format("{:.3g} to {:.3g}", ranked.score_interval.lowest,
                                      ranked.score_interval.highest);
-      if (ranked.score_estimate) text += fmt::format(" (about {:.2g})", *ranked.score_estimate);
+      if (ranked.score_estimate) text += fmt::format(" (about {:.3g})", *ranked.score_estimate);
       texts.push_back(std::move(text));
       continue;
     }

@@ -39,6 +39,7 @@ Scenario likeliest_future(const Scenario& scenario) {
   for (const FutureMotion& moved : likeliest.motions) {
     static_cast<ActorMotion&>(single.actors[moved.actor]) = moved.motion;
   }
+  for (const std::size_t actor : likeliest.absent) single.actors[actor].existence_probability = 0.0;
   return single;
 }
 

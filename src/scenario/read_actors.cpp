@@ -78,6 +78,32 @@ ScenarioActor read_actor(const JsonObject& root, const json& value, const std::s
   return actor;
 }
 
+/// Index of the actor of that name; after a refusal, without one, their number.
+std::size_t actor_named(const JsonObject& object, const char* key, const std::string& name,
+                        const std::vector<ScenarioActor>& actors) {
+  const auto actor = std::find_if(actors.begin(), actors.end(),
+                                  [&name](const ScenarioActor& each) { return each.name == name; });
+  if (actor == actors.end()) {
+    object.refuse(key, "names '" + name + "', which is not an actor", "use the names of actors");
+  }
+  return static_cast<std::size_t>(actor - actors.begin());
+}
+
+void read_absent(const JsonObject& object, const std::vector<ScenarioActor>& actors,
+                 JointFuture& future) {
+  const json* const names = object.array("absent", 1, limits::actors);
+  if (names == nullptr) return;
+  for (const json& name : *names) {
+    if (!name.is_string()) {
+      object.refuse("absent", "holds something that is no name", "use the names of actors");
+      return;
+    }
+    future.absent.push_back(
+        actor_named(object, "absent", name.get_ref<const std::string&>(), actors));
+    if (!object.status().ok()) return;
+  }
+}
+
 JointFuture read_future(const JsonObject& object, const std::vector<ScenarioActor>& actors) {
   JointFuture future;
   future.probability = read_probability(object);
@@ -89,19 +115,13 @@ JointFuture read_future(const JsonObject& object, const std::vector<ScenarioActo
     return future;
   }
   for (const auto& [name, value] : motions.items()) {
-    const auto actor =
-        std::find_if(actors.begin(), actors.end(),
-                     [&name = name](const ScenarioActor& each) { return each.name == name; });
-    if (actor == actors.end()) {
-      object.refuse("motions", "names '" + name + "', which is not an actor",
-                    "use the names of actors");
-      return future;
-    }
+    const std::size_t actor = actor_named(object, "motions", name, actors);
+    if (actor == actors.size()) return future;
     const JsonObject motion(value, object.path_of(("motions." + name).c_str()), object.status(),
                             {"pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses"});
-    future.motions.push_back(
-        {static_cast<std::size_t>(actor - actors.begin()), read_motion(motion)});
+    future.motions.push_back({actor, read_motion(motion)});
   }
+  read_absent(object, actors, future);
   return future;
 }
 
@@ -180,7 +200,7 @@ void read_futures(const JsonObject& root, Scenario& scenario) {
   if (const json* const futures = root.array("futures", 1, limits::futures)) {
     for (std::size_t i = 0; i < futures->size() && root.status().ok(); ++i) {
       const JsonObject future((*futures)[i], indexed("futures", i), root.status(),
-                              {"probability", "motions"});
+                              {"probability", "motions", "absent"});
       scenario.futures.push_back(read_future(future, scenario.actors));
     }
   }

@@ -326,6 +326,16 @@ Status check_probabilities(const Scenario& scenario) {
                      "keep one motion");
       }
     }
+    for (const std::size_t actor : scenario.futures[i].absent) {
+      const std::string path = ranges::indexed("futures", i) + ".absent";
+      if (actor >= scenario.actors.size()) {
+        check.refuse(path, "names an actor that is not there", "use indices of actors");
+      } else if (!moved.insert(actor).second) {
+        check.refuse(path,
+                     "names '" + scenario.actors[actor].name + "', which moves or is named before",
+                     "say once what becomes of it");
+      }
+    }
   }
   return check.status;
 }

@@ -97,6 +97,15 @@ TEST(CApi, FuturesAndAbsenceAreTheWeightedSums) {
   for (const auto& [name, score] : named_scores_in_c(joint)) {
     EXPECT_NEAR(score, 0.4 * walks.at(name) + 0.6 * waits.at(name), 1e-12) << name;
   }
+
+  const Loaded missing = load(crossing_file);
+  crashrank_scenario* const other = missing.scenario.get();
+  ASSERT_EQ(crashrank_scenario_add_future(other, 0.4, nullptr), CRASHRANK_OK);
+  ASSERT_EQ(crashrank_scenario_add_future(other, 0.6, nullptr), CRASHRANK_OK);
+  ASSERT_EQ(crashrank_scenario_add_future_absence(other, 1, 0, nullptr), CRASHRANK_OK);
+  for (const auto& [name, score] : named_scores_in_c(missing)) {
+    EXPECT_NEAR(score, 0.4 * walks.at(name) + 0.6 * without.at(name), 1e-12) << name;
+  }
 }
 
 TEST(CApi, ARankerWeighsPredictionsAnew) {
@@ -198,6 +207,8 @@ TEST(CApi, WhatIsNoPredictionIsRefused) {
   EXPECT_EQ(crashrank_scenario_add_prediction(scenario, 0, 1.0, &unset, &error), CRASHRANK_USAGE);
   EXPECT_TRUE(says("crashrank_motion.size")) << error.message;
   EXPECT_EQ(crashrank_scenario_add_future_motion(scenario, 0, 0, &motion, &error), CRASHRANK_USAGE);
+  EXPECT_TRUE(says("no such future")) << error.message;
+  EXPECT_EQ(crashrank_scenario_add_future_absence(scenario, 0, 0, &error), CRASHRANK_USAGE);
   EXPECT_TRUE(says("no such future")) << error.message;
   EXPECT_EQ(crashrank_scenario_set_risk(scenario, "median", &error), CRASHRANK_USAGE);
   EXPECT_TRUE(says("'median' is not a risk measure")) << error.message;

@@ -1,3 +1,4 @@
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
 
 #include "campaign.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -156,6 +158,97 @@ TEST(Futures, IndependentPredictionsAreTheWeightedSumOfAllCombinations) {
   EXPECT_LT(outcomes, futures);
 }
 
+/// An actor with as many predictions as there may be, so far away.
+void add_far(oracle::Random& random, Scene& scene, const std::string& name, double away_m) {
+  const double direction = random.real(-std::numbers::pi, std::numbers::pi);
+  ScenarioActor& far = scene.add_actor(name, scenes::car_model, away_m * std::cos(direction),
+                                       away_m * std::sin(direction),
+                                       random.real(-std::numbers::pi, std::numbers::pi));
+  for (std::size_t k = 0; k < scenario_limits::predictions; ++k) {
+    Prediction prediction;
+    static_cast<ActorMotion&>(prediction) = far;
+    prediction.speed_mps = random.real(0, 20);
+    prediction.yaw_rate_radps = random.real(-0.3, 0.3);
+    prediction.probability = 1.0 / static_cast<double>(scenario_limits::predictions);
+    far.predictions.push_back(prediction);
+  }
+  far.existence_probability = random.real(0.1, 1.0);
+}
+
+TEST(Futures, WhoIsFarAwayMultipliesNothing) {
+  const std::uint64_t seed = wished("CRASHRANK_FUTURES_SEED", 7600);
+  const std::uint64_t scenes = wished("CRASHRANK_FUTURES_SCENES", 4);
+  std::size_t most = 0;
+  for (std::uint64_t i = 0; i < scenes; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed + i));
+    oracle::Random random(seed + i);
+    Scene scene = i % 2 == 0 ? scenes::traffic(seed + i) : scenes::congestion(seed + i);
+    scenes::add_predictions(random, scene, 3);
+    const RankOptions options = options_with(i % 4 == 0);
+    const RankResult near = scene.ranked(options);
+    most = std::max(most, near.futures.futures);
+    for (int k = 0; k < 5; ++k) {
+      add_far(random, scene, "far " + std::to_string(k), random.real(350, 3000));
+    }
+    const RankResult all = scene.ranked(options);
+    ASSERT_EQ(all.futures.futures, near.futures.futures);
+    ASSERT_EQ(all.futures.left_out, near.futures.left_out + 5);
+    EXPECT_EQ(all.futures.method, FutureMethod::all);
+    EXPECT_GT(all.futures.combinations, 1e7);
+    const std::vector<double> expected = scores_of(near);
+    const std::vector<double> scores = scores_of(all);
+    for (std::size_t c = 0; c < scores.size(); ++c) {
+      EXPECT_NEAR(scores[c], expected[c], 1e-12 * std::max(1.0, expected[c]));
+    }
+    const Result<RankResult> within = rank_within(scene.scenario, scene.models, options, {});
+    ASSERT_TRUE(within.ok());
+    EXPECT_EQ(scores_of(*within), scores);
+    EXPECT_EQ(within->futures.futures, all.futures.futures);
+  }
+  EXPECT_GT(most, 4U);
+}
+
+TEST(Futures, WhoIsReachedByACrashAfterTheHorizonIsNotLeftOut) {
+  // The car ahead is pushed into the next one, over 50 m beyond where the ego can have gone when
+  // its plans end.
+  Scene scene = scenes::traffic(7700);
+  Scenario& scenario = scene.scenario;
+  scenario.actors.clear();
+  scenario.listed.clear();
+  scenario.grid.reset();
+  scenario.horizon_s = 0.4;
+  scenario.ego.speed_mps = 60.0;
+  scene.add_candidate("coast", 0.0);
+  scene.add_actor("near", scenes::car_model, 10.0, 0.0);
+  const auto predict = [](ScenarioActor& actor) {
+    actor.predictions.resize(2);
+    for (Prediction& each : actor.predictions) {
+      static_cast<ActorMotion&>(each) = actor;
+      each.probability = 0.5;
+    }
+    actor.predictions.back().yaw_rate_radps = 0.1;
+    actor.predictions.back().speed_mps = 8.0;
+  };
+  predict(scene.add_actor("next", scenes::car_model, 95.0, 0.0));
+  const RankResult reached = scene.ranked(options_with(false));
+  EXPECT_EQ(reached.futures.left_out, 0U);
+  EXPECT_EQ(reached.futures.futures, 2U);
+  EXPECT_EQ(reached.ranking.front().futures.size(), 2U);
+  expect_mean_of_singles(scene, options_with(false));
+  const Result<RankResult> within = rank_within(scenario, scene.models, options_with(false), {});
+  ASSERT_TRUE(within.ok());
+  EXPECT_TRUE(within->complete);
+  EXPECT_EQ(scores_of(*within), scores_of(reached));
+
+  // To the side nothing gets as far.
+  scenario.actors.pop_back();
+  predict(scene.add_actor("aside", scenes::car_model, 95.0, 150.0));
+  const RankResult apart = scene.ranked(options_with(false));
+  EXPECT_EQ(apart.futures.left_out, 1U);
+  EXPECT_EQ(apart.futures.futures, 1U);
+  expect_mean_of_singles(scene, options_with(false));
+}
+
 TEST(Futures, EveryWorkerCountGivesTheSameBits) {
   oracle::Random random(7200);
   Scene scene = scenes::congestion(7200);
@@ -174,7 +267,8 @@ TEST(Futures, EveryWorkerCountGivesTheSameBits) {
 }
 
 TEST(Futures, JointFuturesAreTheWeightedSumOfTheSingleScenarios) {
-  for (std::uint64_t seed = 7300; seed < 7304; ++seed) {
+  std::size_t absent = 0;
+  for (std::uint64_t seed = 7300; seed < 7306; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     oracle::Random random(seed);
     Scene scene = scenes::traffic(seed);
@@ -188,7 +282,13 @@ TEST(Futures, JointFuturesAreTheWeightedSumOfTheSingleScenarios) {
       Scenario single = scenario;
       single.futures.clear();
       for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
-        if (scenario.actors[i].model >= scenes::pole_model || random.chance(0.4)) continue;
+        if (scenario.actors[i].model >= scenes::pole_model || random.chance(0.3)) continue;
+        if (random.chance(0.3)) {
+          future.absent.push_back(i);
+          single.actors[i].existence_probability = 0.0;
+          ++absent;
+          continue;
+        }
         ActorMotion motion = scenario.actors[i];
         motion.speed_mps += random.real(-3, 3);
         motion.yaw_rate_radps += random.real(-0.2, 0.2);
@@ -203,7 +303,31 @@ TEST(Futures, JointFuturesAreTheWeightedSumOfTheSingleScenarios) {
     }
     const std::vector<double> whole = scores_of(scene.ranked(options_with(false)));
     for (std::size_t c = 0; c < whole.size(); ++c) EXPECT_NEAR(whole[c], mean[c], 1e-12);
+    const Result<RankResult> within = rank_within(scenario, scene.models, options_with(false), {});
+    ASSERT_TRUE(within.ok());
+    EXPECT_EQ(scores_of(*within), whole);
   }
+  EXPECT_GT(absent, 6U);
+}
+
+TEST(Futures, WhoIsAbsentHasNoMotion) {
+  Scene scene = scenes::car_and_wall();
+  scene.add_candidate("coast", 0.0);
+  scene.add_actor("car", 0, 20.0, 0.0);
+  Scenario& scenario = scene.scenario;
+  const auto place = [&] {
+    const Result<RankResult> result = rank(scenario, scene.models);
+    return result.ok() ? std::string() : result.error().place;
+  };
+  scenario.futures.push_back({1.0, {}, {1}});
+  EXPECT_EQ(place(), "");
+  scenario.futures.front().absent = {1, 1};
+  EXPECT_EQ(place(), "futures[0].absent");
+  scenario.futures.front().absent = {2};
+  EXPECT_EQ(place(), "futures[0].absent");
+  scenario.futures.front().absent = {1};
+  scenario.futures.front().motions.push_back({1, scenario.actors[1]});
+  EXPECT_EQ(place(), "futures[0].absent");
 }
 
 TEST(Futures, RiskMeasuresAreThoseOfTheSingleScores) {
@@ -276,9 +400,8 @@ TEST(Futures, ASampleThatShowsNoSpreadOrNoTailStatesNoError) {
   scene.add_candidate("coast", 0.0);
   scene.scenario.measure = Measure::delta_v;
   for (int i = 0; i < 11; ++i) {
-    // Far away, so that what they do changes nothing.
-    scene.add_actor("far " + std::to_string(i), 0, -500.0 - 20.0 * i, 0.0).existence_probability =
-        0.5;
+    // Beside the way, so that what they do changes nothing.
+    scene.add_actor("beside " + std::to_string(i), 0, 6.0 * i, 30.0).existence_probability = 0.5;
   }
   const auto error = [&](const char* risk, std::size_t sampled) {
     RankOptions options;

@@ -161,7 +161,8 @@ std::vector<Scenario> single_scenarios(const Scenario& scenario) {
     for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
       static_cast<ActorMotion&>(singles[f].actors[i]) = scenario.actors[i];
     }
-    for (const FutureMotion& moved : scenario.futures[chosen(share, scenario.futures)].motions) {
+    const JointFuture& future = scenario.futures[chosen(share, scenario.futures)];
+    for (const FutureMotion& moved : future.motions) {
       static_cast<ActorMotion&>(singles[f].actors[moved.actor]) = moved.motion;
     }
   }

@@ -99,7 +99,7 @@ TEST(ScoreText, AScoreThatIsNotKnownIsItsInterval) {
   open.score_interval = {0.5, std::numeric_limits<double>::infinity()};
   EXPECT_EQ(texts({exact(0.0), open, exact(2.0)}), (Texts{"0", "0.5 to inf", "2"}));
   open.score_estimate = 0.823;
-  EXPECT_EQ(texts({open}), (Texts{"0.5 to inf (about 0.82)"}));
+  EXPECT_EQ(texts({open}), (Texts{"0.5 to inf (about 0.823)"}));
 }
 
 TEST(ScoreText, FixedDecimalsShowWhatIsNotZero) {

@@ -191,15 +191,18 @@ enum class FutureMethod {
 /// The futures of a ranking.
 struct FutureSummary {
   FutureMethod method = FutureMethod::certain;  ///< where they come from
-  std::size_t futures = 1;        ///< evaluated; with `sampled`, the likeliest is one more
-  std::size_t sampled = 0;        ///< of these drawn, each with the same probability
-  double combinations = 1.0;      ///< that the scenario allows
+  std::size_t futures = 1;    ///< evaluated; with `sampled`, the likeliest is one more
+  std::size_t sampled = 0;    ///< of these drawn, each with the same probability
+  double combinations = 1.0;  ///< that the scenario allows
+  /// Actors with several choices that no candidate, nor what follows from its crash, comes near:
+  /// they multiply no futures, all of which have their likeliest choice.
+  std::size_t left_out = 0;
   RiskMeasure risk;               ///< how their scores become one
   bool has_state_errors = false;  ///< drawn with errors of positions, headings and speeds
 };
 
-/// Outcome of a candidate in futures that do not differ for it: all bodies within 5 m of its crash
-/// move alike in them.
+/// Outcome of a candidate in futures that do not differ for it: all bodies that act in its crash,
+/// or might have, move alike in them.
 struct FutureOutcome {
   double probability = 0.0;        ///< of these futures together; 0: the likeliest, beside a sample
   std::size_t futures = 1;         ///< how many
@@ -242,6 +245,13 @@ inline constexpr double farthest_clearance_m = 50.0;
 inline constexpr double enough_distance_m = 5.0;
 inline constexpr double enough_time_gap_s = 3.0;  ///< s
 
+/// A first contact of which no crash is known yet.
+struct FirstTouch {
+  std::size_t actor = 0;           ///< index into Scenario::actors
+  double time_of_impact_s = 0.0;   ///< from the decision
+  double closing_speed_mps = 0.0;  ///< of the points that meet
+};
+
 /// Outcome of a candidate. Contacts, damage and grazes are those of the likeliest
 /// future; scores, samples and places are of all futures.
 struct CandidateResult {
@@ -255,7 +265,12 @@ struct CandidateResult {
   /// Least and greatest of the score and its numerical samples (`is_numerical`); the score alone
   /// where there are none, the score's interval where the score is not known.
   ScoreInterval numerical_interval;
+  /// The first contacts of all futures are known: so are `collides`, `collision_probability` and,
+  /// unless it does not count (Infeasible::keep), `feasible`, also where the score is not.
+  bool searched = false;
   bool collides = false;  ///< it has a contact in the likeliest future
+  /// The first contact in the likeliest future, where it is all that is known of the crash.
+  std::optional<FirstTouch> first_touch;
   /// The ego's, in the order of their begins: the first, which the exact search found, then those
   /// of the simulated scene that follows from it.
   std::vector<Contact> contacts;
@@ -303,7 +318,8 @@ struct CandidateResult {
   /// RankResult::ranking; `tied_with` lists them.
   std::size_t sharing = 1;
   /// Best and worst place over the samples but the numerical ones, from 0; `place` - 1 where there
-  /// are none. Candidates that are tied and score alike in a sample share their place in it.
+  /// are none. Candidates that are tied and score alike in a sample share their place in it. Of a
+  /// partial answer: the place of the complete one, without samples, lies between them.
   std::size_t best_place = 0;
   std::size_t worst_place = 0;  ///< and the worst
   /// Share of the samples, numerical ones left out, in which the next in the ranking scores lower

@@ -142,6 +142,7 @@ struct FutureMotion {
 struct JointFuture {
   double probability = 1.0;           ///< above 0; those of a scenario sum to 1
   std::vector<FutureMotion> motions;  ///< each actor at most once
+  std::vector<std::size_t> absent;  ///< actors that do not exist in it, each once, none that moves
 };
 
 /// A manoeuvre written out: acceleration with steering or yaw rate, or timed poses when there are

@@ -8,6 +8,7 @@
 #include "rank/anytime/step_rounds.hpp"
 #include "rank/near.hpp"
 #include "rank/order.hpp"
+#include "rank/reach.hpp"
 #include "rank/scene.hpp"
 #include "scenario/motion_check.hpp"
 #include "scenario/scenario_check.hpp"
@@ -77,6 +78,8 @@ struct CRASHRANK_HIDDEN Ranker::State {
   std::vector<Motion> coming;  ///< of the actors, while they are copied
   Motion room;                 ///< of a displaced candidate
   std::size_t known = 0;       ///< candidates whose score is known, of this call
+  std::vector<char> reached;   ///< by actor, while those far away are left out
+  bool felt_left_out = false;  ///< a crash reaches one of these
 
   /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
   /// of work or time.
@@ -88,13 +91,14 @@ struct CRASHRANK_HIDDEN Ranker::State {
       if (affordable && done.state != nullptr) {
         if (done.state->told.known && !states[chosen[i]].told.known) ++known;
         states[chosen[i]] = *done.state;
+        felt_left_out = felt_left_out || done.state->felt_left_out;
         work += done.end.work;
       }
       in_time = in_time && affordable && done.state != nullptr && done.end.finished;
       race.put_back(chosen[i], states);
     }
     if (budget.known != nullptr) budget.known->store(known, std::memory_order_relaxed);
-    return in_time && !rounds.expired();
+    return in_time && !felt_left_out && !rounds.expired();
   }
 
   /// Everything until time, work or questions run out.
@@ -136,6 +140,19 @@ struct CRASHRANK_HIDDEN Ranker::State {
     effort.refining_s = seconds_between(seen, Watch::Clock::now());
   }
 
+  /// All that time and work allow, in futures that leave out who is far away; where a crash reaches
+  /// one of these, once more in those that leave out nobody.
+  void refine_in_futures(View<const Candidate> asked, const RankBudget& budget,
+                         RankerEffort& effort) noexcept {
+    const bool leaves = budget.work > 0 && !rounds.expired();
+    if (leaves && detail::leave_out_far(scene, asked, reached, effort.work)) begin(asked);
+    refine_all(budget, effort);
+    if (!felt_left_out) return;
+    detail::leave_out_none(scene, reached);
+    begin(asked);
+    refine_all(budget, effort);
+  }
+
   /// Nothing is known of any candidate but what none can exceed. Touches nothing that workers do.
   void begin(View<const Candidate> asked) noexcept {
     for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -143,6 +160,36 @@ struct CRASHRANK_HIDDEN Ranker::State {
     }
     race.begin(asked.size());
     known = 0;
+    felt_left_out = false;
+  }
+
+  /// Evaluates what is known of an answer. True where a crash reaches an actor that is left out of
+  /// the futures.
+  bool explain_all(View<const Candidate> candidates, const RankerAnswer& answer, const Watch& watch,
+                   RankResult& result) {
+    detail::Scratch scratch;
+    scratch.stop = {&Watch::stop, const_cast<Watch*>(&watch)};
+    for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
+      const RankedCandidate& told = answer.ranking[i];
+      CandidateResult& full = result.ranking[i];
+      if (told.known && !watch.expired()) {
+        full = detail::evaluate(scene, candidates[told.candidate], scratch, result.work);
+      } else {
+        full.feasible = told.feasible;
+        full.collides = told.collides;
+        full.score_interval = told.interval;
+        if (told.known || told.stage >= RankStage::searched) {
+          full.searched = true;
+          full.score_estimate = told.estimate;
+          full.collision_probability = told.collision_probability;
+          if (told.collides) {
+            full.first_touch = {told.actor, told.time_of_impact_s, told.closing_speed_mps};
+          }
+        }
+      }
+      full.candidate = told.candidate;
+    }
+    return scratch.felt_left_out;
   }
 
   /// Of the first `all` states. Touches nothing that workers do.
@@ -274,6 +321,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->race.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
     state->coming.resize(state->scene.futures.own_plans());
+    state->reached.resize(state->scene.actors.size());
     state->prepare_s = seconds_between(start, Watch::Clock::now());
     return Ranker(std::move(state));
   });
@@ -390,7 +438,7 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   s.begin(candidates);
   if (s.rounds.await(watch)) {
     s.rounds.begin(candidates, watch);
-    s.refine_all(budget, answer.effort);
+    s.refine_in_futures(candidates, budget, answer.effort);
   }
   s.tell(answer, candidates.size());
   answer.elapsed_s = seconds_between(start, Watch::Clock::now());
@@ -416,22 +464,13 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     }
     result.candidates.assign(candidates.begin(), candidates.end());
     result.ranking.resize(answer.ranking.size());
-    detail::Scratch scratch;
-    Watch watch(cancel);
-    scratch.stop = {&Watch::stop, &watch};
-    for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
-      const RankedCandidate& told = answer.ranking[i];
-      CandidateResult& full = result.ranking[i];
-      if (told.known && !watch.expired()) {
-        full = detail::evaluate(s.scene, candidates[told.candidate], scratch, result.work);
-      } else {
-        full.feasible = told.feasible;
-        full.collides = told.collides;
-        full.score_interval = told.interval;
-        if (told.stage >= RankStage::searched) full.score_estimate = told.estimate;
-      }
-      full.candidate = told.candidate;
+    const Watch watch(cancel);
+    if (s.explain_all(candidates, answer, watch, result)) {
+      // The samples' crashes reach further than the plain ones.
+      detail::leave_out_none(s.scene, s.reached);
+      s.explain_all(candidates, answer, watch, result);
     }
+    result.futures = s.scene.futures.summary;
     for (const RankedCandidate& told : answer.ranking) {
       if (told.in_race) result.in_race.push_back(told.candidate);
     }

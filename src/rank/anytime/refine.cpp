@@ -253,24 +253,28 @@ bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wo
     note_hits(q, group, ego, state, followed, scratch);
     if (!in_time && scratch.stopped()) return take_back();
   }
+  state.stuck = !decided;
+  if (!decided) {
+    take_back();
+    return true;
+  }
   state.told.stage = RankStage::searched;
   state.told.collision_probability = probability;
-  state.stuck = !decided;
-  if (!decided) return true;
   if (!describe(q, followed, state, scratch)) return take_back();
   combine(q, state, scratch);
   return true;
 }
 
 /// What a simulation of one future's crash has found holds for all that do not differ from it as
-/// far as it went.
-void spread(const Scene& scene, std::size_t future, Refined& state, Scratch& scratch) {
+/// far as it went. False where it reaches an actor that was left out: then it holds for none.
+bool spread(const Scene& scene, std::size_t future, Refined& state, Scratch& scratch) {
   const FutureScore found = state.futures[future];
   const FutureGroup group = scene.futures.group(future);
-  if (group.size() == 1) return;
+  if (group.size() == 1 && !scene.futures.leaves_out()) return true;
   std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
   for (std::uint32_t k = 0; k <= found.first; ++k) scratch.felt[state.firsts[k].plan] = 1;
   scratch.chain.feel(scene, scratch.felt);
+  if (scene.futures.feels_left_out(scratch.felt)) return false;
   scratch.same.clear();
   scratch.others.clear();
   for (std::size_t f = group.begin; f < group.end; ++f) {
@@ -285,6 +289,7 @@ void spread(const Scene& scene, std::size_t future, Refined& state, Scratch& scr
     same.least = std::max(same.least, found.least);
     same.simulated = std::max(same.simulated, found.simulated);
   }
+  return true;
 }
 
 /// Simulates what follows from the first contact in one future. False when time was up.
@@ -298,6 +303,8 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   constexpr std::uint64_t more = 3;
   const std::size_t index = next_future(q.scene.futures, state);
   FutureScore& future = state.futures[index];
+  const FutureScore before = future;
+  const RankedCandidate told_before = state.told;
   const bool in_turns = q.give_up_above < std::numeric_limits<double>::infinity();
   const std::uint64_t turn = std::max(first_turn, more * future.simulated);
   const HarmSample& plain = q.scene.plain;
@@ -336,7 +343,12 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
     for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, plain);
     future.score = left + scratch.tally.score(q.scene);
   }
-  spread(q.scene, index, state, scratch);
+  if (!spread(q.scene, index, state, scratch)) {
+    future = before;
+    state.told = told_before;
+    state.stuck = state.felt_left_out = true;
+    return in_time;
+  }
   combine(q, state, scratch);
   return in_time;
 }
@@ -388,8 +400,10 @@ StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
         // No stop within: what is begun is worth finishing.
         scratch.stop = {};
         try {
+          scratch.felt_left_out = false;
           const CandidateResult result = evaluate(q.scene, q.candidate, scratch, work);
-          if (result.score) {
+          state.felt_left_out = scratch.felt_left_out;
+          if (result.score && !state.felt_left_out) {
             settle(state, *result.score);
           } else {
             state.stuck = true;

@@ -35,6 +35,7 @@ struct Refined {
   bool stuck = false;                  ///< a question about it stayed undecided: no step follows
   double most = 0.0;                   ///< no future's score is above
   bool demand_known = false;           ///< `told.feasible` is final
+  bool felt_left_out = false;          ///< its crash reaches an actor left out of the futures
   std::optional<RoadLeaving> leaving;  ///< of its plan; from the stage `near` on
   std::vector<FutureScore> futures;    ///< what is known of each
   /// First contacts of the futures, those of a group by their times; from the stage `searched` on.
@@ -42,9 +43,10 @@ struct Refined {
 
   /// Room for any scene of so many plans and futures: nothing allocates after it.
   void reserve(const Futures& all) {
-    futures.reserve(all.size());
+    const std::size_t count = all.most_futures();
+    futures.reserve(count);
     // Every one is some future's, and no plan has two in one group.
-    firsts.reserve(all.displaces_ego() ? all.size() : std::min(all.size(), all.plans.size()));
+    firsts.reserve(all.displaces_ego() ? count : std::min(count, all.plans.size()));
   }
 
   bool open() const noexcept { return !told.known && !stuck; }
