@@ -53,7 +53,7 @@ bool boxes_near(const Rectangle& p, const Rectangle& q, double reach_m) {
 }
 
 /// A piece of an outline.
-struct Segment {
+struct FixedSegment {
   Vector2d middle;  ///< from the origin of the search, world axes, m
   Vector2d half;    ///< from the middle to one end
   double half_m = 0.0;
@@ -61,20 +61,20 @@ struct Segment {
 
 double cross(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
 
-double distance_m(const Segment& s, const Vector2d& point) {
+double distance_m(const FixedSegment& s, const Vector2d& point) {
   const double along = std::clamp((point - s.middle).dot(s.half) / s.half.squaredNorm(), -1.0, 1.0);
   return (s.middle + along * s.half - point).norm();
 }
 
-bool cross_each_other(const Segment& s, const Segment& t) {
-  const auto side = [](const Segment& line, const Vector2d& point) {
+bool cross_each_other(const FixedSegment& s, const FixedSegment& t) {
+  const auto side = [](const FixedSegment& line, const Vector2d& point) {
     return cross(line.half, point - line.middle) > 0.0;
   };
   return side(s, t.middle - t.half) != side(s, t.middle + t.half) &&
          side(t, s.middle - s.half) != side(t, s.middle + s.half);
 }
 
-bool are_near(const Segment& s, const Segment& t, double reach_m) {
+bool are_near(const FixedSegment& s, const FixedSegment& t, double reach_m) {
   if ((s.middle - t.middle).norm() > s.half_m + t.half_m + reach_m) return false;
   return distance_m(s, t.middle - t.half) <= reach_m ||
          distance_m(s, t.middle + t.half) <= reach_m ||
@@ -97,10 +97,10 @@ struct Heading {
 };
 
 /// The pieces of a body's outlines that lie within reach of a rectangle, by rising band.
-std::vector<Segment> segments_near(const Body& body, const Rectangle& box, const Vector2d& origin,
-                                   double reach_m) {
+std::vector<FixedSegment> segments_near(const Body& body, const Rectangle& box,
+                                        const Vector2d& origin, double reach_m) {
   const Heading heading(body.standing);
-  std::vector<Segment> near;
+  std::vector<FixedSegment> near;
   for (const OutlinePiece& piece : body.vehicle.profile->pieces) {
     const Vector2d middle = heading.to_world(piece.x, piece.y);
     const double half_m = 0.5 * static_cast<double>(piece.length_m);
@@ -116,7 +116,7 @@ std::vector<Segment> segments_near(const Body& body, const Rectangle& box, const
 /// middles in cells that touch.
 class Grid {
 public:
-  Grid(const std::vector<Segment>& segments, double longest_half_m)
+  Grid(const std::vector<FixedSegment>& segments, double longest_half_m)
       : cell_m_(2.0 * longest_half_m + widest_joint_m) {
     cells_.reserve(segments.size());
     for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -126,7 +126,7 @@ public:
   }
 
   /// Whether one of those around a segment is meant, by its index.
-  template <class Meant> bool any_around(const Segment& s, Meant&& meant) const {
+  template <class Meant> bool any_around(const FixedSegment& s, Meant&& meant) const {
     const Cell own = cell_of(s);
     for (std::int64_t column = own.first - 1; column <= own.first + 1; ++column) {
       auto at = std::lower_bound(cells_.begin(), cells_.end(),
@@ -140,7 +140,7 @@ public:
 
 private:
   using Cell = std::pair<std::int64_t, std::int64_t>;
-  Cell cell_of(const Segment& s) const {
+  Cell cell_of(const FixedSegment& s) const {
     return {static_cast<std::int64_t>(std::floor(s.middle.x() / cell_m_)),
             static_cast<std::int64_t>(std::floor(s.middle.y() / cell_m_))};
   }
@@ -149,22 +149,23 @@ private:
   std::vector<std::pair<Cell, std::uint32_t>> cells_;
 };
 
-double longest_half_m(const std::vector<Segment>& segments) {
+double longest_half_m(const std::vector<FixedSegment>& segments) {
   double longest = 0.0;
-  for (const Segment& s : segments) longest = std::max(longest, s.half_m);
+  for (const FixedSegment& s : segments) longest = std::max(longest, s.half_m);
   return longest;
 }
 
-bool outlines_near(const std::vector<Segment>& p, const std::vector<Segment>& q, double reach_m) {
+bool outlines_near(const std::vector<FixedSegment>& p, const std::vector<FixedSegment>& q,
+                   double reach_m) {
   const Grid grid(q, std::max(longest_half_m(p), longest_half_m(q)));
-  return std::any_of(p.begin(), p.end(), [&](const Segment& s) {
+  return std::any_of(p.begin(), p.end(), [&](const FixedSegment& s) {
     return grid.any_around(s, [&](std::uint32_t i) { return are_near(s, q[i], reach_m); });
   });
 }
 
 /// Whether another segment faces one within reach ahead of its outer side. Both run with the body
 /// on the same hand.
-bool faces(const Segment& s, const Segment& other) {
+bool faces(const FixedSegment& s, const FixedSegment& other) {
   constexpr double opposed = -0.5;
   const Vector2d along = s.half / s.half_m;
   if (along.dot(other.half) > opposed * other.half_m) return false;
@@ -180,10 +181,11 @@ bool faces(const Segment& s, const Segment& other) {
 }
 
 /// Whether one of the pieces, none of which is near the body's outlines, lies inside them.
-bool lies_inside(const std::vector<Segment>& pieces, const Body& body, const Vector2d& origin) {
+bool lies_inside(const std::vector<FixedSegment>& pieces, const Body& body,
+                 const Vector2d& origin) {
   const Heading heading(body.standing);
-  const Segment* before = nullptr;
-  for (const Segment& s : pieces) {
+  const FixedSegment* before = nullptr;
+  for (const FixedSegment& s : pieces) {
     // Of a loop that no outline crosses all pieces lie on one side.
     const bool same_loop = before != nullptr &&
                            (s.middle - before->middle).norm() <= 1.01 * (s.half_m + before->half_m);
@@ -224,8 +226,8 @@ bool adjoin(const Body& p, const Rectangle& box_p, const Body& q, const Rectangl
   const double reach_m = reach_of(box_p, box_q);
   if (!boxes_near(box_p, box_q, reach_m)) return false;
   const Vector2d origin = box_p.center;
-  const std::vector<Segment> of_p = segments_near(p, box_q, origin, reach_m);
-  const std::vector<Segment> of_q = segments_near(q, box_p, origin, reach_m);
+  const std::vector<FixedSegment> of_p = segments_near(p, box_q, origin, reach_m);
+  const std::vector<FixedSegment> of_q = segments_near(q, box_p, origin, reach_m);
   return outlines_near(of_p, of_q, reach_m) || lies_inside(of_p, q, origin) ||
          lies_inside(of_q, p, origin);
 }
@@ -233,7 +235,7 @@ bool adjoin(const Body& p, const Rectangle& box_p, const Body& q, const Rectangl
 std::vector<std::uint8_t> pieces_in_joints(const Profile& profile) {
   std::vector<std::uint8_t> in_joint(profile.pieces.size(), 0);
   for (std::size_t band = 0; band < profile_bands; ++band) {
-    std::vector<Segment> segments;
+    std::vector<FixedSegment> segments;
     for (std::size_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
       const OutlinePiece& piece = profile.pieces[i];
       const double half_m = 0.5 * static_cast<double>(piece.length_m);
