@@ -227,25 +227,15 @@ void ContactRun::feel(double step_s) {
   for (std::size_t k = 0; k < pair_count_; ++k) {
     feel_pair(state_->pairs[pairs_[k]], k, settings);
   }
-  moved_m_ = 0.0;
 }
 
-void ContactRun::note_way(double moved_s) {
+void ContactRun::press() {
+  constexpr double least_speed_mps = 0.5;
   // Material of the two near each other, which may lie as far from one centre of mass as from the
   // other: no faster than this.
   const PlanarBody& p = motion_of(first_);
   const PlanarBody& q = motion_of(second());
-  moved_m_ += moved_s * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
-}
-
-void ContactRun::follow(double moved_s) {
-  note_way(moved_s);
-  speed_mps_ = speed_at_rims();
-}
-
-void ContactRun::press(double moved_s) {
-  constexpr double least_speed_mps = 0.5;
-  note_way(moved_s);
+  moved_m_ = step_s_ * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
   acceleration_mps2_ = 0.0;
   if (totals_.approaching) quiet_m_ = 0.0;
   quiet_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);

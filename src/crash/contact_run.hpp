@@ -64,8 +64,7 @@ namespace detail {
 inline constexpr double longest_contact_s = 1.5;
 
 /// A contact of a body with another, or with several that nothing moves, while it goes on. Who owns
-/// the bodies moves them: by half a step before `feel` and by the other half after `press`. Steps
-/// of different contacts need not be the same: bodies may move several times within one.
+/// the bodies moves them: by half a step before `feel` and by the other half after `press`.
 class ContactRun {
 public:
   /// Most bodies that press on the first at the same time.
@@ -91,13 +90,8 @@ public:
   void feel(double step_s);
   /// Whether they press.
   bool presses() const noexcept { return totals_.pressing > 0.0; }
-  /// Changes the bodies' velocities by them, and by the rebound where it is due. The bodies' own
-  /// step is `moved_s` long, no longer than the contact's.
-  void press(double moved_s);
-  /// In place of `feel` to `end_step` where bodies take a step and the contact does not.
-  void follow(double moved_s);
-  /// The step whose force was felt last, s.
-  double step_s() const noexcept { return step_s_; }
+  /// Changes the bodies' velocities by them, and by the rebound where it is due.
+  void press();
   /// What the step's force gave the first or the second body, m/s.
   Eigen::Vector2d step_change_mps(bool of_first) const;
   /// It continues an earlier contact's push: no impact begins with it.
@@ -196,7 +190,6 @@ private:
   void add_taken(bool from_first, double share);
   double moving_j() const;
   double speed_at_rims() const;
-  void note_way(double moved_s);
   double relative_speed() const;
   double most_speed_mps() const;
   BodyContact describe(bool is_first) const;
@@ -239,7 +232,7 @@ private:
   double since_s_ = 0.0;            ///< from the last pass until this one
   double speed_mps_ = 0.0;          ///< of points against each other, at most
   double acceleration_mps2_ = 0.0;  ///< that the force of the last step caused
-  double moved_m_ = 0.0;            ///< since the last pass, at most
+  double moved_m_ = 0.0;            ///< in the last step
   double energy_before_j_ = 0.0;
   double speed_before_mps_ = 0.0;
   double momentum_before_ns_ = 0.0;  ///< of the bodies against each other

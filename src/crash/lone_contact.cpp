@@ -28,7 +28,7 @@ bool LoneContact::advance(int steps) {
     const double step_s = run_.next_step_s();
     for (PressedBody& body : state_.bodies) body.motion.move(0.5 * step_s);
     run_.feel(step_s);
-    run_.press(step_s);
+    run_.press();
     for (PressedBody& body : state_.bodies) body.motion.move(0.5 * step_s);
     run_.end_step();
   }

@@ -22,7 +22,7 @@ void SceneRun::drive_on_road(std::size_t i, double step_s) {
   constexpr double impact_s = 0.05;
   const SceneBody& body = bodies_[i];
   const double grip = grip_of(i);
-  const double pushed_mps2 = pushing * grip * gravity_mps2;
+  const double pushed_mps = pushing * grip * gravity_mps2 * step_s;
   Member& m = members_[i];
   const auto each_run = [&](auto&& each) {
     for (const std::uint32_t k : live_) {
@@ -31,7 +31,7 @@ void SceneRun::drive_on_road(std::size_t i, double step_s) {
     }
   };
   each_run([&](const ContactRun& run, bool is_first) {
-    if (run.step_change_mps(is_first).norm() > pushed_mps2 * run.step_s()) m.struck_s = now_s_;
+    if (run.step_change_mps(is_first).norm() > pushed_mps) m.struck_s = now_s_;
   });
   if (now_s_ - m.struck_s < impact_s) return;
   PlanarBody& b = motion_of(i);
@@ -39,13 +39,11 @@ void SceneRun::drive_on_road(std::size_t i, double step_s) {
   drive(*body.footing, m.wheels, grip, step_s, b);
   each_run([&](ContactRun& run, bool is_first) {
     const Eigen::Vector2d pushed = run.step_change_mps(is_first);
-    // Of a force that acts for several of these steps their share.
-    const double part = step_s / run.step_s();
-    const double change2 = part * pushed.squaredNorm();
+    const double change2 = pushed.squaredNorm();
     if (!(change2 > 0.0)) return;
     const double against =
         -((b.vx - before.vx) * pushed.x() + (b.vy - before.vy) * pushed.y()) / change2;
-    run.take_back(is_first, part * std::clamp(against, 0.0, 1.0));
+    run.take_back(is_first, std::clamp(against, 0.0, 1.0));
   });
 }
 

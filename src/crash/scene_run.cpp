@@ -29,8 +29,6 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
   goes_on_.resize(most_at_once);
-  felt_until_s_.resize(most_at_once);
-  due_.resize(most_at_once);
   live_.reserve(most_at_once);
   spare_.reserve(most_at_once);
   contacts_.reserve(most_contacts);
@@ -56,8 +54,6 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
   goes_on_.resize(most_at_once);
-  felt_until_s_.resize(most_at_once);
-  due_.resize(most_at_once);
   chain_.clear();
   live_.clear();
   spare_.clear();
@@ -65,7 +61,7 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
     spare_.push_back(static_cast<std::uint32_t>(k - 1));
   contacts_.clear();
   first_run_ = nullptr;
-  start_s_ = now_s_ = step_begin_s_ = placed_s_ = last_force_s_ = start_s;
+  start_s_ = now_s_ = placed_s_ = last_force_s_ = start_s;
   fastest_plan_mps_ = options.fastest_plan_mps;
   track_steps_.clear();
   track_.clear();
@@ -182,21 +178,9 @@ template <typename Each> void SceneRun::each_near_pair(Each each) {
   }
 }
 
-/// When the next force of a contact acts best: at the middle of its step.
-double SceneRun::force_s(std::uint32_t k) const {
-  return felt_until_s_[k] + 0.5 * runs_[k].next_step_s();
-}
-
 double SceneRun::next_step_s() {
-  // What has become faster since its last force may be late.
-  constexpr double least_share = 0.5;
   double step_s = options_.rolling_step_s;
-  for (const std::uint32_t k : live_) {
-    const double own_s = runs_[k].next_step_s();
-    // In step with the bodies: without rounding.
-    const double until_force_s = felt_until_s_[k] == now_s_ ? own_s : 2.0 * (force_s(k) - now_s_);
-    step_s = std::min(step_s, std::max(until_force_s, least_share * own_s));
-  }
+  for (const std::uint32_t k : live_) step_s = std::min(step_s, runs_[k].next_step_s());
   each_near_pair([&](std::size_t i, std::size_t j) {
     const double closing = closing_bound(i, j);
     if (!(closing * step_s > options_.contact.travel_m)) return;
@@ -258,7 +242,6 @@ void SceneRun::open(std::size_t i, std::size_t j) {
   live_.push_back(k);
   begun_s_[k] = now_s_;
   goes_on_[k] = now_s_ < pair.faded_until_s ? 1 : 0;
-  felt_until_s_[k] = step_begin_s_;
   runs_[k].begin(memory_, first, index, given(first), given(second), origin_m_, options_.variant,
                  options_.contact);
   if (goes_on_[k] != 0) runs_[k].continue_push();
@@ -291,26 +274,7 @@ void SceneRun::settle() {
   live_.clear();
 }
 
-/// Forces of the contacts whose time has come at the middle of a step of the bodies.
-void SceneRun::feel(double step_s) {
-  // A force acts in this step where its best time is no later than this share of a step: in the
-  // next one it may be late.
-  constexpr double early_share = 1.0;
-  constexpr double rounding_s = 1e-12;
-  const double end_s = now_s_ + 0.5 * step_s;
-  for (const std::uint32_t k : live_) {
-    double& until_s = felt_until_s_[k];
-    due_[k] = now_s_ > until_s && now_s_ + early_share * step_s > force_s(k) ? 1 : 0;
-    if (due_[k] == 0) continue;
-    const double before_s = now_s_ - until_s;
-    const bool in_step = until_s == step_begin_s_;
-    until_s = now_s_ + before_s;
-    if (in_step || std::abs(until_s - end_s) < rounding_s) until_s = end_s;
-    runs_[k].feel(in_step ? step_s : 2.0 * before_s);
-  }
-}
-
-void SceneRun::press(double step_s) {
+void SceneRun::press() {
   for (const std::uint32_t i : chain_) {
     const PlanarBody& b = motion_of(i);
     members_[i].pressing = 0;
@@ -327,13 +291,8 @@ void SceneRun::press(double step_s) {
     if (run.presses()) ++members_[i].pressing;
   });
   for (const std::uint32_t k : live_) {
-    ContactRun& run = runs_[k];
-    if (due_[k] == 0) {
-      run.follow(step_s);
-      continue;
-    }
-    run.press(step_s);
-    if (run.presses()) run.weigh_step();
+    runs_[k].press();
+    if (runs_[k].presses()) runs_[k].weigh_step();
   }
   each_side([&](ContactRun& run, bool first, std::size_t i) {
     const Member& m = members_[i];
@@ -352,7 +311,6 @@ void SceneRun::step() {
   for (const std::uint32_t i : chain_) {
     if (members_[i].state == State::free) motion_of(i).move(0.5 * step_s);
   }
-  step_begin_s_ = now_s_;
   now_s_ += 0.5 * step_s;
   placed_s_ = now_s_;
   for (const std::uint32_t i : chain_) {
@@ -361,7 +319,7 @@ void SceneRun::step() {
   }
   open_contacts();
   track(step_s);
-  feel(step_s);
+  for (const std::uint32_t k : live_) runs_[k].feel(step_s);
   for (const std::uint32_t k : live_) {
     ContactRun& run = runs_[k];
     if (!run.presses()) continue;
@@ -373,7 +331,7 @@ void SceneRun::step() {
     touch(run.first());
     for (const std::uint32_t pair : run.pairs()) touch(memory_.pairs[pair].second);
   }
-  press(step_s);
+  press();
   for (const std::uint32_t i : chain_) {
     Member& m = members_[i];
     if (m.state != State::free) continue;
@@ -387,7 +345,7 @@ void SceneRun::step() {
   ++steps_;
   for (std::size_t k = 0; k < live_.size();) {
     ContactRun& run = runs_[live_[k]];
-    if (due_[live_[k]] != 0) run.end_step();
+    run.end_step();
     if (!run.over()) {
       ++k;
       continue;

@@ -79,10 +79,6 @@ struct SceneContact {
 /// and so on are rigid bodies in the plane that press on each other and stand on the road; all
 /// others keep their plans and pass through each other.
 ///
-/// Contacts have steps of their own: in the steps of the fastest one, in which all bodies move, the
-/// force of another acts once in several, at the middle of the contact's own step and for all of
-/// it, on both its bodies.
-///
 /// Momentum is conserved but for the road's forces, energy is never gained. What is crushed stays
 /// crushed: a pair of bodies that meets again presses where it has not been. The same bits for the
 /// same input; the order of contacts that act on one body at a time changes only rounding, but in
@@ -212,9 +208,7 @@ private:
   void tell(const ContactRun& run, const ContactOutcome& outcome, bool swapped);
   void tell_pressed(const ContactRun& run, SceneContact& told) const;
   void lock_damaged_wheels(std::size_t i, const Box& damaged);
-  double force_s(std::uint32_t k) const;
-  void feel(double step_s);
-  void press(double step_s);
+  void press();
   double grip_of(std::size_t i) const;
   void drive_on_road(std::size_t i, double step_s);
   void settle();
@@ -230,8 +224,6 @@ private:
   std::vector<ContactRun> runs_;
   std::vector<double> begun_s_;       ///< by run
   std::vector<char> goes_on_;         ///< by run, see SceneContact
-  std::vector<double> felt_until_s_;  ///< by run: its forces have acted until then
-  std::vector<char> due_;             ///< by run: whether its forces act in this step
   std::vector<std::uint32_t> live_;   ///< runs that go on
   std::vector<std::uint32_t> spare_;  ///< runs that do not
   std::vector<SceneContact> contacts_;
@@ -244,8 +236,7 @@ private:
   std::size_t partner_ = 0;
   double start_s_ = 0.0;
   double now_s_ = 0.0;
-  double step_begin_s_ = 0.0;  ///< of the last step
-  double placed_s_ = 0.0;      ///< its middle, for which near bodies were placed
+  double placed_s_ = 0.0;  ///< middle of the last step, for which near bodies were placed
   double last_force_s_ = 0.0;
   double fastest_plan_mps_ = 0.0;  ///< of any point of a planned body
   double fastest_mps_ = 0.0;       ///< and of those that were touched

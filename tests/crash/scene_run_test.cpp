@@ -134,48 +134,6 @@ TEST(SceneRun, PilesOnIceConserveMomentumAndNeverGainEnergy) {
   EXPECT_LT(gained, 1e-12);
 }
 
-/// A slow contact takes its own steps while a fast one goes on elsewhere at the same body.
-TEST(SceneRun, ASlowContactTakesLongerStepsThanAFastOne) {
-  const Vehicle& lorry = named("truck");
-  const Vehicle& saloon = named("sedan");
-  const Vehicle& motorcycle = named("motorcycle");
-  const auto front = static_cast<double>(lorry.silhouettes.max_x);
-  const auto left = static_cast<double>(lorry.silhouettes.max_y);
-  const auto rear = static_cast<double>(saloon.silhouettes.min_x);
-  constexpr double fast_mps = 40.0;
-  Stage stage;
-  stage.add(lorry, flat_pose(0, 0, 0), 1.0);
-  stage.add(saloon, flat_pose(front - rear + 0.01, 0, 0), 0.0);
-  stage.add(motorcycle, flat_pose(0, left + 1.8, -0.5 * detail::pi), fast_mps);
-  SceneRun run;
-  run.begin(stage.ready(false), 0, 1, 0.0, Vector3d::Zero(), {});
-  const Totals before = totals_of(run, 3);
-  std::vector<double> ends{0.0};
-  double gained = 0.0;
-  while (run.advance(1) && run.contacts().size() < 2) {
-    ends.push_back(run.now_s());
-    gained = std::max(gained, (totals_of(run, 3).energy - before.energy) / before.energy);
-  }
-  const Totals after = totals_of(run, 3);
-  EXPECT_LT((after.momentum - before.momentum).norm() / before.scale, 1e-12);
-  EXPECT_LT(std::abs(after.moment - before.moment) / before.moment_scale, 1e-12);
-  EXPECT_LT(gained, 1e-12);
-  const SceneContact* slow = nullptr;
-  const SceneContact* fast = nullptr;
-  for (const SceneContact& contact : run.contacts()) {
-    if (contact.a == 0 && contact.b == 1) slow = &contact;
-    if (contact.a == 0 && contact.b == 2) fast = &contact;
-  }
-  ASSERT_NE(slow, nullptr);
-  ASSERT_NE(fast, nullptr);
-  const double end_s = slow->begin_s + slow->outcome.duration_s;
-  ASSERT_LT(fast->begin_s, end_s);
-  const auto steps = std::count_if(ends.begin(), ends.end(),
-                                   [&](double s) { return s > slow->begin_s && s <= end_s; });
-  std::printf("%u steps of the slow contact in %td of the bodies\n", slow->outcome.steps, steps);
-  EXPECT_LT(3 * slow->outcome.steps, 2 * steps);
-}
-
 TEST(SceneRun, ACarIsPushedIntoThePersonBehindIt) {
   const Vehicle& hatch = named("hatch");
   const Vehicle& sedan = named("sedan");
