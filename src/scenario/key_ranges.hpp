@@ -155,6 +155,7 @@ inline constexpr std::array sizes{
     Size{"/$defs/candidates/properties/listed", "maxItems", limits::listed_candidates},
     Size{"/$defs/candidates/properties/table", "maxLength", limits::path_characters},
     Size{"/$defs/actor/oneOf/2/properties/predictions", "maxItems", limits::predictions},
+    Size{"/$defs/future/properties/absent", "maxItems", limits::actors},
     Size{"/$defs/road/properties/drivable", "maxItems", road_limits::areas},
     Size{"/$defs/road/properties/drivable/items/properties/holes", "maxItems", road_limits::holes},
 };
