@@ -154,9 +154,9 @@ double compare(const std::string& file, const Options& o) {
   std::vector<Mean> means(candidates->size());
   Worlds worlds(scenario, o.seed);
   std::size_t drawn_worlds = 0;
-  const auto start = std::chrono::steady_clock::now();
+  const auto begun = std::chrono::steady_clock::now();
   const auto in_time = [&] {
-    const std::chrono::duration<double> past = std::chrono::steady_clock::now() - start;
+    const std::chrono::duration<double> past = std::chrono::steady_clock::now() - begun;
     return past.count() < o.seconds;
   };
   for (; drawn_worlds < o.worlds && in_time(); ++drawn_worlds) {
