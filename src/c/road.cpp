@@ -1,6 +1,7 @@
 #include "c/handles.hpp"
 #include "c/sized.hpp"
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,10 @@ std::vector<Eigen::Vector2d> to_ring(const double* corners, size_t count) {
 
 Status check_count(size_t count) {
   if (count <= road_limits::corners) return Success{};
-  return make_error(ErrorCode::usage, "count: a road has at most 10,000 corners", "simplify it");
+  return make_error(
+      ErrorCode::usage,
+      "count: a road has at most " + std::to_string(road_limits::corners) + " corners",
+      "simplify it");
 }
 
 }  // namespace

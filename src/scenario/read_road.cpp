@@ -25,8 +25,9 @@ public:
     }
     corners_ += value.size();
     if (corners_ > road_limits::corners) {
-      refuse_at(status_, path, "brings the road to more than 10,000 corners", "simplify it",
-                ErrorCode::limit_exceeded);
+      refuse_at(status_, path,
+                "brings the road to more than " + std::to_string(road_limits::corners) + " corners",
+                "simplify it", ErrorCode::limit_exceeded);
       return ring;
     }
     for (std::size_t i = 0; i < value.size() && status_.ok(); ++i) {

@@ -257,7 +257,10 @@ void check_road(const Road& road, Check& check) {
     for (const auto& hole : area.holes) corners += hole.size();
   }
   if (corners > road_limits::corners || road.drivable.size() > road_limits::areas) {
-    check.refuse("road.drivable", "has more than 10,000 corners or 1,000 areas", "simplify it");
+    check.refuse("road.drivable",
+                 "has more than " + std::to_string(road_limits::corners) + " corners or " +
+                     std::to_string(road_limits::areas) + " areas",
+                 "simplify it");
   }
   for (std::size_t i = 0; i < road.drivable.size() && check.status.ok(); ++i) {
     check.status = check_area(road.drivable[i], "road." + ranges::indexed("drivable", i));
@@ -301,7 +304,8 @@ Status check_probabilities(const Scenario& scenario) {
     const ScenarioActor& actor = scenario.actors[i];
     const std::string path = ranges::indexed("actors", i);
     if (actor.predictions.size() > limits::predictions) {
-      check.refuse(path + ".predictions", "has more than 32", "keep the likeliest");
+      check.refuse(path + ".predictions", "has more than " + std::to_string(limits::predictions),
+                   "keep the likeliest");
     }
     check_sum(actor.predictions, path + ".predictions", check);
     const bool uncertain = !actor.predictions.empty() || actor.existence_probability != 1.0;
@@ -312,7 +316,8 @@ Status check_probabilities(const Scenario& scenario) {
     }
   }
   if (scenario.futures.size() > limits::futures) {
-    check.refuse("futures", "are more than 1000", "keep the likeliest");
+    check.refuse("futures", "are more than " + std::to_string(limits::futures),
+                 "keep the likeliest");
   }
   check_sum(scenario.futures, "futures", check);
   for (std::size_t i = 0; i < scenario.futures.size(); ++i) {
