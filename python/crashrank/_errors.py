@@ -118,6 +118,13 @@ def bad_input(place: str, reason: str, remedy: str) -> BadInputError:
     return BadInputError("bad_input", "", place, reason, remedy)
 
 
+def printable(text: str) -> str:
+    """Return a text on one line that every stream takes: what cannot be printed is escaped."""
+    return "".join(
+        each if each.isprintable() else each.encode("unicode_escape").decode() for each in text
+    )
+
+
 def no_candidate(name: str) -> UsageError:
     """Return the error for the name of a candidate that a ranking does not have."""
     return usage(

@@ -68,6 +68,45 @@ def make_folder(folder: pathlib.Path, count: int) -> pathlib.Path:
     return folder
 
 
+def results(folder: pathlib.Path) -> list[tuple]:
+    """Return id, status and result of every row, by way of the folder as one data set."""
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(folder)
+    columns = [table.column(name).to_pylist() for name in ("id", "status", "result_hash")]
+    return sorted(zip(*columns, strict=True), key=str)
+
+
+def parts(folder: pathlib.Path) -> dict[str, tuple[int, int]]:
+    """Return name, inode and time of change of every part."""
+    found = sorted(folder.glob("part-*.parquet"))
+    return {each.name: (each.stat().st_ino, each.stat().st_mtime_ns) for each in found}
+
+
+def write_table(path: pathlib.Path, documents: list, ids: list | None = None, **columns) -> None:
+    """Write a table of scenarios; ids are those of `make_folder` unless given."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    texts = [each if isinstance(each, str) else json.dumps(each) for each in documents]
+    named = [f"scene-{i:02}.json" for i in range(len(texts))] if ids is None else ids
+    pq.write_table(pa.table({"id": named, "scenario": texts, **columns}), path)
+
+
+def make_hook(folder: pathlib.Path, code: str) -> dict[str, str]:
+    """Return the environment in which every process of a run executes the code as it starts."""
+    folder.mkdir()
+    (folder / "sitecustomize.py").write_text(code)
+    return {"PYTHONPATH": str(folder)}
+
+
+def one_line(done: subprocess.CompletedProcess) -> str:
+    """Return the message of a run that ended with one line, which has a remedy."""
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+    return done.stderr
+
+
 def environment(**more: str) -> dict[str, str]:
     """Return the environment of a run; PYTHONPATH entries are prepended."""
     env = {**os.environ, **more}

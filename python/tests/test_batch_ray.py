@@ -189,17 +189,7 @@ def test_a_cluster_of_two_nodes_has_the_same_results(cluster, folder, reference,
 
 def test_actors_that_are_killed_are_replaced(cluster, folder, reference, tmp_path):
     out = tmp_path / "out"
-    words = (
-        folder,
-        "-o",
-        out,
-        "--engine",
-        "ray",
-        "--address",
-        cluster.address,
-        "--rows-per-part",
-        2,
-    )
+    words = (folder, "-o", out, *cluster.options, "--rows-per-part", 2)
     with running(*words, **QUIET) as run:
         wait_for_parts(out, 1)
         actors = cluster.actors()
@@ -215,17 +205,7 @@ def test_actors_that_are_killed_are_replaced(cluster, folder, reference, tmp_pat
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL])
 def test_a_run_that_ends_early_is_resumed(cluster, folder, reference, tmp_path, sign):
     out = tmp_path / "out"
-    words = (
-        folder,
-        "-o",
-        out,
-        "--engine",
-        "ray",
-        "--address",
-        cluster.address,
-        "--rows-per-part",
-        2,
-    )
+    words = (folder, "-o", out, *cluster.options, "--rows-per-part", 2)
     with running(*words, **QUIET) as run:
         wait_for_parts(out, 2)
         run.send_signal(sign)

@@ -1,7 +1,6 @@
 """``crashrank-batch`` on this machine: the same results, what is made anew, the summary."""
 
 import html.parser
-import json
 import pathlib
 import shutil
 import signal
@@ -14,6 +13,8 @@ import pytest
 from batch_scenes import (
     command,
     make_models,
+    parts,
+    results,
     run_batch,
     running,
     scene,
@@ -23,19 +24,6 @@ from crashrank.batch import result_hash
 
 pa = pytest.importorskip("pyarrow")
 pq = pytest.importorskip("pyarrow.parquet")
-
-
-def results(folder):
-    """Return id, status and result of every row, by way of the folder as one data set."""
-    table = pq.read_table(folder)
-    columns = [table.column(name).to_pylist() for name in ("id", "status", "result_hash")]
-    return sorted(zip(*columns, strict=True), key=str)
-
-
-def parts(folder):
-    """Return name, inode and time of change of every part."""
-    found = sorted(folder.glob("part-*.parquet"))
-    return {each.name: (each.stat().st_ino, each.stat().st_mtime_ns) for each in found}
 
 
 def broken(folder):
@@ -177,73 +165,6 @@ def test_fewer_rows_leave_no_part_behind(scenes, tmp_path):
     assert run_batch(scenes, "-o", out, "--sequential")["found_rows"] == 6
     assert len(results(out)) == 6
     assert len(parts(out)) == 3
-
-
-def test_parquet_is_read_in_parts(scenes, tmp_path):
-    texts = [json.dumps(scene(i)) for i in range(10)]
-    table = pa.table({"id": [f"scene-{i:02}.json" for i in range(10)], "scenario": texts})
-    pq.write_table(table, scenes / "all.parquet", row_group_size=3)
-    for i in range(10, 12):
-        (scenes / f"scene-{i:02}.json").unlink()
-    by_table = run_batch(scenes / "all.parquet", "-o", tmp_path / "a", "--rows-per-part", 4)
-    (scenes / "all.parquet").rename(tmp_path / "all.parquet")
-    by_file = run_batch(scenes, "-o", tmp_path / "b", "--rows-per-part", 4)
-    assert by_table["results"] == by_file["results"]
-    assert (by_table["rows"], by_table["parts"]) == (10, 3)
-    # Elsewhere a column says where the models are.
-    moved = table.append_column("base", pa.array([str(scenes)] * 10))
-    pq.write_table(moved, tmp_path / "all.parquet")
-    by_base = run_batch(tmp_path / "all.parquet", "-o", tmp_path / "c", "--sequential")
-    assert by_base["results"] == by_table["results"]
-
-
-def test_inputs_below_a_folder_and_beside_it(scenes, tmp_path):
-    (scenes / "below/_hidden").mkdir(parents=True)
-    shutil.move(scenes / "scene-00.json", scenes / "below/scene-00.json")
-    shutil.copytree(scenes / "models", scenes / "below/models")
-    write_scene(scenes / "below/_hidden", "other", "{")
-    out = scenes / "out"
-    done = run_batch(scenes, "-o", out, "--sequential")
-    assert (done["rows"], done["errors"]) == (12, 0)
-    assert run_batch(scenes, "-o", out, "--sequential")["found_rows"] == 12
-    ids = [row[0] for row in results(out)]
-    assert "below/scene-00.json" in ids
-    again = run_batch(scenes, scenes / "scene-01.json", "-o", tmp_path / "x", code=2)
-    assert "two files 'scene-01.json'" in again["messages"]
-
-
-@pytest.mark.usefixtures("scenes")
-@pytest.mark.parametrize(
-    ("words", "code", "message"),
-    [
-        (["gone", "-o", "out"], 3, "gone: is not there"),
-        (["empty", "-o", "out"], 3, "holds no scenario"),
-        (["scenes", "-o", "file/out"], 2, "cannot be written"),
-        (["scenes", "-o", "out", "--model", "car=gone.crm"], 3, "gone.crm: --model: is not there"),
-        (["scenes", "-o", "out", "--model", "car"], 2, "NAME=FILE"),
-        (["scenes", "-o", "out", "--profile", "gone.json"], 3, "gone.json"),
-        (["scenes", "-o", "out", "--address", "x:1"], 2, "--engine ray"),
-        (["bad.parquet", "-o", "out"], 3, "is no parquet file"),
-        (["other.parquet", "-o", "out"], 3, "no column 'scenario'"),
-        (["scenes", "-o", "out", "--workers", "0"], 2, "--workers"),
-        (["scenes"], 2, "-o"),
-        (["nothing.json", "-o", "out"], 3, "1 scenes have an error"),
-    ],
-)
-def test_what_is_wrong_is_one_line(tmp_path, words, code, message):
-    (tmp_path / "empty").mkdir()
-    (tmp_path / "file").touch()
-    (tmp_path / "bad.parquet").write_bytes(b"PAR1")
-    (tmp_path / "nothing.json").write_text("{}")
-    pq.write_table(pa.table({"id": ["a"]}), tmp_path / "other.parquet")
-    done = subprocess.run(
-        command(*words), capture_output=True, text=True, check=False, cwd=tmp_path
-    )  # fmt: skip
-    assert done.returncode == code, done.stderr
-    assert message in done.stderr
-    assert "Traceback" not in done.stderr
-    if "usage:" not in done.stderr:
-        assert len(done.stderr.splitlines()) == 1
 
 
 class Page(html.parser.HTMLParser):

@@ -22,3 +22,11 @@ def parquet() -> Any:
     import pyarrow.parquet
 
     return pyarrow.parquet
+
+
+def compute() -> Any:
+    """Return the module pyarrow.compute."""
+    arrow()
+    import pyarrow.compute
+
+    return pyarrow.compute

@@ -13,11 +13,13 @@ from types import FrameType
 from typing import NoReturn
 
 from .. import _core
-from .._errors import Error, NotFoundError, usage
+from .._checks import as_path
+from .._errors import Error, NotFoundError, printable, usage
 from ._arrow import arrow
 from ._engine import Engine, Sequential
 from ._hashes import MISSING, file_hash
 from ._local import Local
+from ._parts import not_written
 from ._ray import Ray
 from ._run import REPORTS, SUMMARY, Outcome, Run, failed, locked, read_state
 from ._settings import make_settings
@@ -49,29 +51,47 @@ def main(words: list[str] | None = None) -> int:
     """Run the program; return its exit code."""
     options = _parser().parse_args(words)
     signal.signal(signal.SIGTERM, _interrupt)
+    if sys.stderr is None:  # closed by whoever started the program
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     run: Run | None = None
     try:
         arrow()
-        folder = Path(options.output)
+        folder = Path(as_path(options.output, "-o"))
         inputs = Inputs(options.input, options.output)
         with locked(folder):
             job = _job(options)
             rows = options.rows_per_part or _rows_per_part(folder, inputs.rows)
             run = Run(inputs, job, _engine(options, job), rows, options.reports)
             outcome = run.run()
+    except OSError as error:
+        return _tell(not_written(error.filename2 or error.filename or folder, error), run)
     except Error as error:
-        told = failed(error, run.outcome) if run and error.code == "internal" else error
-        print(f"crashrank-batch: {told}", file=sys.stderr)
-        return EXIT_CODES.get(error.code, 1)
+        return _tell(error, run)
     except KeyboardInterrupt:
+        _ignore_interrupts()
         print("crashrank-batch: interrupted", file=sys.stderr)
         return INTERRUPTED
     try:
         return _end(options, run, outcome)
-    except BrokenPipeError:
-        # Whoever read standard output has ended; what Python still holds of it goes nowhere.
+    except OSError as error:
+        if not isinstance(error, BrokenPipeError):  # else whoever read it has ended
+            _tell(not_written("standard output", error), run)
+        # What Python still holds of it goes nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+
+
+def _tell(error: Error, run: Run | None) -> int:
+    """Print an error that ends the run; return the exit code."""
+    told = failed(error, run.outcome) if run and error.code == "internal" else error
+    print(f"crashrank-batch: {printable(str(told))}", file=sys.stderr)
+    return EXIT_CODES.get(error.code, 1)
+
+
+def _ignore_interrupts() -> None:
+    """Let no second Ctrl-C change the exit code of the first."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
@@ -81,7 +101,9 @@ def _interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
 def _end(options: argparse.Namespace, run: Run, outcome: Outcome) -> int:
     """Print what the run came to; return the exit code."""
     folder = Path(options.output)
+    summary = printable(str(folder / SUMMARY))
     if outcome.interrupted:
+        _ignore_interrupts()
         print(
             f"crashrank-batch: interrupted; {outcome.done_rows} of {outcome.rows} scenes are done, "
             "the same command continues",
@@ -89,7 +111,7 @@ def _end(options: argparse.Namespace, run: Run, outcome: Outcome) -> int:
         )
     if outcome.errors:
         print(
-            f"crashrank-batch: {outcome.errors} scenes have an error, see {folder / SUMMARY}",
+            f"crashrank-batch: {outcome.errors} scenes have an error, see {summary}",
             file=sys.stderr,
         )
     if options.json:
@@ -100,7 +122,7 @@ def _end(options: argparse.Namespace, run: Run, outcome: Outcome) -> int:
             f"{outcome.done_rows} of {outcome.rows} scenes in {outcome.parts} parts, "
             f"{outcome.errors} with an error; {ranked} ranked in {outcome.seconds:.1f} s, "
             f"{run.progress.rate:.3g} a second\n"
-            f"results {outcome.results.hex}\n{folder / SUMMARY}",
+            f"results {outcome.results.hex}\n{summary}",
             flush=True,
         )
     if outcome.interrupted:
@@ -118,13 +140,15 @@ def _job(options: argparse.Namespace) -> Job:
         options.work_budget,
         [os.path.abspath(folder) for folder in options.allow],
     )
-    models = []
+    models: list[tuple[str, str]] = []
     for text in options.model:
         name, _, path = text.partition("=")
         if not name or not path:
             raise usage("--model", f"is {text!r}", "write NAME=FILE")
         if file_hash(path) == MISSING:
             raise NotFoundError("not_found", path, "--model", "is not there", "check the path")
+        if name in dict(models):
+            raise usage("--model", f"names {name!r} twice", "name each model once")
         models.append((name, os.path.abspath(path)))
     folder = os.path.abspath(options.output)
     return make_job(folder, settings, tuple(models), options.retry)

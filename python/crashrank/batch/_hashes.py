@@ -6,6 +6,7 @@ import functools
 import hashlib
 import json
 import os
+import stat
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -52,6 +53,8 @@ def file_hash(path: str, *, with_buffers: bool = True) -> str:
     """Return the SHA-256 of a file and of the buffers that a glTF file names, or ``missing``."""
     try:
         state = os.stat(path)
+        if not stat.S_ISREG(state.st_mode):
+            return MISSING  # a pipe would wait for somebody who writes
         found, beside = _file_hash(path, state.st_ino, state.st_size, state.st_mtime_ns)
     except OSError:
         return MISSING

@@ -107,13 +107,18 @@ def write_whole(path: Path, data: bytes | memoryview) -> None:
         os.replace(temporary, path)
     except OSError as error:
         temporary.unlink(missing_ok=True)
-        raise InternalError(
-            "internal",
-            str(path.parent),
-            "",
-            f"cannot be written: {error.strerror}",
-            "make room or choose another folder, and run the same command again",
-        ) from error
+        raise not_written(path, error) from error
+
+
+def not_written(path: Path | str, error: OSError) -> InternalError:
+    """Return the error for a file or folder of the result that cannot be made."""
+    return InternalError(
+        "internal",
+        str(path),
+        "",
+        f"cannot be written: {error.strerror}",
+        "make room or choose another folder, and run the same command again",
+    )
 
 
 def read_meta(path: Path, key: str) -> PartMeta | None:

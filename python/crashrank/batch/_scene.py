@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import stat
 from typing import Any, NamedTuple
 
 from .. import _core
-from .._errors import Error, InternalError, bad_input, make_error
+from .._checks import as_path
+from .._errors import Error, InternalError, bad_input, make_error, printable
 from .._ranking import Ranking, rank
 from .._scenario import _IN_MEMORY, _JSON_FILE, Scenario, _parse, _to_json
 from ._hashes import file_hash, input_hash, models_hash
@@ -78,6 +80,7 @@ def read_scene(row: Row, given: dict[str, GivenModel], settings: Settings) -> Sc
     except Error as error:
         if row.file is not None and not error.file:
             error.file = row.file
+        error.file = printable(error.file)
         return Scene(row.id, None, error, hashed, None)
     except Exception as error:
         return Scene(row.id, None, _unexpected(error), hashed, None)
@@ -87,6 +90,7 @@ def _read(
     row: Row, text: str, given: dict[str, GivenModel], settings: Settings
 ) -> tuple[Scenario, list[tuple[str, str]]]:
     """Return the scenario, and names and hashes of the given models that it uses."""
+    as_path(row.folder, "base")
     bodies = {}
     own: list[tuple[str, str]] = []
     if given:
@@ -114,7 +118,10 @@ def _read(
 def _read_text(file: str | None) -> str:
     if file is None:
         raise bad_input("scenario", "is null", "give the scenario's JSON text")
+    as_path(file, "")
     try:
+        if not stat.S_ISREG(os.stat(file).st_mode):  # a pipe would wait for somebody who writes
+            raise make_error("not_found", file, "", "is no file", "leave it out")
         with open(file, "rb") as source:
             data = source.read(MAX_BYTES + 1)
         return data.decode("utf-8")

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
-from .._errors import NotFoundError, bad_input, usage
+from .._errors import BadInputError, Error, NotFoundError, bad_input, usage
 from ._arrow import arrow, parquet
+from ._ids import Source, check_ids
 from ._parts import STATE
 from ._scene import Row
-from ._table import table_rows
+from ._table import table_rows, text_column
 
 MOST_ROWS = 256  # in a part, unless stated
 WANTED_PARTS = 64
@@ -33,48 +35,46 @@ class Inputs:
     the columns ``id`` and ``scenario`` and, for the folder of their paths, may have ``base``;
     default: the folder of the parquet file.
 
-    Raises `NotFoundError` and `BadInputError`.
+    Raises `NotFoundError`, `BadInputError` and `UsageError`: for what cannot be read, for rows
+    without an id and for ids that are there twice.
     """
 
     def __init__(self, paths: Sequence[str], result_folder: str) -> None:
         self._result = os.path.realpath(result_folder)
-        self._sources: list[list[Row] | str] = []
-        self.rows = 0
-        ids: set[str] = set()
+        self._sources: list[Source] = []
         for path in paths:
             files, tables = self._find(path)
-            for row in files:
-                if row.id in ids:
-                    raise usage(
-                        "INPUT", f"has two files {row.id!r}", "name the folder above both instead"
-                    )
-                ids.add(row.id)
-            if files:
-                self._sources.append(files)
-                self.rows += len(files)
-            for table in tables:
-                self._sources.append(table)
-                self.rows += _count_rows(table)
+            self._sources += [files, *tables] if files else tables
+        ids = [_read_ids(source) for source in self._sources]
+        self.rows = sum(len(column) for column in ids)
         if not self.rows:
-            raise bad_input("INPUT", "holds no scenario", "name .json or .parquet files")
+            raise bad_input(
+                "INPUT", "holds no scenario", "name .json or .parquet files, and no result of a run"
+            )
+        check_ids(self._sources, ids)
 
     def _find(self, path: str) -> tuple[list[Row], list[str]]:
+        if not path:
+            raise usage("INPUT", "is empty", "name a folder or a file")
         if os.path.isdir(path):
+            if os.path.realpath(path) == self._result:
+                raise usage("-o", f"{path} is an input, too", "name another folder, or one in it")
             found = sorted(self._walk(path))
             rows = [
-                Row(Path(os.path.relpath(file, path)).as_posix(), None, os.path.abspath(file), None)
+                _file_row(file, Path(os.path.relpath(file, path)).as_posix())
                 for file in found
                 if file.endswith(".json")
             ]
             return rows, [os.path.abspath(file) for file in found if file.endswith(".parquet")]
         if not os.path.isfile(path):
-            raise NotFoundError("not_found", path, "", "is not there", "check the path")
+            what = "is neither a file nor a folder" if os.path.exists(path) else "is not there"
+            raise NotFoundError("not_found", path, "", what, "check the path")
         if path.endswith(".parquet"):
             return [], [os.path.abspath(path)]
-        return [Row(os.path.basename(path), None, os.path.abspath(path), None)], []
+        return [_file_row(path, os.path.basename(path))], []
 
     def _walk(self, folder: str) -> Iterator[str]:
-        for at, folders, files in os.walk(folder):
+        for at, folders, files in os.walk(folder, onerror=_raise_unread):
             if STATE in files or os.path.realpath(at) == self._result:
                 folders.clear()  # results of a run
                 continue
@@ -107,16 +107,63 @@ def default_rows_per_part(rows: int) -> int:
     return size
 
 
-def _open(path: str) -> Any:
-    pq = parquet()
+def _file_row(file: str, name: str) -> Row:
+    """Return the row of a scenario's file. Its id is text that UTF-8 can hold, as parquet needs."""
+    row_id = name.encode("utf-8", "backslashreplace").decode()
+    return Row(row_id, None, os.path.abspath(file), None)
+
+
+def _raise_unread(error: OSError) -> NoReturn:
+    raise NotFoundError(
+        "not_found",
+        str(error.filename),
+        "",
+        f"cannot be read: {error.strerror}",
+        "check its permissions, or leave it out",
+    ) from None
+
+
+@contextlib.contextmanager
+def _reading(path: str) -> Iterator[None]:
+    """Make errors meanwhile name the table."""
     try:
-        file = pq.ParquetFile(path)
+        yield
+    except Error as error:
+        error.file = error.file or path
+        raise
+    except (OSError, arrow().ArrowException) as error:
+        reason = str(error).splitlines()[0]
+        raise BadInputError(
+            "bad_input", path, "", f"is damaged: {reason}", "write it again"
+        ) from None
+
+
+def _open(path: str) -> Any:
+    try:
+        if not os.path.isfile(path):  # opening a pipe would wait for somebody who writes
+            os.stat(path)
+            raise BadInputError("bad_input", path, "", "is no file", "leave it out")
+        with open(path, "rb"):
+            pass
+    except OSError as error:
+        _raise_unread(error)
+    try:
+        file = parquet().ParquetFile(path)
     except Exception as error:
         reason = str(error).splitlines()[0]
-        raise bad_input(path, f"is no parquet file: {reason}", "write it again") from None
-    for name in ("id", "scenario"):
-        if name not in file.schema_arrow.names:
-            raise bad_input(path, f"has no column {name!r}", "see docs/guide/batch.md")
+        raise BadInputError(
+            "bad_input", path, "", f"is no parquet file: {reason}", "write it again"
+        ) from None
+    names = file.schema_arrow.names
+    for name, least in (("id", 1), ("scenario", 1), ("base", 0)):
+        count = names.count(name)
+        if not least <= count <= 1:
+            what = f"has {count} columns" if count else "has no column"
+            raise BadInputError(
+                "bad_input", path, "", f"{what} {name!r}", "see docs/guide/batch.md"
+            )
+    with _reading(path):
+        table_rows(file.schema_arrow.empty_table(), "")  # columns of other types are refused
     return file
 
 
@@ -125,9 +172,18 @@ def _count_rows(path: str) -> int:
         return int(file.metadata.num_rows)
 
 
+def _read_ids(source: Source) -> Any:
+    """Return the ids of a source as a ``pyarrow.ChunkedArray`` of strings."""
+    pa = arrow()
+    if not isinstance(source, str):
+        return pa.chunked_array([pa.array([row.id for row in source], pa.string())])
+    with _open(source) as file, _reading(source):
+        return text_column(file.read(columns=["id"], use_threads=False), "id")
+
+
 def _read_rows(path: str) -> Iterator[Row]:
     folder = os.path.dirname(path)
-    with _open(path) as file:
+    with _open(path) as file, _reading(path):
         names = [name for name in ("id", "scenario", "base") if name in file.schema_arrow.names]
         for batch in file.iter_batches(batch_size=256, columns=names, use_threads=False):
             for row in table_rows(arrow().Table.from_batches([batch]), folder):

@@ -137,26 +137,35 @@ def rank_table(
 
 def table_rows(table: pyarrow.Table, folder: str) -> list[Row]:
     """Return the rows of a table; `folder` is the base of those that have none."""
-    pa = arrow()
-    names = set(table.column_names)
     columns = {}
     for name in ("id", "scenario", "base"):
-        if name not in names:
-            if name in ("id", "scenario"):
-                raise bad_input(
-                    "table", f"has no column {name!r}", "see help(crashrank.rank_table)"
-                )
+        count = table.column_names.count(name)
+        if count == 0 and name == "base":
             columns[name] = [None] * table.num_rows
             continue
-        try:
-            columns[name] = table.column(name).cast(pa.string()).to_pylist()
-        except pa.ArrowException:
-            kind = table.column(name).type
-            raise bad_input(f"table.{name}", f"is a column of {kind}", "give strings") from None
+        if count != 1:
+            what = f"has {count} columns" if count else "has no column"
+            raise bad_input("table", f"{what} {name!r}", "see help(crashrank.rank_table)")
+        columns[name] = text_column(table, name).to_pylist()
     return [
         Row(row_id or "", text, None, base or folder)
         for row_id, text, base in zip(*columns.values(), strict=True)
     ]
+
+
+def text_column(table: pyarrow.Table, name: str) -> pyarrow.ChunkedArray:
+    """Return a column as strings that are UTF-8: readers and writers of parquet do not check it."""
+    pa = arrow()
+    column = table.column(name)
+    try:
+        text = column.cast(pa.string())
+        text.validate(full=True)
+    except pa.ArrowException:
+        kind = column.type
+        texts = pa.types.is_string(kind) or pa.types.is_large_string(kind)
+        what = "holds text that is not UTF-8" if texts else f"is a column of {kind}"
+        raise bad_input(f"table.{name}", what, "give strings in UTF-8") from None
+    return text
 
 
 def rank_row(
