@@ -2,6 +2,8 @@
 
 import json
 import os
+import pathlib
+import re
 import resource
 import signal
 import subprocess
@@ -10,6 +12,10 @@ import time
 import pytest
 from batch_scenes import (
     command,
+    make_hook,
+    one_line,
+    parts,
+    results,
     run_batch,
     running,
     scene,
@@ -21,19 +27,6 @@ from batch_scenes import (
 
 pa = pytest.importorskip("pyarrow")
 pq = pytest.importorskip("pyarrow.parquet")
-
-
-def results(folder):
-    """Return id, status and result of every row, by way of the folder as one data set."""
-    table = pq.read_table(folder)
-    columns = [table.column(name).to_pylist() for name in ("id", "status", "result_hash")]
-    return sorted(zip(*columns, strict=True), key=str)
-
-
-def parts(folder):
-    """Return name, inode and time of change of every part."""
-    found = sorted(folder.glob("part-*.parquet"))
-    return {each.name: (each.stat().st_ino, each.stat().st_mtime_ns) for each in found}
 
 
 @pytest.fixture
@@ -95,6 +88,7 @@ def test_a_killed_worker_is_replaced(slow, tmp_path):
         wait_for_parts(out, 1)
         workers = worker_processes(run.pid)
         assert len(workers) == 2
+        assert all(blocks(worker, signal.SIGINT) for worker in workers)
         os.kill(workers[0], signal.SIGKILL)
         printed, messages = run.communicate(timeout=120)
         assert run.returncode == 0, messages
@@ -103,6 +97,12 @@ def test_a_killed_worker_is_replaced(slow, tmp_path):
     reference = run_batch(slow, "-o", tmp_path / "b", "--sequential")
     assert reference["results"] in printed
     assert results(out) == results(tmp_path / "b")
+
+
+def blocks(process, sign):
+    """Return whether a process never sees a signal."""
+    status = pathlib.Path(f"/proc/{process}/status").read_text()
+    return bool(int(re.search(r"^SigBlk:\s*(\w+)", status, re.MULTILINE)[1], 16) >> sign - 1 & 1)
 
 
 KILLER = """
@@ -118,12 +118,10 @@ _worker.rank_scene = rank_it
 
 
 def test_a_row_that_kills_its_workers_is_named(scenes, tmp_path):
-    hook = tmp_path / "hook"
-    hook.mkdir()
-    (hook / "sitecustomize.py").write_text(KILLER)
+    hook = make_hook(tmp_path / "hook", KILLER)
     out = tmp_path / "out"
     words = (scenes, "-o", out, "--workers", 2, "--rows-per-part", 4)
-    done = run_batch(*words, PYTHONPATH=str(hook))
+    done = run_batch(*words, **hook)
     assert (done["complete"], done["errors"]) == (True, 1)
     rows = {row["id"]: row for row in pq.read_table(out).to_pylist()}
     row = rows["scene-04.json"]
@@ -145,21 +143,16 @@ _worker.rank_row = rank_row
 
 
 def test_a_defect_ends_the_run_and_says_so(scenes, tmp_path):
-    hook = tmp_path / "hook"
-    hook.mkdir()
-    (hook / "sitecustomize.py").write_text(DEFECT)
-    done = run_batch(scenes, "-o", tmp_path / "out", code=1, PYTHONPATH=str(hook))
+    hook = make_hook(tmp_path / "hook", DEFECT)
+    done = run_batch(scenes, "-o", tmp_path / "out", code=1, **hook)
     assert "KeyError: 'planted'" in done["messages"]
     assert len(done["messages"].splitlines()) == 1
 
 
 def test_workers_that_cannot_start_end_the_run(scenes, tmp_path):
-    hook = tmp_path / "hook"
-    hook.mkdir()
-    (hook / "sitecustomize.py").write_text(
-        "import os, sys\nif '--multiprocessing-fork' in sys.argv: os._exit(7)\n"
-    )
-    done = run_batch(scenes, "-o", tmp_path / "out", code=1, PYTHONPATH=str(hook))
+    code = "import os, sys\nif '--multiprocessing-fork' in sys.argv: os._exit(7)\n"
+    hook = make_hook(tmp_path / "hook", code)
+    done = run_batch(scenes, "-o", tmp_path / "out", code=1, **hook)
     assert "exit code 7" in done["messages"]
     assert "--sequential" in done["messages"]
 
@@ -188,10 +181,10 @@ def test_a_full_disk_is_one_line_and_loses_nothing(scenes, tmp_path, how):
         (out / name).unlink()
     done = limited(scenes, "-o", out, *how, bytes_a_file=size // 2)
     assert done.returncode == 1
-    assert len(done.stderr.splitlines()) == 1, done.stderr
-    assert "cannot be written: File too large" in done.stderr
-    assert "make room" in done.stderr
-    assert "scenes are done and stay" in done.stderr
+    message = one_line(done)
+    assert "cannot be written: File too large" in message
+    assert "make room" in message
+    assert "scenes are done and stay" in message
     assert not list(out.glob(".*.part"))
     assert set(parts(out).items()) == set(list(before.items())[:3])
     assert first["rows"] == 12
@@ -204,3 +197,57 @@ def test_two_runs_do_not_write_one_folder(slow, tmp_path):
         wait_for_parts(out, 1)
         done = run_batch(slow, "-o", out, code=2)
     assert "another run writes" in done["messages"]
+
+
+@pytest.mark.parametrize("name", ["_lock", "_run.json", "_summary.html"])
+def test_a_folder_in_the_place_of_a_file_is_one_line(scenes, tmp_path, name):
+    (tmp_path / "out" / name / "full").mkdir(parents=True)
+    done = run_batch(
+        scenes, "-o", tmp_path / "out", "--sequential", code=2 if name == "_lock" else 1
+    )
+    assert name in done["messages"] or name == "_lock"
+    assert "cannot be written: Is a directory" in done["messages"]
+    assert len(done["messages"].splitlines()) == 1
+
+
+@pytest.mark.parametrize("how", [("--workers", 1), ("--sequential",)])
+@pytest.mark.parametrize("name", ["_reports", "_stale"])
+def test_a_file_in_the_place_of_a_folder_is_one_line(scenes, tmp_path, name, how):
+    out = tmp_path / "out"
+    run_batch(scenes, "-o", out, "--sequential")
+    (out / name).touch()
+    words = (scenes, "-o", out, *how, "--measure", "energy", "--reports", 1)
+    done = run_batch(*words, code=1)
+    assert f"{out / name}: cannot be written: File exists" in done["messages"]
+    assert len(done["messages"].splitlines()) == 1
+    (out / name).unlink()
+    assert run_batch(*words)["complete"]
+
+
+def test_a_second_interrupt_changes_no_exit_code(slow, tmp_path):
+    out = tmp_path / "out"
+    with running(slow, "-o", out, "--workers", 2, "--rows-per-part", 3) as run:
+        wait_for_parts(out, 1)
+        workers = worker_processes(run.pid)
+        while run.poll() is None:
+            os.killpg(run.pid, signal.SIGINT)
+            time.sleep(0.02)
+        _, messages = run.communicate(timeout=30)
+        assert run.returncode == 4, messages
+        assert len(messages.splitlines()) == 1, messages
+        wait_until_gone(workers, 5)
+    assert run_batch(slow, "-o", out, "--workers", 2)["complete"]
+
+
+def test_closed_and_full_streams_are_no_traceback(scenes, tmp_path):
+    words = " ".join(command(scenes, "-o", tmp_path / "out", "--sequential", "--reports", 0))
+    for streams, code, message in (
+        (">/dev/full", 1, "standard output: cannot be written: No space left"),
+        ("2>&-", 0, ""),
+    ):
+        done = subprocess.run(
+            f"{words} {streams}", shell=True, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == code, done.stderr
+        assert message in done.stderr
+        assert "Traceback" not in done.stderr

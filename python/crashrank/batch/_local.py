@@ -12,6 +12,7 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Iterator
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import Any
@@ -49,6 +50,8 @@ class _Process:
         )
         self.task: Task | None = None
         self.ready = False
+        # The tracker's start lets SIGINT through again: it has to run before.
+        resource_tracker.ensure_running()
         with _interrupts_blocked():
             self.process.start()
         other.close()

@@ -167,6 +167,8 @@ class Run:
             by_part.setdefault(each.part, []).append((name, each.row))
         for part in self._inputs.parts(self._rows_per_part):
             for name, row in by_part.get(part.number, ()):
+                if row >= len(part.rows):
+                    continue  # its table has changed since; the summary then has no link
                 alone = Part(part.number, [part.rows[row]])
                 yield Task(alone, report=(0, str(self._folder / REPORTS / name)))
 

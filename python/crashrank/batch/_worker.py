@@ -14,7 +14,16 @@ from .._errors import Error, InternalError
 from ._arrow import arrow
 from ._hashes import engine_hash
 from ._models import GivenModel, given_models
-from ._parts import STALE, PartMeta, part_key, part_name, read_meta, write_part, write_whole
+from ._parts import (
+    STALE,
+    PartMeta,
+    not_written,
+    part_key,
+    part_name,
+    read_meta,
+    write_part,
+    write_whole,
+)
 from ._scene import Row, Scene, rank_scene, read_scene
 from ._settings import Settings
 from ._sources import Part
@@ -90,6 +99,8 @@ class Worker:
             return self._rank_part(task)
         except Error as error:
             return error
+        except OSError as error:
+            return not_written(error.filename2 or error.filename or self._job.folder, error)
 
     def run_safely(self, task: Task) -> Done | Error:
         """Do a task; a defect of this package ends the run with an error, and not the worker."""
