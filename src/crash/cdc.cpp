@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Which of three even parts of [low, high] a stretch covers by a third of a part at least.
+/// Which thirds of [low, high] the range [from, to] covers by at least a third of their length.
 std::array<bool, 3> thirds(double from, double to, double low, double high) {
   const double part = (high - low) / 3.0;
   std::array<bool, 3> covered{};
@@ -44,13 +44,13 @@ char height_of(double from, double to, double low, double high) {
   return 'M';
 }
 
-/// A face of a body, and how far damage reaches in from it.
+/// A face of a body, and the depth of the damage from it.
 struct DamagedFace {
   char area = 'F';
   double depth_m = 0.0;
 };
 
-/// The face from which the damage reaches in least, counted in the body's size that way.
+/// The face from which the damage is least deep, relative to the body's size in that direction.
 DamagedFace face_of(const Box& region, const Box& body) {
   const Vector3d from = region.min.cast<double>();
   const Vector3d to = region.max.cast<double>();
@@ -89,10 +89,10 @@ std::string cdc_code(const Deformation& d) {
   const Vector3d size = (high - low).cwiseMax(1e-9);
   const char area = face_of(d.region, d.body).area;
   const bool end = area == 'F' || area == 'B' || area == 'T';
-  // From right to left across, from the rear to the front along.
+  // Lateral positions count from right to left, longitudinal ones from rear to front.
   const char place = end ? place_of(thirds(from.y(), to.y(), low.y(), high.y()), "RCL")
                          : place_of(thirds(from.x(), to.x(), low.x(), high.x()), "BPF");
-  // J224's unions are left with centre and front with passengers' part for Y.
+  // In J224 Y is left with centre, or front with passenger compartment.
   const char union_place = place == 'Y' ? 'Z' : (place == 'Z' ? 'Y' : place);
   constexpr double narrow_m = 0.41;
   const double width = end ? to.y() - from.y() : to.x() - from.x();

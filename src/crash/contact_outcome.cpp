@@ -8,13 +8,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Share of the greatest speed at the contact that, kept at the end of the force, counts as
-/// sliding.
+/// The contact is reported as sliding if the relative speed at its end exceeds this share of its
+/// maximum.
 constexpr double slides_share = 0.2;
 
 }  // namespace
 
-BodyContact ContactRun::describe(bool is_first) const {
+BodyContact ContactRun::body_result(bool is_first) const {
   BodyContact result;
   const ContactBody& given = is_first ? given_first_ : given_second_;
   const Vehicle& v = *given.vehicle;
@@ -23,15 +23,15 @@ BodyContact ContactRun::describe(bool is_first) const {
   const PlanarBody& now = motion_of(is_first ? first_ : second());
   const PlanarForce& own =
       is_first ? impulse_on_first_ : state_->pairs[pairs_[0]].impulse_on_second;
-  // A second body that nothing moves stands for all that press beside it.
+  // A fixed second body represents all fixed bodies of the contact.
   const double sign = is_first || v.movable() ? 1.0 : -1.0;
   const PlanarForce& impulse = is_first || v.movable() ? own : impulse_on_first_;
   result.impulse_ns = sign * Vector3d(impulse.x, impulse.y, 0.0);
   result.after = given.velocity;
   if (v.movable()) {
-    const PlanarForce& taken = is_first ? taken_first_ : taken_second_;
-    result.delta_v_mps = now.inverse_mass * Vector3d(own.x - taken.x, own.y - taken.y, 0.0);
-    result.delta_yaw_rate_radps = now.inverse_inertia * (own.moment - taken.moment);
+    const PlanarForce& excluded = is_first ? excluded_first_ : excluded_second_;
+    result.delta_v_mps = now.inverse_mass * Vector3d(own.x - excluded.x, own.y - excluded.y, 0.0);
+    result.delta_yaw_rate_radps = now.inverse_inertia * (own.moment - excluded.moment);
     const PlanarBody& last = acts_ ? end : now;
     result.after.linear_mps = Vector3d(last.vx, last.vy, given.velocity.linear_mps.z());
     result.after.angular_radps.z() = last.spin;
@@ -48,21 +48,23 @@ BodyContact ContactRun::describe(bool is_first) const {
     result.damaged.grow(own_side.own);
     result.damaged.grow(other_side.other);
     const BodyPair& pair = state_->pairs[k];
-    const double earlier_m = is_first ? pair.reached_first_m : pair.reached_second_m;
-    result.intrusion_m = std::max(result.intrusion_m, pair.reach_m(is_first) - earlier_m);
+    const double earlier_m = is_first ? pair.earlier_first_m : pair.earlier_second_m;
+    result.intrusion_m = std::max(result.intrusion_m, pair.intrusion_m(is_first) - earlier_m);
   }
   return result;
 }
 
-/// The impulses of several that press on a body at a time may cancel, and those of steps that count
-/// may be cancelled by others; such a sum says nothing of what its people feel: no contact counts
-/// for more than the body undergoes, or than the speed at which its crush energy would be its
-/// kinetic energy.
-void ContactRun::limit(const Undergone& undergone, double inverse_mass, BodyContact& contact) {
+/// Impulses of several contacts that act on a body at the same time may cancel each other, and so
+/// may counted and excluded steps; the sum of one contact then overstates what the occupants are
+/// exposed to. Limit the delta-v to the greatest velocity change that the body had during the
+/// contact, or to the speed at which its kinetic energy would equal its crush energy if that is
+/// larger.
+void ContactRun::limit_delta_v(const VelocityChange& change, double inverse_mass,
+                               BodyContact& contact) {
   const double change_mps = contact.delta_v_mps.norm();
   const double most_mps =
-      std::max(undergone.most_mps, std::sqrt(2.0 * contact.crush_energy_j * inverse_mass));
-  if (!undergone.partial || !(change_mps > most_mps)) return;
+      std::max(change.most_mps, std::sqrt(2.0 * contact.crush_energy_j * inverse_mass));
+  if (!change.partial || !(change_mps > most_mps)) return;
   const double share = most_mps / change_mps;
   contact.delta_v_mps *= share;
   contact.delta_yaw_rate_radps *= share;
@@ -72,22 +74,23 @@ ContactOutcome ContactRun::outcome(bool swapped) const {
   ContactOutcome result;
   result.steps = steps_;
   result.pieces = pieces_;
-  BodyContact first = describe(true);
-  BodyContact second = describe(false);
+  BodyContact first = body_result(true);
+  BodyContact second = body_result(false);
   result.acts = acts_;
-  result.slides = acts_ && last_passing_mps_ > slides_share * fastest_passing_mps_;
+  result.slides = acts_ && last_speed_mps_ > slides_share * max_speed_mps_;
   result.duration_s = duration_s_;
-  result.closing_mps = closing_mps_;
+  result.closing_mps = max_closing_mps_;
   result.restitution = restitution_;
   result.dissipated_j = dissipated_j();
-  // Powers at the middles of steps add up to what was lost but for the steps' error: shares of it.
+  // The powers at the middles of steps add up to the dissipated energy except for the integration
+  // error; scale them to match it.
   const double sum = crush_first_j_ + crush_second_j_ + friction_j_;
   const double scale = sum > 0.0 ? result.dissipated_j / sum : 0.0;
   result.friction_j = scale * friction_j_;
   first.crush_energy_j = scale * crush_first_j_;
   second.crush_energy_j = scale * crush_second_j_;
-  limit(of_first_, motion_of(first_).inverse_mass, first);
-  limit(of_second_, motion_of(this->second()).inverse_mass, second);
+  limit_delta_v(change_first_, motion_of(first_).inverse_mass, first);
+  limit_delta_v(change_second_, motion_of(this->second()).inverse_mass, second);
   result.point_m = origin_m_;
   if (point_weight_ > 0.0) {
     result.point_m += Vector3d(point_x_ / point_weight_, point_y_ / point_weight_, 0.0);

@@ -8,36 +8,39 @@ namespace crashrank::detail {
 
 namespace {
 
-/// A contact that still moves past at a quarter of its speed or more does not rebound.
-constexpr double slipping_share = 0.25;
+/// A contact does not rebound while its relative speed is above this share of its maximum: it
+/// slides.
+constexpr double sliding_limit = 0.25;
 
 }  // namespace
 
 void ContactRun::EnergyChange::add(const PlanarBody& body, const PlanarForce& f) {
   slope += f.x * body.vx + f.y * body.vy + f.moment * body.spin;
-  bend += (f.x * f.x + f.y * f.y) * body.inverse_mass + f.moment * f.moment * body.inverse_inertia;
+  curvature +=
+      (f.x * f.x + f.y * f.y) * body.inverse_mass + f.moment * f.moment * body.inverse_inertia;
 }
 
 namespace {
 
-void push_by(PlanarBody& body, const PlanarForce& f, double share, PlanarForce& sum) {
-  body.push(share * f.x, share * f.y, share * f.moment);
+void apply_impulse(PlanarBody& body, const PlanarForce& f, double share, PlanarForce& sum) {
+  body.apply_impulse(share * f.x, share * f.y, share * f.moment);
   sum.x += share * f.x;
   sum.y += share * f.y;
   sum.moment += share * f.moment;
 }
 
-/// A moment about a body's centre of mass becomes that about the origin, or back with -1.
+/// Converts a moment about the body's centre of mass to one about the origin (sign 1), or back
+/// (sign -1).
 double about_origin(const PlanarBody& body, const PlanarForce& f, double sign) {
   return f.moment + sign * (body.x * f.y - body.y * f.x);
 }
 
 }  // namespace
 
-/// Applies the forces for the step, but no longer than until the energy is least along them: how it
-/// changes along a share k of them is slope·k + bend·k²/2. So none is ever gained, however stiff
-/// what was met is.
-void ContactRun::push() {
+/// Applies the forces for the duration of the step, or for the shorter time that minimises the
+/// kinetic energy: applied for a time k, they change it by slope·k + curvature·k²/2. Energy
+/// therefore never grows, however stiff the bodies are.
+void ContactRun::apply_impulses() {
   EnergyChange change;
   change.add(motion_of(first_), on_first_);
   for (const std::uint32_t k : pairs()) {
@@ -48,38 +51,38 @@ void ContactRun::push() {
   const double force = plane_length(on_first_.x, on_first_.y);
   acceleration_mps2_ =
       force * (p.inverse_mass + q.inverse_mass) +
-      rim_m_ * (std::abs(on_first_.moment) * p.inverse_inertia +
-                std::abs(state_->pairs[pairs_[0]].on_second.moment) * q.inverse_inertia);
+      radius_m_ * (std::abs(on_first_.moment) * p.inverse_inertia +
+                   std::abs(state_->pairs[pairs_[0]].on_second.moment) * q.inverse_inertia);
   double seconds = 0.0;
-  if (change.slope < 0.0 && change.bend > 0.0) {
-    seconds = std::min(step_s_, -change.slope / change.bend);
+  if (change.slope < 0.0 && change.curvature > 0.0) {
+    seconds = std::min(step_s_, -change.slope / change.curvature);
   }
-  pushed_s_ = seconds;
-  const double before = moving_j();
-  const auto push_one = [&](PlanarBody& body, const PlanarForce& f, PlanarForce& whole,
-                            PlanarForce& since) {
-    push_by(body, f, seconds, whole);
+  applied_s_ = seconds;
+  const double before = kinetic_energy_j();
+  const auto apply_one = [&](PlanarBody& body, const PlanarForce& f, PlanarForce& total,
+                             PlanarForce& since) {
+    apply_impulse(body, f, seconds, total);
     since.x += seconds * f.x;
     since.y += seconds * f.y;
     since.moment += seconds * about_origin(body, f, 1.0);
   };
-  push_one(motion_of(first_), on_first_, impulse_on_first_, since_rebound_);
+  apply_one(motion_of(first_), on_first_, impulse_on_first_, since_rebound_);
   for (const std::uint32_t k : pairs()) {
     BodyPair& pair = state_->pairs[k];
-    push_one(motion_of(pair.second), pair.on_second, pair.impulse_on_second, pair.since_rebound);
+    apply_one(motion_of(pair.second), pair.on_second, pair.impulse_on_second, pair.since_rebound);
   }
-  const double lost = before - moving_j();
-  lost_j_ += lost;
+  const double lost = before - kinetic_energy_j();
+  lost_since_rebound_j_ += lost;
   dissipated_j_ += lost;
   const double impulse = seconds * force;
   impulse_ns_ += impulse;
-  late_ns_ += impulse;
-  // So small a share of the whole counts as no force.
-  constexpr double nothing = 3e-4;
-  if (impulse > nothing * impulse_ns_) quiet_m_ = 0.0;
+  window_impulse_ns_ += impulse;
+  // An impulse below this share of the total counts as no force.
+  constexpr double negligible_share = 3e-4;
+  if (impulse > negligible_share * impulse_ns_) forceless_travel_m_ = 0.0;
 }
 
-ContactRun::AtForce ContactRun::at_force() const {
+ContactRun::ForceVelocity ContactRun::velocity_at_force() const {
   const double force = plane_length(on_first_.x, on_first_.y);
   if (!(totals_.weight > 0.0) || !(force > 0.0)) return {};
   const double x = totals_.point_x / totals_.weight;
@@ -91,16 +94,18 @@ ContactRun::AtForce ContactRun::at_force() const {
   return {-(vx * on_first_.x + vy * on_first_.y) / force, plane_length(vx, vy)};
 }
 
-/// Greatest compression: what is left of the closing speed is taken out along the impulse until
-/// then, and the restitution's share of that impulse is given back, once; less where the contact
-/// slides, where it has all but ended, and where it would give back more energy than e².
-void ContactRun::rebound(double passing_mps) {
-  const double sticks =
-      std::clamp(1.0 - passing_mps / (slipping_share * most_passing_mps_), 0.0, 1.0);
+/// Applies the rebound at greatest compression. First the remaining closing speed is removed along
+/// the impulse so far; then the share e of that impulse, the restitution, is added once. The share
+/// is reduced where the contact slides, where its force has nearly ended, and where it would
+/// restore more than e² of the energy lost.
+void ContactRun::rebound(double speed_mps) {
+  const double sticking =
+      std::clamp(1.0 - speed_mps / (sliding_limit * max_speed_since_rebound_mps_), 0.0, 1.0);
   const double e =
-      std::min(most_restitution, restitution_at(most_closing_mps_) * variant_.restitution *
-                                     (totals_.fresh / totals_.pressing) *
-                                     std::min(1.0, totals_.pressing / most_pressing_) * sticks);
+      std::min(most_restitution,
+               restitution_at(max_closing_since_rebound_mps_) * variant_.restitution *
+                   (totals_.unused_crush / totals_.pressing) *
+                   std::min(1.0, totals_.pressing / max_pressing_since_rebound_) * sticking);
   EnergyChange change;
   const auto prepare = [&](const PlanarBody& body, PlanarForce& since) {
     since.moment = about_origin(body, since, -1.0);
@@ -110,33 +115,34 @@ void ContactRun::rebound(double passing_mps) {
   for (const std::uint32_t k : pairs()) {
     prepare(motion_of(state_->pairs[k].second), state_->pairs[k].since_rebound);
   }
-  auto [slope, bend] = change;
-  if (!(bend > 0.0)) return;
-  constexpr double most_left = 0.3;
-  const double rest = sticks * std::clamp(-slope / bend, 0.0, most_left);
-  const double lost = lost_j_ - (slope * rest + 0.5 * bend * rest * rest);
-  slope += bend * rest;
-  // The largest share k with slope·k + bend·k²/2 <= e²·lost.
-  const double most_j = e * e * std::max(lost, 0.0);
+  auto [slope, curvature] = change;
+  if (!(curvature > 0.0)) return;
+  constexpr double max_remaining = 0.3;
+  const double remaining = sticking * std::clamp(-slope / curvature, 0.0, max_remaining);
+  const double lost =
+      lost_since_rebound_j_ - (slope * remaining + 0.5 * curvature * remaining * remaining);
+  slope += curvature * remaining;
+  // The largest share k for which slope·k + curvature·k²/2 <= e²·lost.
+  const double max_restored_j = e * e * std::max(lost, 0.0);
   double share = e;
-  if (slope * share + 0.5 * bend * share * share > most_j) {
-    share = (-slope + std::sqrt(slope * slope + 2.0 * bend * most_j)) / bend;
+  if (slope * share + 0.5 * curvature * share * share > max_restored_j) {
+    share = (-slope + std::sqrt(slope * slope + 2.0 * curvature * max_restored_j)) / curvature;
   }
-  share = rest + std::clamp(share, 0.0, e) * (1.0 + rest);
-  const double before = moving_j();
-  push_by(motion_of(first_), since_rebound_, share, impulse_on_first_);
+  share = remaining + std::clamp(share, 0.0, e) * (1.0 + remaining);
+  const double before = kinetic_energy_j();
+  apply_impulse(motion_of(first_), since_rebound_, share, impulse_on_first_);
   since_rebound_ = {};
   for (const std::uint32_t k : pairs()) {
     BodyPair& pair = state_->pairs[k];
-    push_by(motion_of(pair.second), pair.since_rebound, share, pair.impulse_on_second);
+    apply_impulse(motion_of(pair.second), pair.since_rebound, share, pair.impulse_on_second);
     pair.since_rebound = {};
   }
-  dissipated_j_ += before - moving_j();
+  dissipated_j_ += before - kinetic_energy_j();
   restitution_ = std::max(restitution_, e);
-  lost_j_ = 0.0;
-  most_pressing_ = 0.0;
-  most_closing_mps_ = 0.0;
-  most_passing_mps_ = 0.0;
+  lost_since_rebound_j_ = 0.0;
+  max_pressing_since_rebound_ = 0.0;
+  max_closing_since_rebound_mps_ = 0.0;
+  max_speed_since_rebound_mps_ = 0.0;
 }
 
 }  // namespace crashrank::detail

@@ -10,13 +10,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Friction of folded sheet metal in folded sheet metal: rails and folds hook into each other.
+/// Friction coefficient between folded sheet metal of two bodies, whose rails and folds interlock.
 constexpr float interlocked_friction = 1.0F;
-/// Share of the closing speed under which bodies count as at rest against each other.
-constexpr double at_rest = 0.03;
+/// The bodies are at greatest compression when the closing speed has fallen to this share of its
+/// maximum.
+constexpr double rest_share = 0.03;
 
-/// No point of the outlines is further from the centre of mass.
-double rim_of(const Vehicle& v) {
+/// Greatest distance of an outline point from the centre of mass, m.
+double outline_radius(const Vehicle& v) {
   const Silhouettes& s = v.silhouettes;
   const double x = std::max(std::abs(static_cast<double>(s.min_x) - v.center_m.x()),
                             std::abs(static_cast<double>(s.max_x) - v.center_m.x()));
@@ -36,26 +37,26 @@ void BodyPair::begin(std::size_t a, std::size_t b) {
   second = static_cast<std::uint32_t>(b);
   of_first.begin();
   of_second.begin();
-  faded_until_s = -1e9;
+  push_until_s = -1e9;
   in_first = {};
   in_second = {};
-  reached_first_m = reached_second_m = 0.0;
-  meet_again(left_at_step = 0);
+  earlier_first_m = earlier_second_m = 0.0;
+  begin_further_contact(last_end_step = 0);
 }
 
-double BodyPair::reach_m(bool of_first_body) const {
+double BodyPair::intrusion_m(bool of_first_body) const {
   const PassRecord& own = of_first_body ? in_first : in_second;
   const PassRecord& other = of_first_body ? in_second : in_first;
   return static_cast<double>(std::max(own.intrusion_own, other.intrusion_other));
 }
 
-void BodyPair::meet_again(std::uint64_t step) {
-  if (step > left_at_step + 1) {
-    of_first.resume();
-    of_second.resume();
+void BodyPair::begin_further_contact(std::uint64_t step) {
+  if (step > last_end_step + 1) {
+    of_first.begin_further_contact();
+    of_second.begin_further_contact();
   }
-  reached_first_m = std::max(reached_first_m, reach_m(true));
-  reached_second_m = std::max(reached_second_m, reach_m(false));
+  earlier_first_m = std::max(earlier_first_m, intrusion_m(true));
+  earlier_second_m = std::max(earlier_second_m, intrusion_m(false));
   in_first = {};
   in_second = {};
   on_second = {};
@@ -82,13 +83,14 @@ void ContactRun::begin(ContactWorkspace::State& state, std::size_t first, std::u
   start_first_ = end_first_ = p;
   start_second_ = end_second_ = q;
   record_.begin(p, q);
-  rim_m_ = rim_of(*given_first.vehicle);
-  if (given_second.vehicle->movable()) rim_m_ = std::max(rim_m_, rim_of(*given_second.vehicle));
-  energy_before_j_ = moving_j();
+  radius_m_ = outline_radius(*given_first.vehicle);
+  if (given_second.vehicle->movable())
+    radius_m_ = std::max(radius_m_, outline_radius(*given_second.vehicle));
+  energy_before_j_ = kinetic_energy_j();
   speed_before_mps_ = relative_speed();
   momentum_before_ns_ = speed_before_mps_ / (p.inverse_mass + q.inverse_mass);
-  speeds_before_mps_ = plane_length(p.vx, p.vy) + plane_length(q.vx, q.vy);
-  speed_mps_ = speed_at_rims();
+  speed_sum_before_mps_ = plane_length(p.vx, p.vy) + plane_length(q.vx, q.vy);
+  speed_mps_ = relative_speed_bound();
   over_ = !can_press(*given_first.vehicle, *given_second.vehicle);
 }
 
@@ -99,13 +101,14 @@ bool ContactRun::add(std::uint32_t pair) {
   return true;
 }
 
-void ContactRun::begin_here(const ContactBody& given_first, const ContactBody& given_second) {
+void ContactRun::begin_at_first_force(const ContactBody& given_first,
+                                      const ContactBody& given_second) {
   given_first_ = given_first;
   given_second_ = given_second;
   start_first_ = end_first_ = motion_of(first_);
   start_second_ = end_second_ = motion_of(second());
   record_.begin(start_first_, start_second_);
-  of_first_ = of_second_ = {};
+  change_first_ = change_second_ = {};
   time_s_ = -0.5 * step_s_;
 }
 
@@ -115,12 +118,12 @@ double ContactRun::relative_speed() const {
   return plane_length(p.vx - q.vx, p.vy - q.vy);
 }
 
-double ContactRun::speed_at_rims() const {
-  return relative_speed() + rim_m_ * std::abs(motion_of(first_).spin - motion_of(second()).spin);
+double ContactRun::relative_speed_bound() const {
+  return relative_speed() + radius_m_ * std::abs(motion_of(first_).spin - motion_of(second()).spin);
 }
 
-/// Bodies that nothing moves have none, and so the others of several.
-double ContactRun::moving_j() const {
+/// Kinetic energy of the first two bodies. Further bodies of a contact are fixed and have none.
+double ContactRun::kinetic_energy_j() const {
   return motion_of(first_).energy() + motion_of(second()).energy();
 }
 
@@ -129,7 +132,7 @@ void ContactRun::add_sums(const PassSums& sums, bool own_is_first) {
   totals.approaching = totals.approaching || sums.approaching;
   totals.pressing += sums.pressing;
   totals.closing += sums.closing;
-  totals.passing += sums.passing;
+  totals.speed += sums.speed;
   const double own_j = sums.power_own * step_s_;
   const double other_j = sums.power_other * step_s_;
   crush_first_j_ += own_is_first ? own_j : other_j;
@@ -137,13 +140,13 @@ void ContactRun::add_sums(const PassSums& sums, bool own_is_first) {
   friction_j_ += sums.power_friction * step_s_;
   depth_first_m_ = std::max(depth_first_m_, own_is_first ? sums.depth_own : sums.depth_other);
   depth_second_m_ = std::max(depth_second_m_, own_is_first ? sums.depth_other : sums.depth_own);
-  totals.fresh += sums.fresh;
+  totals.unused_crush += sums.unused_crush;
   totals.weight += sums.weight;
   totals.point_x += sums.point_x;
   totals.point_y += sums.point_y;
 }
 
-void ContactRun::feel_pair(BodyPair& pair, std::size_t place, PassSettings& settings) {
+void ContactRun::compute_pair_forces(BodyPair& pair, std::size_t place, PassSettings& settings) {
   PressedBody& first = state_->bodies[first_];
   PressedBody& other = state_->bodies[pair.second];
   const double base = friction_between(first.vehicle->surface, other.vehicle->surface);
@@ -157,7 +160,8 @@ void ContactRun::feel_pair(BodyPair& pair, std::size_t place, PassSettings& sett
     settings.neighbours = {others_.data(), pair_count_ > 1 ? pair_count_ : 0};
     settings.self = place;
     PassSums sums;
-    press_pieces(other, first, settings, moved_m_, pair.of_second, sums, pair.in_first);
+    compute_piece_forces(other, first, settings, travel_bound_m_, pair.of_second, sums,
+                         pair.in_first);
     pieces_ += pair.of_second.pieces;
     add_sums(sums, true);
     on_first = sums.on_pressed;
@@ -166,7 +170,8 @@ void ContactRun::feel_pair(BodyPair& pair, std::size_t place, PassSettings& sett
   if (!other.response.rigid) {
     settings.neighbours = {};
     PassSums sums;
-    press_pieces(first, other, settings, moved_m_, pair.of_first, sums, pair.in_second);
+    compute_piece_forces(first, other, settings, travel_bound_m_, pair.of_first, sums,
+                         pair.in_second);
     pieces_ += pair.of_first.pieces;
     add_sums(sums, false);
     on_first.x -= sums.on_pressed.x;
@@ -175,7 +180,7 @@ void ContactRun::feel_pair(BodyPair& pair, std::size_t place, PassSettings& sett
     pressing += sums.pressing;
   }
   if (pressing > 0.0) pair.pressed = true;
-  // Moments about the origin become those about the centres of mass.
+  // Convert moments about the origin to moments about the centres of mass.
   const PlanarBody& p = first.motion;
   const PlanarBody& q = other.motion;
   on_first_.x += on_first.x;
@@ -198,15 +203,15 @@ std::size_t ContactRun::most_pressed() const {
 }
 
 double ContactRun::next_step_s() const {
-  // However hard bodies press that are no faster than this against each other, a step takes this
-  // share of the usual travel: what rests or is pushed along needs no more.
+  // At relative speeds below `slow_mps` a step covers at least this share of the usual travel,
+  // however large the acceleration: bodies at rest or pushed along need no shorter steps.
   constexpr double slow_mps = 1.0;
   constexpr double least_travel = 1.0 / 60.0;
   double step_s = std::clamp(options_.travel_m / std::max(speed_mps_, 1e-3), options_.shortest_s,
                              options_.longest_s);
   if (acceleration_mps2_ > 0.0) {
     double least_s = 0.25 * options_.shortest_s;
-    if (std::max(speed_mps_, most_passing_mps_) < slow_mps) {
+    if (std::max(speed_mps_, max_speed_since_rebound_mps_) < slow_mps) {
       least_s = std::clamp(least_travel * options_.travel_m / std::max(speed_mps_, 1e-3), least_s,
                            step_s);
     }
@@ -216,105 +221,112 @@ double ContactRun::next_step_s() const {
   return step_s;
 }
 
-void ContactRun::feel(double step_s) {
-  since_s_ = 0.5 * (step_s_ + step_s);
+void ContactRun::compute_forces(double step_s) {
+  pass_interval_s_ = 0.5 * (step_s_ + step_s);
   step_s_ = step_s;
   totals_ = {};
   on_first_ = {};
   PassSettings settings;
   settings.step_s = step_s_;
-  settings.since_s = since_s_;
+  settings.pass_interval_s = pass_interval_s_;
   for (std::size_t k = 0; k < pair_count_; ++k) {
-    feel_pair(state_->pairs[pairs_[k]], k, settings);
+    compute_pair_forces(state_->pairs[pairs_[k]], k, settings);
   }
 }
 
-void ContactRun::press() {
+void ContactRun::apply_forces() {
   constexpr double least_speed_mps = 0.5;
-  // Material of the two near each other, which may lie as far from one centre of mass as from the
-  // other: no faster than this.
+  // Upper bound of the relative travel of any two points near each other. Such a point may be up to
+  // the outline radius of one body away from either centre of mass, hence twice `radius_m_`.
   const PlanarBody& p = motion_of(first_);
   const PlanarBody& q = motion_of(second());
-  moved_m_ = step_s_ * (relative_speed() + 2.0 * rim_m_ * (std::abs(p.spin) + std::abs(q.spin)));
+  travel_bound_m_ =
+      step_s_ * (relative_speed() + 2.0 * radius_m_ * (std::abs(p.spin) + std::abs(q.spin)));
   acceleration_mps2_ = 0.0;
-  if (totals_.approaching) quiet_m_ = 0.0;
-  quiet_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
-  late_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
+  if (totals_.approaching) forceless_travel_m_ = 0.0;
+  forceless_travel_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
+  window_travel_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
   if (presses()) {
     acts_ = true;
     const double closing = totals_.closing / totals_.pressing;
-    const double passing = totals_.passing / totals_.pressing;
-    most_pressing_ = std::max(most_pressing_, totals_.pressing);
-    most_closing_mps_ = std::max(most_closing_mps_, closing);
-    most_passing_mps_ = std::max(most_passing_mps_, passing);
-    fastest_passing_mps_ = std::max(fastest_passing_mps_, passing);
-    closing_mps_ = std::max(closing_mps_, closing);
+    const double speed = totals_.speed / totals_.pressing;
+    max_pressing_since_rebound_ = std::max(max_pressing_since_rebound_, totals_.pressing);
+    max_closing_since_rebound_mps_ = std::max(max_closing_since_rebound_mps_, closing);
+    max_speed_since_rebound_mps_ = std::max(max_speed_since_rebound_mps_, speed);
+    max_speed_mps_ = std::max(max_speed_mps_, speed);
+    max_closing_mps_ = std::max(max_closing_mps_, closing);
     point_x_ += step_s_ * totals_.point_x;
     point_y_ += step_s_ * totals_.point_y;
     point_weight_ += step_s_ * totals_.weight;
-    push();
-    const AtForce now = at_force();
-    last_passing_mps_ = now.passing_mps;
-    if (now.closing_mps < at_rest * most_closing_mps_ && lost_j_ > 0.0) rebound(now.passing_mps);
+    apply_impulses();
+    const ForceVelocity now = velocity_at_force();
+    last_speed_mps_ = now.speed_mps;
+    if (now.closing_mps < rest_share * max_closing_since_rebound_mps_ &&
+        lost_since_rebound_j_ > 0.0) {
+      rebound(now.speed_mps);
+    }
   }
-  speed_mps_ = speed_at_rims();
+  speed_mps_ = relative_speed_bound();
 }
 
 Eigen::Vector2d ContactRun::step_change_mps(bool of_first) const {
   if (!presses()) return Eigen::Vector2d(0, 0);
   const PlanarForce& f = of_first ? on_first_ : state_->pairs[pairs_[0]].on_second;
-  const double share = pushed_s_ * motion_of(of_first ? first_ : second()).inverse_mass;
+  const double share = applied_s_ * motion_of(of_first ? first_ : second()).inverse_mass;
   return Eigen::Vector2d(share * f.x, share * f.y);
 }
 
-/// Injury risk is known for impacts of some 0.1 s. A long push or scrape that accelerates both
-/// bodies no more than brakes do every day is no impact, however much velocity it adds up to. Both
-/// bodies count the same share, so that impulses stay equal. Slow impacts, whose forces are as
-/// small, are over by `impact_s`.
-void ContactRun::weigh_step() {
+/// Injury risk curves describe impacts of about 0.1 s. A long push or scrape that accelerates both
+/// bodies no more than everyday braking is not an impact, whatever velocity change it adds up to.
+/// Both bodies use the same share, so that the counted impulses stay equal and opposite. Slow
+/// impacts, whose forces are as small, are over within `impact_s`.
+void ContactRun::compute_counted_share() {
   constexpr double impact_s = 0.3;
-  constexpr double everyday_mps2 = 0.3 * gravity_mps2;
+  constexpr double braking_mps2 = 0.3 * gravity_mps2;
   constexpr double strong_mps2 = 1.0 * gravity_mps2;
-  counted_ = 1.0;
+  counted_share_ = 1.0;
   const double change_mps = std::max(step_change_mps(true).norm(), step_change_mps(false).norm());
   const double acceleration = change_mps / step_s_;
-  if (acceleration >= strong_mps2) strong_s_ = time_s_;
-  if (time_s_ - strong_s_ <= impact_s) return;
-  counted_ = std::clamp((acceleration - everyday_mps2) / (strong_mps2 - everyday_mps2), 0.0, 1.0);
-  add_taken(true, 1.0 - counted_);
-  add_taken(false, 1.0 - counted_);
+  if (acceleration >= strong_mps2) last_strong_s_ = time_s_;
+  if (time_s_ - last_strong_s_ <= impact_s) return;
+  counted_share_ =
+      std::clamp((acceleration - braking_mps2) / (strong_mps2 - braking_mps2), 0.0, 1.0);
+  add_excluded(true, 1.0 - counted_share_);
+  add_excluded(false, 1.0 - counted_share_);
 }
 
-void ContactRun::take_back(bool from_first, double share) {
-  add_taken(from_first, share * counted_);
+void ContactRun::exclude(bool from_first, double share) {
+  add_excluded(from_first, share * counted_share_);
 }
 
-void ContactRun::add_taken(bool from_first, double share) {
+void ContactRun::add_excluded(bool from_first, double share) {
   const PlanarForce& f = from_first ? on_first_ : state_->pairs[pairs_[0]].on_second;
-  PlanarForce& taken = from_first ? taken_first_ : taken_second_;
-  taken.x += share * pushed_s_ * f.x;
-  taken.y += share * pushed_s_ * f.y;
-  taken.moment += share * pushed_s_ * f.moment;
+  PlanarForce& excluded = from_first ? excluded_first_ : excluded_second_;
+  excluded.x += share * applied_s_ * f.x;
+  excluded.y += share * applied_s_ * f.y;
+  excluded.moment += share * applied_s_ * f.moment;
 }
 
-void ContactRun::undergo(bool first, const Eigen::Vector2d& change_mps, bool shared) {
-  Undergone& body = first ? of_first_ : of_second_;
+void ContactRun::add_velocity_change(bool first, const Eigen::Vector2d& change_mps, bool shared) {
+  VelocityChange& body = first ? change_first_ : change_second_;
   body.now_mps += change_mps;
-  body.partial = body.partial || shared || counted_ < 1.0;
+  body.partial = body.partial || shared || counted_share_ < 1.0;
   if (presses()) body.most_mps = std::max(body.most_mps, body.now_mps.norm());
 }
 
 void ContactRun::end_step() {
-  // Ends: bodies that have travelled this far without force have parted; a force that gave less
-  // than this share of the impulse in such a time and travel has all but ended, once a share of
-  // the momentum at stake is taken (a faint clip may come before the crash); bodies that never
-  // pressed within this travel brushed past each other.
-  constexpr double parted_m = 0.15;
-  constexpr double faded_s = 0.03;
-  constexpr double faded_m = 0.1;
-  constexpr double faded_share = 0.03;
-  constexpr double taken_share = 0.3;
-  constexpr double missed_m = 0.5;
+  // The contact ends when the bodies have separated (relative travel of `separation_m` without
+  // force); when they pass each other without any force (`no_contact_m`); or when the force is
+  // negligible: within a window of `window_s` and `window_m` of travel it adds less than
+  // `low_force_share` of the impulse so far, and at least `min_impulse_share` of the relative
+  // momentum has been exchanged. The last condition keeps a light graze from hiding the crash that
+  // follows it.
+  constexpr double separation_m = 0.15;
+  constexpr double window_s = 0.03;
+  constexpr double window_m = 0.1;
+  constexpr double low_force_share = 0.03;
+  constexpr double min_impulse_share = 0.3;
+  constexpr double no_contact_m = 0.5;
   time_s_ += step_s_;
   ++steps_;
   if (presses()) {
@@ -323,14 +335,15 @@ void ContactRun::end_step() {
     end_second_ = motion_of(second());
     record_.add(time_s_, end_first_, end_second_);
   }
-  over_ = quiet_m_ > (acts_ ? parted_m : missed_m) || time_s_ > longest_contact_s;
-  if (acts_ && time_s_ - late_from_s_ > faded_s && late_m_ > faded_m) {
-    faded_ =
-        late_ns_ < faded_share * impulse_ns_ && impulse_ns_ > taken_share * momentum_before_ns_;
-    over_ = over_ || faded_;
-    late_ns_ = 0.0;
-    late_from_s_ = time_s_;
-    late_m_ = 0.0;
+  over_ =
+      forceless_travel_m_ > (acts_ ? separation_m : no_contact_m) || time_s_ > longest_contact_s;
+  if (acts_ && time_s_ - window_start_s_ > window_s && window_travel_m_ > window_m) {
+    ended_on_low_force_ = window_impulse_ns_ < low_force_share * impulse_ns_ &&
+                          impulse_ns_ > min_impulse_share * momentum_before_ns_;
+    over_ = over_ || ended_on_low_force_;
+    window_impulse_ns_ = 0.0;
+    window_start_s_ = time_s_;
+    window_travel_m_ = 0.0;
   }
 }
 

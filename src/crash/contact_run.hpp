@@ -16,184 +16,198 @@
 namespace crashrank {
 namespace detail {
 
-/// What is remembered of two bodies' outlines in each other, and what they do to each other.
+/// Two bodies of a contact: the pieces of each outline near the other body, what they have crushed
+/// so far, and the forces between the bodies. It outlives single contacts, because crushed
+/// structure stays crushed.
 struct BodyPair {
-  std::uint32_t first = 0;   ///< index of a body
-  std::uint32_t second = 0;  ///< and of the other
-  NearPieces of_first;       ///< pieces of the first body in the second
-  NearPieces of_second;      ///< and of the second in the first
-  PassRecord in_first;       ///< of the second's pieces
-  PassRecord in_second;
-  PlanarForce on_second;           ///< in this step, about its centre of mass
-  PlanarForce since_rebound;       ///< impulse on the second, about the origin
-  PlanarForce impulse_on_second;   ///< in the whole contact, about its centre of mass
-  bool pressed = false;            ///< it bore a force
-  double reached_first_m = 0.0;    ///< into the first's compartment in their earlier contacts
-  double reached_second_m = 0.0;   ///< and into the second's
-  std::uint64_t left_at_step = 0;  ///< of the scene, when their last contact was over
-  double faded_until_s = -1e9;     ///< of the scene: see SceneContact::goes_on
+  std::uint32_t first = 0;   ///< index of the first body
+  std::uint32_t second = 0;  ///< index of the second body
+  NearPieces of_first;       ///< outline pieces of the first body near the second
+  NearPieces of_second;      ///< outline pieces of the second body near the first
+  PassRecord in_first;       ///< second body pressing into the first
+  PassRecord in_second;      ///< first body pressing into the second
+  PlanarForce on_second;     ///< force in this step, moment about its centre of mass
+  /// Impulse on the second body since the last rebound, moment about the origin.
+  PlanarForce since_rebound;
+  PlanarForce impulse_on_second;    ///< impulse of the contact, moment about its centre of mass
+  bool pressed = false;             ///< a force acted in this contact
+  double earlier_first_m = 0.0;     ///< greatest intrusion into the first in earlier contacts
+  double earlier_second_m = 0.0;    ///< greatest intrusion into the second in earlier contacts
+  std::uint64_t last_end_step = 0;  ///< scene step in which their last contact ended
+  double push_until_s = -1e9;       ///< scene time until which a force continues the push
 
-  /// Forgets everything but its room.
+  /// Clears the pair; keeps allocated memory.
   void begin(std::size_t a, std::size_t b);
-  /// A further contact begins in a scene's step: what was crushed stays crushed.
-  void meet_again(std::uint64_t step);
-  /// Greatest reach into the first's or the second's compartment in this contact, m.
-  double reach_m(bool of_first_body) const;
+  /// Starts a further contact of the pair at scene step `step`: clears forces and records, keeps
+  /// what is crushed.
+  void begin_further_contact(std::uint64_t step);
+  /// Greatest intrusion into the compartment of the first or the second body in this contact, m.
+  double intrusion_m(bool of_first_body) const;
 };
 
 }  // namespace detail
 
-/// Memory of simulations.
+/// Working memory of contact simulations.
 struct ContactWorkspace::State {
   std::vector<detail::PressedBody> bodies;
-  std::vector<detail::BodyPair> pairs;  ///< the first `pairs_in_use`; the others are room
+  std::vector<detail::BodyPair> pairs;  ///< the first `pairs_in_use` are valid
   std::size_t pairs_in_use = 0;
 
-  /// Forgets bodies and pairs.
+  /// Removes all bodies and pairs; keeps allocated memory.
   void begin();
-  /// Adds a body as it moves now, coordinates from `origin_m`.
+  /// Adds a body with its present pose and velocity; coordinates are relative to `origin_m`.
   void add_body(const ContactBody& body, const Eigen::Vector3d& origin_m,
                 const ContactVariant& variant);
-  /// A pair with nothing remembered and room for the outlines of both bodies; its index.
+  /// Takes a cleared pair with room for the outlines of both bodies; returns its index.
   std::uint32_t take_pair(std::size_t first, std::size_t second);
 };
 
 namespace detail {
 
-/// No contact goes on for longer than this and a step, s.
+/// A contact lasts at most this long plus one step, s.
 inline constexpr double longest_contact_s = 1.5;
 
-/// A contact of a body with another, or with several that nothing moves, while it goes on. Who owns
-/// the bodies moves them: by half a step before `feel` and by the other half after `press`.
+/// Simulates one contact step by step: of two bodies, or of one body with several adjoining fixed
+/// bodies. The caller moves the bodies: by half a step before `compute_forces` and by the other
+/// half after `apply_forces`.
 class ContactRun {
 public:
-  /// Most bodies that press on the first at the same time.
+  /// Maximum number of bodies that press on the first one at the same time.
   static constexpr std::size_t most_others = 65;
 
-  /// Begins with what moves now; `first` and `second` in the order of `goes_second`, indices into
-  /// the workspace's bodies, `pair` what is remembered of them. `given` are the two with their
-  /// poses as they are now. Workspace and vehicles outlive the run.
+  /// Starts the contact with the present state of the bodies. `first` and `second` (in the order
+  /// that `goes_second` defines) are indices into the bodies of `state`; `pair` is the index of
+  /// their `BodyPair`. `given_first` and `given_second` describe both bodies with their present
+  /// poses. Workspace and vehicles have to outlive the run.
   void begin(ContactWorkspace::State& state, std::size_t first, std::uint32_t pair,
              const ContactBody& given_first, const ContactBody& given_second,
              const Eigen::Vector3d& origin_m, const ContactVariant& variant,
              const ContactOptions& options);
-  /// A further body that nothing moves, beside a second that nothing moves. False: there is no
-  /// room.
+  /// Adds a further fixed body to a contact whose second body is fixed. Returns false if there is
+  /// no room.
   bool add(std::uint32_t pair);
 
-  /// What was near only comes into contact: it begins here, in the middle of a step.
-  void begin_here(const ContactBody& given_first, const ContactBody& given_second);
+  /// Restarts the clock and the records at the first force, in the middle of a step: until then the
+  /// bodies were near each other without contact.
+  void begin_at_first_force(const ContactBody& given_first, const ContactBody& given_second);
 
-  /// The step that the contact asks for, s.
+  /// Returns the longest step that resolves the contact, s.
   double next_step_s() const;
-  /// The forces at the middle of a step.
-  void feel(double step_s);
-  /// Whether they press.
+  /// Computes the contact forces at the middle of a step.
+  void compute_forces(double step_s);
+  /// Returns true if a contact force acts in this step.
   bool presses() const noexcept { return totals_.pressing > 0.0; }
-  /// Changes the bodies' velocities by them, and by the rebound where it is due.
-  void press();
-  /// What the step's force gave the first or the second body, m/s.
+  /// Applies the forces of the step, and the rebound at greatest compression, to the velocities.
+  void apply_forces();
+  /// Velocity change of the first or the second body by the force of this step, m/s.
   Eigen::Vector2d step_change_mps(bool of_first) const;
-  /// It continues an earlier contact's push: no impact begins with it.
-  void continue_push() noexcept { strong_s_ = -std::numeric_limits<double>::infinity(); }
-  /// Decides after `press` how much of the step's force counts as change of velocity: all but that
-  /// of long pushes and scrapes.
-  void weigh_step();
-  /// The share in [0, 1] of what counts of the step's force that something else took at the same
-  /// time: it counts no more.
-  void take_back(bool from_first, double share);
-  /// All contacts together changed the first or the second body's velocity so in this step, m/s;
-  /// `shared`: others pressed on it, too.
-  void undergo(bool first, const Eigen::Vector2d& change_mps, bool shared);
-  /// Once the bodies have moved to the end of the step.
+  /// Marks the contact as the continuation of a push, which does not begin with an impact.
+  void begin_as_push() noexcept { last_strong_s_ = -std::numeric_limits<double>::infinity(); }
+  /// Computes, after `apply_forces`, the share of the force of this step that counts towards
+  /// delta-v: less than 1 in long pushes and scrapes.
+  void compute_counted_share();
+  /// Excludes a share in [0, 1] of the counted impulse of this step from the delta-v of a body,
+  /// because another force cancelled it in the same step.
+  void exclude(bool from_first, double share);
+  /// Records the velocity change of the first or the second body by all contacts in this step, m/s;
+  /// `shared`: other contacts act on it as well.
+  void add_velocity_change(bool first, const Eigen::Vector2d& change_mps, bool shared);
+  /// Completes the step, after the bodies have moved to its end, and decides whether the contact is
+  /// over.
   void end_step();
   bool over() const noexcept { return over_; }
-  /// It is over though the bodies may still rub against each other.
-  bool faded() const noexcept { return faded_; }
+  /// Returns true if the contact ended because its force became negligible; the bodies may still
+  /// touch.
+  bool ended_on_low_force() const noexcept { return ended_on_low_force_; }
 
   std::size_t first() const noexcept { return first_; }
-  /// Index of the body that it began with.
+  /// Index of the body that the contact began with, besides the first.
   std::size_t second() const noexcept { return state_->pairs[pairs_[0]].second; }
-  /// Index of the body besides the first that took most impulse.
+  /// Index of the body, besides the first, that received the largest impulse.
   std::size_t most_pressed() const;
-  /// Both as they were when it began.
+  /// Both bodies at the beginning of the contact.
   const ContactBody& given_first() const noexcept { return given_first_; }
   const ContactBody& given_second() const noexcept { return given_second_; }
   View<const std::uint32_t> pairs() const noexcept { return {pairs_.data(), pair_count_}; }
   bool acts() const noexcept { return acts_; }
-  /// Since its begin, s: now, and when a force last acted.
+  /// Time since the beginning of the contact, s: now, and when a force last acted.
   double time_s() const noexcept { return time_s_; }
   double duration_s() const noexcept { return duration_s_; }
-  /// The outcome as far as the contact has come; `swapped`: the first is B.
+  /// The outcome up to now; `swapped`: the first body is B.
   ContactOutcome outcome(bool swapped) const;
 
-  // Bounds that hold whatever follows, for two bodies that nothing else pushes. They rest on what
-  // every step keeps: momentum, no gain of energy but by one rebound, which restores at most
-  // `most_restored` of what was lost before it.
+  // Bounds on the final result, for two bodies on which nothing else acts. They follow from what
+  // every step guarantees: momentum is conserved, and energy grows only in a rebound, which
+  // restores at most `most_restored` of the energy lost before it.
 
-  /// Impulse on the first so far, world axes, N·s.
+  /// Impulse on the first body so far, world axes, N·s.
   Eigen::Vector3d impulse_ns() const;
-  /// No more impulse can follow than this, N·s.
-  double most_left_ns() const;
-  /// The whole impulse is no smaller than this, N·s,
-  double least_whole_ns() const;
-  /// and no larger than this.
-  double most_whole_ns() const;
-  /// Rounding of impulses, N·s, and of energies, J: both are differences of far larger numbers.
+  /// Upper bound of the impulse that can still follow, N·s.
+  double max_remaining_impulse_ns() const;
+  /// Lower bound of the total impulse, N·s.
+  double min_total_impulse_ns() const;
+  /// Upper bound of the total impulse, N·s.
+  double max_total_impulse_ns() const;
+  /// Rounding error of impulses, N·s, and of energies, J: both are differences of much larger
+  /// numbers.
   double rounding_ns() const;
   double rounding_j() const { return 1e-12 * energy_before_j_; }
   /// Kinetic energy lost so far, J.
   double dissipated_j() const { return std::max(0.0, dissipated_j_); }
-  /// The whole loss is no smaller than this, J,
-  double least_whole_j() const;
-  /// and no larger than this.
-  double most_whole_j() const;
-  /// Pieces moved so far.
+  /// Lower bound of the total loss of kinetic energy, J.
+  double min_total_loss_j() const;
+  /// Upper bound of the total loss of kinetic energy, J.
+  double max_total_loss_j() const;
+  /// Number of outline pieces moved so far: the amount of work done.
   std::uint64_t work() const noexcept { return pieces_; }
 
 private:
+  /// Sums of a step over all pairs; see `PassSums`.
   struct Totals {
     bool approaching = false;
     double pressing = 0.0;
     double closing = 0.0;
-    double passing = 0.0;
-    double fresh = 0.0;
+    double speed = 0.0;
+    double unused_crush = 0.0;
     double weight = 0.0;
     double point_x = 0.0;
     double point_y = 0.0;
   };
-  /// Change of kinetic energy along a set of forces or impulses.
+  /// Change of kinetic energy when a share k of a set of forces (or impulses) is applied: slope·k +
+  /// curvature·k²/2.
   struct EnergyChange {
     double slope = 0.0;
-    double bend = 0.0;
+    double curvature = 0.0;
     void add(const PlanarBody& body, const PlanarForce& f);
   };
-  /// Change of a body's velocity by all contacts, m/s.
-  struct Undergone {
+  /// Velocity change of a body by all contacts that act on it, m/s.
+  struct VelocityChange {
     Eigen::Vector2d now_mps = Eigen::Vector2d::Zero();
-    double most_mps = 0.0;  ///< greatest after a step with a force
-    /// What counts may be more: others pressed on it at the same time, or not all steps count.
+    double most_mps = 0.0;  ///< greatest length after a step with a force
+    /// The delta-v of this contact alone may overstate the change: other contacts act on the body
+    /// at the same time, or some steps are excluded.
     bool partial = false;
   };
-  /// Relative velocity where the force of a step acts.
-  struct AtForce {
-    double closing_mps = 0.0;  ///< against the force, positive while the bodies approach
-    double passing_mps = 0.0;  ///< its length
+  /// Relative velocity of both bodies at the point where the force of the step acts.
+  struct ForceVelocity {
+    double closing_mps = 0.0;  ///< component against the force, positive while the bodies approach
+    double speed_mps = 0.0;    ///< magnitude
   };
   const PlanarBody& motion_of(std::size_t body) const { return state_->bodies[body].motion; }
   PlanarBody& motion_of(std::size_t body) { return state_->bodies[body].motion; }
-  void feel_pair(BodyPair& pair, std::size_t place, PassSettings& settings);
+  void compute_pair_forces(BodyPair& pair, std::size_t place, PassSettings& settings);
   void add_sums(const PassSums& sums, bool own_is_first);
-  void push();
-  AtForce at_force() const;
-  void rebound(double passing_mps);
-  void add_taken(bool from_first, double share);
-  double moving_j() const;
-  double speed_at_rims() const;
+  void apply_impulses();
+  ForceVelocity velocity_at_force() const;
+  void rebound(double speed_mps);
+  void add_excluded(bool from_first, double share);
+  double kinetic_energy_j() const;
+  double relative_speed_bound() const;
   double relative_speed() const;
-  double most_speed_mps() const;
-  BodyContact describe(bool is_first) const;
-  static void limit(const Undergone& undergone, double inverse_mass, BodyContact& contact);
+  double max_later_speed_mps() const;
+  BodyContact body_result(bool is_first) const;
+  static void limit_delta_v(const VelocityChange& change, double inverse_mass,
+                            BodyContact& contact);
 
   ContactWorkspace::State* state_ = nullptr;
   ContactOptions options_;
@@ -207,50 +221,51 @@ private:
   std::array<const PressedBody*, most_others> others_{};
   PlanarBody start_first_;
   PlanarBody start_second_;
-  PlanarBody end_first_;  ///< when the force last acted
+  PlanarBody end_first_;  ///< state when a force last acted
   PlanarBody end_second_;
   MotionRecord record_;
-  double rim_m_ = 0.0;  ///< no outline is further from its body's centre of mass
+  double radius_m_ = 0.0;  ///< no outline point is further from its centre of mass
 
   bool over_ = false;
-  bool faded_ = false;
+  bool ended_on_low_force_ = false;
   bool acts_ = false;
-  Totals totals_;                 ///< of this step
-  PlanarForce on_first_;          ///< in this step, about its centre of mass
-  PlanarForce since_rebound_;     ///< impulse on the first, about the origin
-  PlanarForce impulse_on_first_;  ///< in the whole contact, about its centre of mass
-  double pushed_s_ = 0.0;         ///< how long it acted in this step
-  double counted_ = 1.0;          ///< share of this step's force that counts, see `weigh_step`
-  double strong_s_ = 0.0;         ///< since the begin: last force that counts whole, s
-  PlanarForce taken_first_;       ///< impulses on both, see `take_back`
-  PlanarForce taken_second_;
-  Undergone of_first_;
-  Undergone of_second_;
+  Totals totals_;         ///< sums of this step
+  PlanarForce on_first_;  ///< force in this step, moment about its centre of mass
+  /// Impulse on the first body since the last rebound, moment about the origin.
+  PlanarForce since_rebound_;
+  PlanarForce impulse_on_first_;  ///< impulse of the contact, moment about its centre of mass
+  double applied_s_ = 0.0;        ///< time for which the force of this step was applied
+  double counted_share_ = 1.0;    ///< share of the force that counts, see `compute_counted_share`
+  double last_strong_s_ = 0.0;    ///< time of the last force that counts entirely, s
+  PlanarForce excluded_first_;    ///< impulses that do not count, see `exclude`
+  PlanarForce excluded_second_;
+  VelocityChange change_first_;
+  VelocityChange change_second_;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;
-  double since_s_ = 0.0;            ///< from the last pass until this one
-  double speed_mps_ = 0.0;          ///< of points against each other, at most
-  double acceleration_mps2_ = 0.0;  ///< that the force of the last step caused
-  double moved_m_ = 0.0;            ///< in the last step
+  double pass_interval_s_ = 0.0;    ///< time from the last evaluation of the forces to this one
+  double speed_mps_ = 0.0;          ///< upper bound of the relative speed of any two points
+  double acceleration_mps2_ = 0.0;  ///< relative acceleration by the force of the last step
+  double travel_bound_m_ = 0.0;     ///< upper bound of the relative travel in the last step
   double energy_before_j_ = 0.0;
   double speed_before_mps_ = 0.0;
-  double momentum_before_ns_ = 0.0;  ///< of the bodies against each other
-  double speeds_before_mps_ = 0.0;
-  double dissipated_j_ = 0.0;
-  double lost_j_ = 0.0;  ///< since the last rebound
-  double most_pressing_ = 0.0;
-  double most_closing_mps_ = 0.0;
-  double most_passing_mps_ = 0.0;
-  double last_passing_mps_ = 0.0;
-  double fastest_passing_mps_ = 0.0;
-  double closing_mps_ = 0.0;
+  double momentum_before_ns_ = 0.0;  ///< momentum of the relative motion at first contact
+  double speed_sum_before_mps_ = 0.0;
+  double dissipated_j_ = 0.0;  ///< kinetic energy lost so far
+  double lost_since_rebound_j_ = 0.0;
+  double max_pressing_since_rebound_ = 0.0;
+  double max_closing_since_rebound_mps_ = 0.0;
+  double max_speed_since_rebound_mps_ = 0.0;
+  double last_speed_mps_ = 0.0;   ///< relative speed at the last force
+  double max_speed_mps_ = 0.0;    ///< greatest relative speed at the contact
+  double max_closing_mps_ = 0.0;  ///< greatest closing speed of the contact
   double restitution_ = 0.0;
-  double impulse_ns_ = 0.0;  ///< sum of lengths
-  double late_ns_ = 0.0;
-  double late_from_s_ = 0.0;
-  double late_m_ = 0.0;  ///< travel since then
-  double quiet_m_ = 0.0;
+  double impulse_ns_ = 0.0;          ///< sum of the magnitudes
+  double window_impulse_ns_ = 0.0;   ///< impulse in the time window that detects the end
+  double window_start_s_ = 0.0;      ///< beginning of that window
+  double window_travel_m_ = 0.0;     ///< relative travel in that window
+  double forceless_travel_m_ = 0.0;  ///< relative travel since a force last acted
   double friction_j_ = 0.0;
   double crush_first_j_ = 0.0;
   double crush_second_j_ = 0.0;
@@ -263,7 +278,7 @@ private:
   std::uint64_t pieces_ = 0;
 };
 
-/// Whether there is anything to simulate: a body that moves, and one that gives way.
+/// Returns true if at least one body is movable and at least one is deformable.
 bool can_press(const Vehicle& a, const Vehicle& b);
 
 }  // namespace detail

@@ -1,5 +1,5 @@
-// Resistance over crush depth at eight places of a body. Included once per target. Products and
-// sums are rounded one by one, so that every vector unit has the same bits.
+// Force-deflection curves at eight places of a body. Included once per vector target. Products and
+// sums are rounded separately, so that every vector unit gives the same bits.
 #if defined(CRASHRANK_CRUSH_CURVES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CRASHRANK_CRUSH_CURVES_INL
 #undef CRASHRANK_CRUSH_CURVES_INL
@@ -17,9 +17,9 @@ namespace crashrank::detail::HWY_NAMESPACE {
 
 HWY_INLINE F8 positive(F8 a) { return maximum(a, all(0.0F)); }
 
-/// Resistance at one place of a body, per metre of outline of one height band, over crush depth:
-/// yield + slope·c, steeper by `hardening` from `length` on and by `rigid` after `hardening_length`
-/// more. Strictly rising.
+/// Force-deflection curve at a place of a body, per metre of outline in one height band: yield +
+/// slope·c, steeper by `hardening` from depth `length` on and by `rigid` from `hardening_length`
+/// further on. Strictly increasing.
 struct CrushCurves {
   F8 yield;             ///< N/m
   F8 slope;             ///< N/m², > 0
@@ -28,12 +28,13 @@ struct CrushCurves {
   F8 hardening_length;  ///< m
   F8 rigid;             ///< N/m²
 
-  /// No curve is longer than the material there is: what the crush of a thin place has used up is
-  /// rigid, so that nothing leaves a body through its back. `thickness` in the measure of depths.
+  /// Limits the curve to the material present: once the crush length of a thin part is used up, the
+  /// part is rigid, so that nothing passes through the body. `thickness`: chord through the body,
+  /// weighted as depths are.
   HWY_INLINE void shorten(F8 thickness) {
-    constexpr float folds = 0.35F;
+    constexpr float crush_share = 0.35F;
     constexpr float hardens = 0.2F;
-    length = minimum(length, all(folds) * thickness);
+    length = minimum(length, all(crush_share) * thickness);
     hardening_length = minimum(hardening_length, all(hardens) * thickness);
   }
   HWY_INLINE F8 force_at(F8 depth) const {
@@ -42,7 +43,8 @@ struct CrushCurves {
   }
 };
 
-/// The inverse of curves: corners, and compliance from each corner to the next.
+/// Inverse of the curves: force and depth at the corners, and the compliance from each corner to
+/// the next.
 struct CrushCorners {
   F8 force[3];       ///< N/m
   F8 depth[3];       ///< m
@@ -68,15 +70,16 @@ struct CrushCorners {
   }
 };
 
-/// What two bodies bear that are pressed together by a total depth.
+/// Division of a total depth between two bodies pressed together.
 struct SharedCrush {
-  F8 force;    ///< N/m, the same on both
-  F8 depth_a;  ///< A's part of the depth, m
+  F8 force;    ///< N/m, equal on both
+  F8 depth_a;  ///< depth of A, m
 };
 
-/// Splits a depth so that both curves bear the same force, wherever they go. The sum of both depths
-/// is piecewise linear in the force and never falls: the last of its six corners below the depth is
-/// the one at the greatest force, and the rest of the way is straight.
+/// Divides a depth between two curves at equal force, for any shape of the curves. The sum of both
+/// depths is piecewise linear and non-decreasing in the force, with six corners. Find the corner
+/// with the greatest force whose depth sum is below the given depth; from there the relation is
+/// linear.
 HWY_INLINE SharedCrush share_hardened(const CrushCurves& curve_a, const CrushCurves& curve_b,
                                       F8 depth) {
   const CrushCorners a(curve_a);
@@ -107,10 +110,10 @@ HWY_INLINE SharedCrush share_hardened(const CrushCurves& curve_a, const CrushCur
   return {force + rise, minimum(depth_a + rise * compliance_a, depth)};
 }
 
-/// Splits a depth so that both curves bear the same force; of the lanes `where`.
+/// Divides a depth between two curves at equal force; results are valid in the lanes `where`.
 HWY_INLINE SharedCrush share_crush(const CrushCurves& a, const CrushCurves& b, F8 depth, M8 where) {
-  // Where neither hardens yet: yield_a + slope_a·a = yield_b + slope_b·(depth - a), and what does
-  // not yield leaves all of the depth to the other.
+  // Where neither curve hardens yet: yield_a + slope_a·a = yield_b + slope_b·(depth - a). A body
+  // below its yield force leaves the whole depth to the other.
   const F8 even = (b.slope * depth + (b.yield - a.yield)) / (a.slope + b.slope);
   const F8 in_a = minimum(positive(even), depth);
   const M8 hardens = either(less(a.length, in_a), less(b.length, depth - in_a));
@@ -118,58 +121,61 @@ HWY_INLINE SharedCrush share_crush(const CrushCurves& a, const CrushCurves& b, F
   return {select(less(all(0.0F), even), a.yield + a.slope * in_a, b.yield + b.slope * depth), in_a};
 }
 
-/// 0 to 1 over the width of a rail, 1/2 at 0, so that nothing jumps where a body slides along.
+/// Rises from 0 to 1 over the width of a rail, 1/2 at 0: the force stays continuous where a body
+/// slides across the edge of the core.
 HWY_INLINE F8 core_ramp(F8 inward_m) {
   constexpr float per_ramp = 1.0F / 0.1F;
   return minimum(positive(inward_m * all(per_ramp) + all(0.5F)), all(1.0F));
 }
 
-/// The curves where a force along (nx, ny), unit, body axes, enters at (x, y): front or rear and
-/// flank blend with the squares of the direction's parts.
+/// Force-deflection curves for a force along the unit vector (nx, ny), body axes, at (x, y). The
+/// laws of front or rear and of the flank are blended with the squares of the components.
 HWY_INLINE CrushCurves crush_curves(const CrushResponse& body, std::size_t band, F8 x, F8 y, F8 nx,
                                     F8 ny) {
-  // How far a place is in the core: 1 inside, 0 beside it.
-  const F8 aside = absolute(y);
-  const F8 in_rails = core_ramp(all(body.rails) - aside);
-  const F8 in_cage = maximum(core_ramp(all(body.cage) - aside), in_rails);
-  const F8 caged = minimum(core_ramp(all(body.cage_front) - x), core_ramp(x - all(body.cage_rear)));
-  const F8 in_core = in_rails + (in_cage - in_rails) * caged;
+  // Degree to which a place is in the core: 1 inside, 0 outside.
+  const F8 lateral = absolute(y);
+  const F8 in_rails = core_ramp(all(body.rails) - lateral);
+  const F8 in_cage = maximum(core_ramp(all(body.cage) - lateral), in_rails);
+  const F8 along_cage =
+      minimum(core_ramp(all(body.cage_front) - x), core_ramp(x - all(body.cage_rear)));
+  const F8 in_core = in_rails + (in_cage - in_rails) * along_cage;
   const F8 band_share = all(body.share[band]);
   const F8 of_mean = all(body.outside) + all(body.inside - body.outside) * in_core;
   const F8 share = band_share * of_mean;
-  // Doors bear half of the mean law from the skin on: then a car of 1.7 t has the 10 kN over the
-  // first 0.15 m under a cylinder of 0.3 m that FMVSS 214 asks for.
+  // Doors have half of the mean strength from the skin on. A car of 1.7 t then resists a cylinder
+  // of 0.3 m with the mean force of 10 kN over the first 0.15 m that FMVSS 214 requires.
   constexpr float door = 0.5F;
-  const F8 side_share = band_share * maximum(of_mean, all(door) * caged);
-  const F8 ahead = nx * nx;
-  const F8 across = ny * ny;
-  const M8 from_ahead = less(nx, all(0.0F));
+  const F8 side_share = band_share * maximum(of_mean, all(door) * along_cage);
+  const F8 end_weight = nx * nx;
+  const F8 side_weight = ny * ny;
+  const M8 from_front = less(nx, all(0.0F));
   const auto end = [&](float front, float rear) {
-    return ahead * select(from_ahead, all(front), all(rear));
+    return end_weight * select(from_front, all(front), all(rear));
   };
   CrushCurves curve;
-  curve.yield =
-      share * end(body.front.yield, body.rear.yield) + side_share * across * all(body.flank.yield);
-  curve.slope =
-      share * end(body.front.slope, body.rear.slope) + side_share * across * all(body.flank.slope);
-  const F8 engine = select(from_ahead, all(body.engine) * in_rails, all(0.0F));
+  curve.yield = share * end(body.front.yield, body.rear.yield) +
+                side_share * side_weight * all(body.flank.yield);
+  curve.slope = share * end(body.front.slope, body.rear.slope) +
+                side_share * side_weight * all(body.flank.slope);
+  const F8 engine = select(from_front, all(body.engine) * in_rails, all(0.0F));
   curve.length =
-      ahead * (select(from_ahead, all(body.front.length), all(body.rear.length)) - engine) +
-      across * all(body.flank.length);
+      end_weight * (select(from_front, all(body.front.length), all(body.rear.length)) - engine) +
+      side_weight * all(body.flank.length);
   curve.hardening = band_share * in_core * all(body.hardening);
   curve.hardening_length = all(body.hardening_length);
   curve.rigid = band_share * in_core * all(body.rigid_slope);
   return curve;
 }
 
-/// How far places pressed along nx (body axes) lie inside the passenger compartment, m; at most 0
-/// outside and for bodies without one. From the front the engine arrives before the surface.
+/// Depth inside the passenger compartment, m, of places pressed along nx (body axes); 0 or less
+/// outside it and for bodies without one. In the front the engine reaches the compartment before
+/// the surface does.
 HWY_INLINE F8 inside_compartment(const CrushResponse& body, F8 x, F8 y, F8 nx) {
-  const F8 aside = absolute(y);
-  const M8 by_engine = both(less(nx, all(0.0F)), less(aside, all(body.rails)));
+  const F8 lateral = absolute(y);
+  const M8 by_engine = both(less(nx, all(0.0F)), less(lateral, all(body.rails)));
   const F8 engine = select(by_engine, nx * nx * all(body.engine), all(0.0F));
   return minimum(minimum(all(body.cage_front) + engine - x, x - all(body.cage_rear)),
-                 all(body.cage) - aside);
+                 all(body.cage) - lateral);
 }
 
 }  // namespace crashrank::detail::HWY_NAMESPACE

@@ -10,8 +10,8 @@
 
 namespace crashrank::detail {
 
-/// A body's strength with everything converted once: curves anywhere on it are a few products. Both
-/// are in crush_curves-inl.hpp.
+/// A body's strength, converted to single precision once per contact. The force-deflection curve at
+/// any place of the body then takes a few products (`crush_curves` in crush_curves-inl.hpp).
 struct CrushResponse {
   struct Side {
     float yield = 0.0F;   ///< N/m², per metre of outline and of height
@@ -54,17 +54,17 @@ struct CrushResponse {
   Side flank;
   Side rear;
   // Places in body axes, m.
-  float rails = 0.0F;  ///< half the distance of the outer sides of the rails
+  float rails = 0.0F;  ///< half the distance between the outer sides of the rails
   float cage = 0.0F;   ///< half the width of the passenger compartment
   float cage_front = 0.0F;
   float cage_rear = 0.0F;
-  float engine = 0.0F;   ///< length of the front that does not crush
-  float inside = 1.0F;   ///< factor of the strength in the core
-  float outside = 1.0F;  ///< and beside it
+  float engine = 0.0F;   ///< length of the rigid engine in the front
+  float inside = 1.0F;   ///< strength factor in the core
+  float outside = 1.0F;  ///< strength factor outside the core
   float hardening = 0.0F;
   float hardening_length = 0.0F;
   float rigid_slope = 0.0F;
-  std::array<float, profile_bands> share{};  ///< of the strength, by height band
+  std::array<float, profile_bands> share{};  ///< share of the strength in each height band
   std::size_t cabin_band = 0;                ///< lowest height band of the compartment
   bool rigid = false;
 };

@@ -37,7 +37,8 @@ constexpr double highest_edge_m = 1.3;
 
 double logistic(double z) { return 1.0 / (1.0 + std::exp(-z)); }
 
-/// The argument of a logistic curve: at zero exposure, and what the exposure adds, >= 0.
+/// Argument of a logistic curve: its value at zero exposure, and the increase by the exposure, >=
+/// 0.
 struct Argument {
   double at_zero = 0.0;
   double gain = 0.0;
@@ -50,7 +51,8 @@ double risk_over_zero(const Argument& z) {
   return -std::expm1(-z.gain) * logistic(z.at_zero + z.gain);
 }
 
-/// Logistic curve of an occupant: intercept, 1/(m/s), and what side and rear add to the front.
+/// Logistic curve for occupants: intercept, slope per m/s, and the differences of side and rear
+/// from front.
 struct OccupantCurve {
   double intercept;
   double per_mps;
@@ -62,8 +64,8 @@ constexpr OccupantCurve tum_occupant{-4.457, 0.177, 0.244, -0.431};
 constexpr OccupantCurve malliaris_mais3{-5.820, 0.202 / mph, 0.556, -2.170};
 constexpr OccupantCurve malliaris_fatal{-9.032, 0.198 / mph, 1.462, -1.921};
 
-/// The coefficient of the direction, that of the front being 0: a weighted mean of the side's and
-/// of the front's or the rear's. Even in the angle and of period 360 degrees.
+/// Coefficient of the direction of force relative to the front: a weighted mean of the coefficient
+/// of the side and that of the front or rear. Even in the angle, with period 360 degrees.
 double direction_coefficient(const OccupantCurve& curve, double pdof_deg) {
   const double angle = std::abs(std::remainder(pdof_deg, 360.0)) * std::numbers::pi / 180.0;
   const double along = std::cos(angle);
@@ -79,7 +81,8 @@ double occupant_risk(const OccupantCurve& curve, const Exposure& e) {
   return risk_over_zero(z);
 }
 
-/// No logistic: intrusion multiplies the odds by exp(gain), as it does in a logistic curve.
+/// Not a logistic curve; intrusion multiplies the odds by exp(gain), as it does in a logistic
+/// curve.
 double joksch(const Exposure& e) {
   const double share = std::max(e.delta_v_mps, 0.0) / 31.74;
   const double risk = std::min(share * share * share * share, 1.0);
@@ -102,8 +105,8 @@ double occupant_risk(RiskModel model, const Exposure& e) {
   return joksch(e);
 }
 
-/// Monfort & Mueller, standardised with the means of their sample. The edge's coefficient in the
-/// MAIS3+ curve depends on the speed.
+/// Monfort & Mueller, centred on the means of their sample. The coefficient of the leading edge in
+/// the MAIS3+ curve depends on the speed.
 Argument monfort(double v_mps, double edge_m, const PedestrianDescription& person, bool fatal) {
   constexpr double mean_speed_kmh = 42.79;
   const double speed = v_mps / kmh;
@@ -145,7 +148,7 @@ Argument pedestrian_argument(RiskModel model, double v_mps, double edge_m,
   return monfort(v_mps, edge_m, person, true);
 }
 
-/// The speed at which the pedestrian's curve has the risk of this person, m/s.
+/// Speed at which the pedestrian curve has the risk of this person, m/s.
 double pedestrian_speed_mps(const Exposure& e) {
   // 10 % MAIS3+ (Lubbe et al. 2022).
   constexpr double pedestrian_kmh = 29.0;
@@ -161,12 +164,12 @@ PedestrianDescription description_of(const Exposure& e) {
   return e.person == Person::pedestrian ? e.description : PedestrianDescription{};
 }
 
-/// The largest risk of a person outside a car over the leading edges h. z0 and z = z0 + gain are
+/// Largest risk of a person outside a car over all leading-edge heights h. z0 and z = z0 + gain are
 /// linear in h, with the slopes z0' and z'. From 1 - p = (1 + exp(z0))/(1 + exp(z)):
 ///
 ///   d ln(1 - p)/dh = z0' · L(z0) - z' · L(z)
 ///
-/// - z0' >= 0 (all curves but Monfort & Mueller's MAIS3+): z' >= z0' there, so p never falls.
+/// - z0' >= 0 (all curves except Monfort & Mueller's MAIS3+): z' >= z0' there, so p never falls.
 /// - z0' < 0 <= z': p rises.
 /// - z0' < z' < 0: p rises while L(z)/L(z0) < z0'/z'. The logarithm of the left side has the slope
 ///   z' · (1 - L(z)) - z0' · (1 - L(z0)) >= 0, as L(z) >= L(z0) and |z'| < |z0'|. So p rises up to
@@ -187,7 +190,7 @@ double most_outside_risk(RiskModel model, const Exposure& e) {
   const auto rises = [&](const Argument& z) {
     return slope * logistic(z.at_zero + z.gain) > slope_at_zero * logistic(z.at_zero);
   };
-  // At lower speeds rounding decides the comparison: bound the risk over all edges at once.
+  // At lower speeds rounding would decide the comparison: bound the risk over all edges at once.
   constexpr double least_mps = 1e-3;
   const bool decides = speed > least_mps;
   if (decides && (!rises(first) || rises(last))) return most;
@@ -195,7 +198,8 @@ double most_outside_risk(RiskModel model, const Exposure& e) {
     const double middle = 0.5 * (low + high);
     (rises(at(middle)) ? low : high) = middle;
   }
-  // Of both factors of the risk the larger end: an upper bound within the last interval.
+  // Take the larger end value of each of the two factors of the risk: an upper bound within the
+  // last interval.
   const Argument left = at(low);
   const Argument right = at(high);
   most = std::max(most, -std::expm1(-right.gain) * logistic(left.at_zero + left.gain));

@@ -27,8 +27,8 @@ bool LoneContact::advance(int steps) {
   for (int i = 0; i < steps && !run_.over(); ++i) {
     const double step_s = run_.next_step_s();
     for (PressedBody& body : state_.bodies) body.motion.move(0.5 * step_s);
-    run_.feel(step_s);
-    run_.press();
+    run_.compute_forces(step_s);
+    run_.apply_forces();
     for (PressedBody& body : state_.bodies) body.motion.move(0.5 * step_s);
     run_.end_step();
   }

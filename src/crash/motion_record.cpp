@@ -8,7 +8,7 @@ Pose moved_pose(const Pose& given, const Eigen::Vector3d& center, const PlanarPl
   pose.translation.x() += now.x - start.x;
   pose.translation.y() += now.y - start.y;
   if (now.cosine == start.cosine && now.sine == start.sine) return pose;
-  // The origin turns about the centre of mass, as far as the heading has turned since the start.
+  // The origin rotates about the centre of mass by the change of heading since the start.
   pose.translation.x() +=
       (start.cosine - now.cosine) * center.x() - (start.sine - now.sine) * center.y();
   pose.translation.y() +=
@@ -36,7 +36,8 @@ void MotionRecord::add(double time_s, const PlanarBody& first, const PlanarBody&
   last_ = {time_s, place_of(first), place_of(second)};
   if (steps_ % stride_ == 0) {
     if (count_ == entries_.size()) {
-      // Entries 1, 2, ... are of steps 0, stride, 2·stride, ...: those of even multiples stay.
+      // Entries 1, 2, ... hold steps 0, stride, 2·stride, ...: keep the even multiples of the
+      // stride.
       count_ = 1;
       for (std::size_t i = 1; i < entries_.size(); i += 2) entries_[count_++] = entries_[i];
       stride_ *= 2;

@@ -9,15 +9,16 @@
 
 namespace crashrank::detail {
 
-/// Records where two bodies are while they press on each other, in constant memory: when it is full
-/// every second entry is dropped and from then on every second step is left out.
+/// Records the poses of two bodies during a contact in constant memory. When the memory is full, it
+/// drops every second entry and from then on records half as often.
 class MotionRecord {
 public:
-  /// Starts anew with both bodies at first contact.
+  /// Restarts the record with both bodies at first contact.
   void begin(const PlanarBody& first, const PlanarBody& second);
-  /// Both bodies after a step with a force, `time_s` since first contact, rising.
+  /// Adds both bodies after a step with a force; `time_s` since first contact has to rise.
   void add(double time_s, const PlanarBody& first, const PlanarBody& second);
-  /// The bodies' poses; `first` and `second` as given at first contact. `swapped`: the first is B.
+  /// Returns the recorded poses; `first` and `second` as given at first contact. `swapped`: the
+  /// first body is B.
   ContactMotion motion(const ContactBody& first, const ContactBody& second, bool swapped) const;
 
 private:
@@ -27,7 +28,7 @@ private:
     PlanarPlace second;
   };
   std::array<Entry, ContactMotion::most - 1>
-      entries_;  ///< first contact, then every stride-th step
+      entries_;  ///< first contact, then every `stride_`-th step
   Entry last_;
   std::size_t count_ = 0;
   std::uint32_t steps_ = 0;

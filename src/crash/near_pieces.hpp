@@ -9,15 +9,15 @@
 
 namespace crashrank::detail {
 
-/// What is kept of a block's pieces while they are near the other body, m.
+/// State of a block's outline pieces while they are near the other body, m.
 struct alignas(64) PieceStates {
-  std::array<float, block_pieces> s{};         ///< advance along the normal through the other body
-  std::array<float, block_pieces> furthest{};  ///< the greatest s so far
-  std::array<float, block_pieces> way{};       ///< distance travelled inside the other body
-  std::array<float, block_pieces> ahead{};     ///< of it, along the other body's x
+  std::array<float, block_pieces> s{};         ///< advance along the normal inside the other body
+  std::array<float, block_pieces> furthest{};  ///< greatest `s` so far
+  std::array<float, block_pieces> path{};      ///< path length inside the other body
+  std::array<float, block_pieces> path_x{};    ///< part of the path along the other body's x axis
 };
 
-/// How a block's pieces give way where they press themselves: see CrushCurves.
+/// Force-deflection curves of a block's pieces for their own body's material: see CrushCurves.
 struct alignas(64) PieceCurves {
   std::array<float, block_pieces> yield{};
   std::array<float, block_pieces> slope{};
@@ -27,33 +27,34 @@ struct alignas(64) PieceCurves {
   std::array<float, block_pieces> rigid{};
 };
 
-/// Blocks of a group that are in a list, a bit for each.
+/// A group of eight blocks with a bit for each block that is in the list.
 struct NearGroup {
   std::uint32_t group = 0;
   std::uint8_t listed = 0;
 };
 
-/// Blocks of one body's outline whose pieces may press into another body.
+/// The pieces of one outline (see `OutlinePiece`) that may press into another body, as a list of
+/// blocks.
 struct NearPieces {
-  std::vector<NearGroup> groups;        ///< of the present list: the first `count`
-  std::vector<PieceStates> states;      ///< by block; of those that are listed
-  std::vector<PieceCurves> curves;      ///< likewise
-  std::vector<std::uint32_t> listed;    ///< by block: number of the last list that it was in
-  std::vector<std::uint16_t> followed;  ///< by block: its pieces in that list, a bit for each
-  std::size_t count = 0;                ///< groups in the present list
-  std::size_t pieces = 0;               ///< moved by the last pass
-  std::uint32_t list = 0;               ///< number of the present list
-  std::uint32_t begun = 0;              ///< lists since this number are of the same two bodies
-  double valid_for_m = -1e9;            ///< relative travel until the list has to be made anew
+  std::vector<NearGroup> groups;       ///< current list: the first `count`
+  std::vector<PieceStates> states;     ///< by block; valid for listed blocks
+  std::vector<PieceCurves> curves;     ///< by block; valid for listed blocks
+  std::vector<std::uint32_t> listed;   ///< by block: number of the last list that contained it
+  std::vector<std::uint16_t> tracked;  ///< by block: a bit for each piece in that list
+  std::size_t count = 0;               ///< groups in the current list
+  std::size_t pieces = 0;              ///< pieces moved by the last pass
+  std::uint32_t list = 0;              ///< number of the current list
+  std::uint32_t first_list = 0;        ///< number of the first list of this pair of bodies
+  double valid_for_m = -1e9;           ///< relative travel until a new list is needed
 
-  /// Room for the blocks of so many pieces.
+  /// Allocates room for outlines with up to `most_pieces` pieces.
   void resize(std::size_t most_pieces);
-  /// Forgets everything. O(1).
+  /// Clears all states for a new pair of bodies. O(1).
   void begin();
-  /// The two meet again: what pieces had crushed by then stays crushed. O(1).
-  void resume();
-  /// No list has been made since `begin`.
-  bool begins() const noexcept { return valid_for_m < -1e6; }
+  /// Starts a further contact of the same bodies; what the pieces have crushed is kept. O(1).
+  void begin_further_contact();
+  /// Returns true if no list has been made since `begin`.
+  bool is_new() const noexcept { return valid_for_m < -1e6; }
 };
 
 }  // namespace crashrank::detail

@@ -6,9 +6,10 @@
 
 namespace crashrank::detail {
 
-/// Whether `p` is the second of the two bodies in the one order that every computation on a pair
-/// uses, so that exchanging the bodies changes no bit of it. Decided by what the bodies are, then
-/// by where they are and how they move; bodies that are equal in all of it coincide.
+/// Returns true if `p` comes second in the fixed order in which every computation treats two
+/// bodies; exchanging the arguments of a computation then changes no bit of its result. The order
+/// compares the vehicles, then poses and velocities; bodies that are equal in all of these
+/// coincide.
 inline bool goes_second(const ContactBody& p, const ContactBody& q) {
   const auto key = [](const ContactBody& body) {
     const Vehicle& v = *body.vehicle;

@@ -1,4 +1,5 @@
-// Lists of pieces of one body that may press into another. Included once per target.
+// Lists of the outline pieces of one body that may press into another. Included once per vector
+// target.
 #if defined(CRASHRANK_PIECE_LISTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CRASHRANK_PIECE_LISTS_INL
 #undef CRASHRANK_PIECE_LISTS_INL
@@ -21,15 +22,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace crashrank::detail::HWY_NAMESPACE {
 
-/// A piece that never presses has advanced so far, which no step changes.
-inline constexpr float never = -1e9F;
+/// Advance of a piece that never presses: so low that no step changes it.
+inline constexpr float never_presses = -1e9F;
 
-/// Begins to follow pieces of a block, a bit for each in `which`; those that lie too deep inside
-/// never press. Of what they crushed in an earlier contact of the two they press no deeper part
-/// again: as far as they had advanced along their normals, and no further than they had travelled
+/// Starts to track pieces of a block, a bit for each in `which`. Pieces that lie too deep inside
+/// the other body never press. After an earlier contact of the two bodies, pieces press only beyond
+/// the depth that they have crushed: the smaller of their advance along the normal and their path
 /// inside.
-inline void begin_pieces(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
-                         float allowed_m, std::uint32_t which, PieceStates& states) {
+inline void start_tracking(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
+                           float allowed_m, std::uint32_t which, PieceStates& states) {
   const Silhouettes& target = q.pressed->vehicle->silhouettes;
   PieceStates begun;
   for (std::size_t h = 0; h < block_pieces; h += 8) {
@@ -38,11 +39,11 @@ inline void begin_pieces(const PressQuery& q, const PieceBlock& block, const Pie
     const F8 at_x = all(q.to.c) * x - all(q.to.s) * y + all(q.to.x);
     const F8 at_y = all(q.to.s) * x + all(q.to.c) * y + all(q.to.y);
     const F8 least = depths_at(target, block.band, at_x, at_y).least();
-    const F8 crushed = minimum(load(states.way.data() + h), load(states.furthest.data() + h));
+    const F8 crushed = minimum(load(states.path.data() + h), load(states.furthest.data() + h));
     const M8 any = less(all(0.0F), crushed);
-    // From where it is now: the way to the surface first.
+    // Measured from the present position, outside the body: add the distance to the surface.
     store(select(any, crushed + positive(-least), all(0.0F)), begun.furthest.data() + h);
-    const F8 s = select(less(all(allowed_m), least), all(never), all(0.0F));
+    const F8 s = select(less(all(allowed_m), least), all(never_presses), all(0.0F));
     store(select(any, all(0.0F), s), begun.s.data() + h);
   }
   const std::vector<std::uint8_t>& in_joint = q.pusher->vehicle->in_joint;
@@ -50,16 +51,16 @@ inline void begin_pieces(const PressQuery& q, const PieceBlock& block, const Pie
     if ((which >> k & 1U) == 0) continue;
     states.s[k] = begun.s[k];
     states.furthest[k] = begun.furthest[k];
-    if (!in_joint.empty() && in_joint[block.first + k] != 0) states.s[k] = never;
+    if (!in_joint.empty() && in_joint[block.first + k] != 0) states.s[k] = never_presses;
     if (q.settings->neighbours.size() < 2) continue;
     const OutlinePiece& piece = q.pusher->vehicle->profile->pieces[block.first + k];
-    if (is_hidden(*q.pusher, piece, block.band, *q.settings)) states.s[k] = never;
+    if (is_hidden(*q.pusher, piece, block.band, *q.settings)) states.s[k] = never_presses;
   }
 }
 
-/// How the block's pieces give way themselves.
-inline void bend_block(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
-                       PieceCurves& curves) {
+/// Computes the force-deflection curves of the block's pieces for their own body's material.
+inline void compute_block_curves(const PressQuery& q, const PieceBlock& block,
+                                 const PieceRows& rows, PieceCurves& curves) {
   for (std::size_t h = 0; h < block_pieces; h += 8) {
     CrushCurves c = crush_curves(q.pusher->response, block.band, load(rows.x.data() + h),
                                  load(rows.y.data() + h), -load(rows.normal_x.data() + h),
@@ -83,19 +84,19 @@ HWY_INLINE CrushCurves load_curves(const PieceCurves& curves, std::size_t first)
           load(curves.rigid.data() + first)};
 }
 
-/// Centres and extents of eight boxes in the other body's axes, m.
-struct CarriedBoxes {
+/// Centres and half extents of eight boxes in the axes of the other body, m.
+struct TransformedBoxes {
   F8 x, y, reach_x, reach_y;
 };
 
-HWY_INLINE CarriedBoxes carry_boxes(const Carrier& to, const BlockGroup& group) {
+HWY_INLINE TransformedBoxes transform_boxes(const RelativeMotion& to, const BlockGroup& group) {
   const F8 own_x = load(group.x.data());
   const F8 own_y = load(group.y.data());
   const F8 half_x = load(group.half_x.data());
   const F8 half_y = load(group.half_y.data());
   const F8 c = all(std::abs(to.c));
   const F8 s = all(std::abs(to.s));
-  CarriedBoxes at;
+  TransformedBoxes at;
   at.x = all(to.c) * own_x - all(to.s) * own_y + all(to.x);
   at.y = all(to.s) * own_x + all(to.c) * own_y + all(to.y);
   at.reach_x = c * half_x + s * half_y;
@@ -103,8 +104,8 @@ HWY_INLINE CarriedBoxes carry_boxes(const Carrier& to, const BlockGroup& group) 
   return at;
 }
 
-/// Which of them come nearer than `near_m` to a band's bounds.
-HWY_INLINE M8 are_near(const CarriedBoxes& at, const BandBounds& bounds, float near_m) {
+/// Boxes that come nearer than `near_m` to the bounds of a height band.
+HWY_INLINE M8 are_near(const TransformedBoxes& at, const BandBounds& bounds, float near_m) {
   const F8 reach_x = at.reach_x + all(near_m);
   const F8 reach_y = at.reach_y + all(near_m);
   return both(
@@ -112,15 +113,15 @@ HWY_INLINE M8 are_near(const CarriedBoxes& at, const BandBounds& bounds, float n
       both(less(all(bounds.min_y), at.y + reach_y), less(at.y - reach_y, all(bounds.max_y))));
 }
 
-/// Which of a group's blocks have pieces within `near_m` of a band's bounds.
+/// Blocks of a group with pieces within `near_m` of the bounds of a height band, a bit for each.
 HWY_INLINE std::uint32_t near_blocks(const PressQuery& q, const BlockGroup& group, float near_m) {
   const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[group.band];
-  return bits(are_near(carry_boxes(q.to, group), bounds, near_m));
+  return bits(are_near(transform_boxes(q.to, group), bounds, near_m));
 }
 
-/// Which of a block's pieces lie within `near_m` of the band's bounds, a bit for each. Piece by
-/// piece, whichever way they face: when one is followed does not depend on which others share its
-/// block, and none that turns later is found inside without having been followed there.
+/// Pieces of a block within `near_m` of the bounds of the height band, a bit for each. Each piece
+/// is decided by itself, whatever its direction: its tracking does not depend on the other pieces
+/// of its block, and no piece that turns later is first found inside the body.
 HWY_INLINE std::uint32_t near_pieces(const PressQuery& q, const PieceBlock& block,
                                      const PieceRows& rows, float near_m) {
   const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[block.band];
@@ -128,8 +129,9 @@ HWY_INLINE std::uint32_t near_pieces(const PressQuery& q, const PieceBlock& bloc
   for (std::size_t h = 0; h < block.count; h += 8) {
     const F8 x = load(rows.x.data() + h);
     const F8 y = load(rows.y.data() + h);
-    const CarriedBoxes at{all(q.to.c) * x - all(q.to.s) * y + all(q.to.x),
-                          all(q.to.s) * x + all(q.to.c) * y + all(q.to.y), all(0.0F), all(0.0F)};
+    const TransformedBoxes at{all(q.to.c) * x - all(q.to.s) * y + all(q.to.x),
+                              all(q.to.s) * x + all(q.to.c) * y + all(q.to.y), all(0.0F),
+                              all(0.0F)};
     which |= bits(are_near(at, bounds, near_m)) << h;
   }
   return which & ((1U << block.count) - 1U);
@@ -140,29 +142,29 @@ inline void list_block(const PressQuery& q, std::size_t i, float near_m, float a
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
   const PieceBlock& block = own.blocks[i];
   PieceStates& states = near.states[i];
-  // Not in the list before this one: nothing is known of the way that its pieces came.
-  const std::uint32_t before = near.listed[i] + 1 == near.list ? near.followed[i] : 0U;
-  if (near.listed[i] <= near.begun) states = {};
+  // The block was not in the previous list: the path of its pieces is not known.
+  const std::uint32_t before = near.listed[i] + 1 == near.list ? near.tracked[i] : 0U;
+  if (near.listed[i] <= near.first_list) states = {};
   if (before == 0 && !q.pusher->response.rigid) {
-    bend_block(q, block, own.rows[i], near.curves[i]);
+    compute_block_curves(q, block, own.rows[i], near.curves[i]);
   }
   const std::uint32_t now = near_pieces(q, block, own.rows[i], near_m);
   for (std::size_t k = 0; k < block_pieces; ++k) {
-    if ((now >> k & 1U) == 0) states.s[k] = never;
+    if ((now >> k & 1U) == 0) states.s[k] = never_presses;
   }
   if ((now & ~before) != 0) {
-    begin_pieces(q, block, own.rows[i], allowed_m, now & ~before, states);
+    start_tracking(q, block, own.rows[i], allowed_m, now & ~before, states);
   }
   near.listed[i] = near.list;
-  near.followed[i] = static_cast<std::uint16_t>(now);
+  near.tracked[i] = static_cast<std::uint16_t>(now);
 }
 
 inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
-  // A piece that lies this deep inside the other body at the start never presses, nor does one that
-  // is found inside later without having been followed there.
+  // A piece that lies deeper than this inside the other body at the start never presses; nor does a
+  // piece that is found inside later without having been tracked on its way in.
   constexpr float inside_m = 0.05F;
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
-  const float allowed_m = near.begins() ? inside_m : 0.0F;
+  const float allowed_m = near.is_new() ? inside_m : 0.0F;
   near.count = 0;
   ++near.list;
   for (std::size_t g = 0; g < own.groups.size(); ++g) {
@@ -171,7 +173,7 @@ inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
     for (std::uint32_t left = near_blocks(q, group, near_m); left != 0; left &= left - 1U) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       list_block(q, group.first + lane, near_m, allowed_m, near);
-      if (near.followed[group.first + lane] != 0) listed |= 1U << lane;
+      if (near.tracked[group.first + lane] != 0) listed |= 1U << lane;
     }
     if (listed == 0) continue;
     near.groups[near.count++] = {static_cast<std::uint32_t>(g), static_cast<std::uint8_t>(listed)};

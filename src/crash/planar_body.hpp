@@ -10,27 +10,29 @@ namespace crashrank::detail {
 
 inline constexpr double gravity_mps2 = 9.80665;
 
-/// Several times faster than std::hypot, which minds numbers that no body has.
+/// Euclidean length. Several times faster than std::hypot, which also handles overflow and
+/// underflow that do not occur here.
 inline double plane_length(double x, double y) { return std::sqrt(x * x + y * y); }
 
-/// A body that moves in the plane. Coordinates from the point of first contact, world axes.
+/// State of a rigid body in the plane: world axes, coordinates relative to the point of first
+/// contact.
 struct PlanarBody {
-  double inverse_mass = 0.0;     ///< 0: nothing moves it
+  double inverse_mass = 0.0;     ///< 1/kg; 0: fixed body
   double inverse_inertia = 0.0;  ///< 1/(kg·m²)
   double x = 0.0;                ///< centre of mass, m
   double y = 0.0;
-  double vx = 0.0;  ///< of it, m/s
+  double vx = 0.0;  ///< velocity of the centre of mass, m/s
   double vy = 0.0;
   double spin = 0.0;  ///< rad/s, left positive
   double cosine = 1.0;
   double sine = 0.0;
-  double turned = 0.0;  ///< since the start, rad
+  double turned = 0.0;  ///< heading change since the start, rad
 
   double energy() const {
     if (inverse_mass == 0.0) return 0.0;
     return 0.5 * ((vx * vx + vy * vy) / inverse_mass + spin * spin / inverse_inertia);
   }
-  void push(double impulse_x, double impulse_y, double moment) {
+  void apply_impulse(double impulse_x, double impulse_y, double moment) {
     vx += inverse_mass * impulse_x;
     vy += inverse_mass * impulse_y;
     spin += inverse_inertia * moment;
@@ -39,8 +41,8 @@ struct PlanarBody {
     x += seconds * vx;
     y += seconds * vy;
     if (spin == 0.0) return;
-    // Cayley's rotation: exact in length, the same on every machine; its angle is atan-close to
-    // the true one, (w·t)³/12 off for the small angles of a step.
+    // Cayley's rotation: preserves length and gives the same bits on every machine. Its angle
+    // differs from w·t by (w·t)³/12 for the small angles of a step.
     const double t = 0.5 * seconds * spin;
     const double scale = 1.0 / (1.0 + t * t);
     const double c = (1.0 - t * t) * scale;
@@ -64,8 +66,8 @@ inline PlanarPlace place_of(const PlanarBody& body) {
   return {body.x, body.y, body.cosine, body.sine};
 }
 
-/// The pose of a body's origin `now`, when it was `given` at `start`; `center_m` of mass, body
-/// axes.
+/// Pose of a body's origin when its planar state is `now`, given that it was `given` when the
+/// planar state was `start`. `center_m`: centre of mass, body axes.
 Pose moved_pose(const Pose& given, const Eigen::Vector3d& center_m, const PlanarPlace& start,
                 const PlanarPlace& now);
 

@@ -6,30 +6,32 @@
 
 namespace crashrank::detail {
 
-void SceneRun::measure(const Vehicle& vehicle, Member& m) {
+void SceneRun::compute_extents(const Vehicle& vehicle, Member& m) {
   const Silhouettes& s = vehicle.silhouettes;
   m.half_x = 0.5 * static_cast<double>(s.max_x - s.min_x);
   m.half_y = 0.5 * static_cast<double>(s.max_y - s.min_y);
   m.box_x = static_cast<double>(s.min_x) + m.half_x - vehicle.center_m.x();
   m.box_y = static_cast<double>(s.min_y) + m.half_y - vehicle.center_m.y();
-  m.rim_m = std::hypot(std::abs(m.box_x) + m.half_x, std::abs(m.box_y) + m.half_y);
+  m.radius_m = std::hypot(std::abs(m.box_x) + m.half_x, std::abs(m.box_y) + m.half_y);
 }
 
-/// No more than their gap: that of circles around them.
-double SceneRun::least_gap_m(std::size_t i, std::size_t j) const {
+/// Lower bound of the gap: that of the bounding circles about the centres of mass.
+double SceneRun::gap_lower_bound_m(std::size_t i, std::size_t j) const {
   constexpr double rounding_m = 1e-6;
   const PlanarBody& p = body(i);
   const PlanarBody& q = body(j);
-  return plane_length(p.x - q.x, p.y - q.y) - (members_[i].rim_m + members_[j].rim_m) - rounding_m;
+  return plane_length(p.x - q.x, p.y - q.y) - (members_[i].radius_m + members_[j].radius_m) -
+         rounding_m;
 }
 
 double SceneRun::gap_m(std::size_t i, std::size_t j) const {
   return gap_m(members_[i], body(i), members_[j], body(j));
 }
 
-/// The distance of both boxes seen from above, no larger than that of the outlines; below 0 where
-/// they overlap. Beyond `listed_m` a lower bound of it. It changes no faster than the two close:
-/// what is listed early or late changes no step.
+/// Distance of the bounding boxes seen from above: a lower bound of the distance of the outlines,
+/// negative if the boxes overlap. Beyond `listed_m` a lower bound of the box distance. It changes
+/// no faster than the closing bound, so that the time at which lists are made does not influence
+/// any step.
 double SceneRun::gap_m(const Member& m, const PlanarBody& p, const Member& n, const PlanarBody& q) {
   const double x =
       q.x + q.cosine * n.box_x - q.sine * n.box_y - (p.x + p.cosine * m.box_x - p.sine * m.box_y);
@@ -49,13 +51,13 @@ double SceneRun::gap_m(const Member& m, const PlanarBody& p, const Member& n, co
   const double beside_q = std::abs(left_q) - n.half_y - s * m.half_x - c * m.half_y;
   const double apart = std::max(std::max(along_p, beside_p), std::max(along_q, beside_q));
   if (!(apart > 0.0) || apart > listed_m) return apart;
-  // Of two boxes that are apart a corner of one is nearest to the other.
+  // The nearest point of one of two separate boxes is a corner of one of them.
   return std::sqrt(std::min(corner_distance2(m, n, ahead_p, left_p, cosine, sine),
                             corner_distance2(n, m, ahead_q, left_q, cosine, -sine)));
 }
 
-/// Square of the distance of the nearest corner of `of` from `box`, whose middle is the origin:
-/// `of` lies at x, y, turned.
+/// Squared distance from `box`, centred at the origin, to the nearest corner of `of`, whose centre
+/// is at (x, y) and which is rotated by the angle with the given cosine and sine.
 double SceneRun::corner_distance2(const Member& box, const Member& of, double x, double y,
                                   double cosine, double sine) {
   double least = std::numeric_limits<double>::infinity();
@@ -71,24 +73,24 @@ double SceneRun::corner_distance2(const Member& box, const Member& of, double x,
   return least;
 }
 
-/// No two of their points are faster against each other.
+/// Upper bound of the relative speed of any two points of the bodies, m/s.
 double SceneRun::closing_bound(std::size_t i, std::size_t j) const {
   const PlanarBody& p = body(i);
   const PlanarBody& q = body(j);
-  // The sum of both turns first: it does not depend on which is which.
+  // Add both rotational terms first: the result then does not depend on the order of the bodies.
   const double turning =
-      members_[i].rim_m * std::abs(p.spin) + members_[j].rim_m * std::abs(q.spin);
+      members_[i].radius_m * std::abs(p.spin) + members_[j].radius_m * std::abs(q.spin);
   return plane_length(p.vx - q.vx, p.vy - q.vy) + turning;
 }
 
-bool SceneRun::lists(std::size_t i, std::size_t j) const {
+bool SceneRun::has_listed(std::size_t i, std::size_t j) const {
   const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(i * most_near);
   const auto end = begin + static_cast<std::ptrdiff_t>(members_[i].near);
   return std::find(begin, end, j) != end;
 }
 
-/// Whether a fixed body adjoins one of those that press in a contact. What stands apart has its own
-/// rebound, end, time and damage.
+/// Returns true if a fixed body adjoins one of the fixed bodies of a contact. A fixed body that
+/// stands apart has its own contact, with its own rebound, end and damage.
 bool SceneRun::adjoins_any(std::size_t i, const ContactRun& run) const {
   const View<const std::uint32_t> adjoins = bodies_[i].adjoins;
   if (adjoins.empty()) return false;
@@ -99,7 +101,7 @@ bool SceneRun::adjoins_any(std::size_t i, const ContactRun& run) const {
   return false;
 }
 
-/// The nearest bodies within `listed_m`.
+/// Lists the nearest bodies within `listed_m`.
 void SceneRun::list_near(std::size_t i) {
   Member& m = members_[i];
   m.near = 0;
@@ -108,22 +110,23 @@ void SceneRun::list_near(std::size_t i) {
   const Vehicle& own = *bodies_[i].vehicle;
   for (std::size_t j = 0; j < bodies_.size(); ++j) {
     if (j == i || !can_press(own, *bodies_[j].vehicle)) continue;
-    // What keeps its plan is where it was placed last, or as far from there as plans get.
+    // A planned body is at its last placement, or as far from it as the fastest plan allows.
     const double moved_m = members_[j].state == State::planned
                                ? fastest_plan_mps_ * (now_s_ - members_[j].placed_s)
                                : 0.0;
-    if (least_gap_m(i, j) - moved_m > listed_m) continue;
+    if (gap_lower_bound_m(i, j) - moved_m > listed_m) continue;
     const PlanarBody at =
-        members_[j].state == State::planned ? make_planar(given(j), origin_m_) : body(j);
+        members_[j].state == State::planned ? make_planar(contact_body(j), origin_m_) : body(j);
     const double gap = gap_m(m, body(i), members_[j], at);
     if (gap > listed_m) continue;
-    // What was near before is where the last step placed it, whenever this list is made.
-    if (members_[j].placed_s < placed_s_) place(j);
+    // Place the body for the middle of the last step, as a body that was already listed would have
+    // been: results then do not depend on when the list is made.
+    if (members_[j].placed_s < placed_s_) place_planned(j);
     if (m.near < most_near) {
       list[m.near++] = static_cast<std::uint32_t>(j);
       continue;
     }
-    crowded_ = true;
+    limit_exceeded_ = true;
     std::size_t furthest = 0;
     for (std::size_t k = 1; k < most_near; ++k) {
       if (gap_m(i, list[k]) > gap_m(i, list[furthest])) furthest = k;
@@ -133,8 +136,8 @@ void SceneRun::list_near(std::size_t i) {
 }
 
 void SceneRun::list_near() {
-  // Before the next list none that is left out comes so near as to press or to shorten a step, even
-  // seen half a step late: so no step depends on when lists are made.
+  // Until the next list, no body left out comes close enough to press or to shorten a step, even if
+  // its position is half a step old. Steps therefore do not depend on when lists are made.
   const double needed_m = live_m + 3.0 * options_.rolling_step_s * fastest_mps_;
   for (const std::uint32_t i : chain_) {
     if (members_[i].slack_m < needed_m) list_near(i);

@@ -14,36 +14,38 @@ double SceneRun::grip_of(std::size_t i) const {
   return bodies_[i].footing->wheels ? grip : std::min(grip, options_.sliding_grip);
 }
 
-/// Forces of the road. During an impact they are left out, as impact mechanics does.
-void SceneRun::drive_on_road(std::size_t i, double step_s) {
-  // A contact whose force is no larger than a few of the road's pushes its body along: what the
-  // road takes of it at once is no change of velocity.
-  constexpr double pushing = 2.0;
+/// Applies the forces of the road. During an impact they are neglected, as usual in impact
+/// mechanics.
+void SceneRun::apply_road_forces(std::size_t i, double step_s) {
+  // A contact force no larger than `push_factor` times the road force only pushes the body along.
+  // The part of it that the road cancels in the same step is not a velocity change.
+  constexpr double push_factor = 2.0;
   constexpr double impact_s = 0.05;
   const SceneBody& body = bodies_[i];
   const double grip = grip_of(i);
-  const double pushed_mps = pushing * grip * gravity_mps2 * step_s;
+  const double push_limit_mps = push_factor * grip * gravity_mps2 * step_s;
   Member& m = members_[i];
-  const auto each_run = [&](auto&& each) {
-    for (const std::uint32_t k : live_) {
+  const auto for_each_pressing_run = [&](auto&& function) {
+    for (const std::uint32_t k : active_) {
       ContactRun& run = runs_[k];
-      if (run.presses() && (run.first() == i || run.second() == i)) each(run, run.first() == i);
+      if (run.presses() && (run.first() == i || run.second() == i)) function(run, run.first() == i);
     }
   };
-  each_run([&](const ContactRun& run, bool is_first) {
-    if (run.step_change_mps(is_first).norm() > pushed_mps) m.struck_s = now_s_;
+  for_each_pressing_run([&](const ContactRun& run, bool is_first) {
+    if (run.step_change_mps(is_first).norm() > push_limit_mps) m.last_impact_s = now_s_;
   });
-  if (now_s_ - m.struck_s < impact_s) return;
+  if (now_s_ - m.last_impact_s < impact_s) return;
   PlanarBody& b = motion_of(i);
   const PlanarBody before = b;
-  drive(*body.footing, m.wheels, grip, step_s, b);
-  each_run([&](ContactRun& run, bool is_first) {
-    const Eigen::Vector2d pushed = run.step_change_mps(is_first);
-    const double change2 = pushed.squaredNorm();
+  apply_tyre_forces(*body.footing, m.wheels, grip, step_s, b);
+  for_each_pressing_run([&](ContactRun& run, bool is_first) {
+    const Eigen::Vector2d contact_change = run.step_change_mps(is_first);
+    const double change2 = contact_change.squaredNorm();
     if (!(change2 > 0.0)) return;
-    const double against =
-        -((b.vx - before.vx) * pushed.x() + (b.vy - before.vy) * pushed.y()) / change2;
-    run.take_back(is_first, std::clamp(against, 0.0, 1.0));
+    const double resisted =
+        -((b.vx - before.vx) * contact_change.x() + (b.vy - before.vy) * contact_change.y()) /
+        change2;
+    run.exclude(is_first, std::clamp(resisted, 0.0, 1.0));
   });
 }
 

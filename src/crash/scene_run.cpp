@@ -12,11 +12,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr auto no_pair = static_cast<std::uint32_t>(-1);
-/// Bodies slower than this at their rims have come to rest, m/s.
+/// A free body is at rest if the speed of no outline point exceeds this, m/s.
 constexpr double rest_mps = 0.02;
 
-double rim_speed(const PlanarBody& body, double rim_m) {
-  return plane_length(body.vx, body.vy) + rim_m * std::abs(body.spin);
+double speed_bound(const PlanarBody& body, double radius_m) {
+  return plane_length(body.vx, body.vy) + radius_m * std::abs(body.spin);
 }
 
 }  // namespace
@@ -28,9 +28,9 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   near_.reserve(bodies * most_near);
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
-  goes_on_.resize(most_at_once);
-  live_.reserve(most_at_once);
-  spare_.reserve(most_at_once);
+  is_push_.resize(most_at_once);
+  active_.reserve(most_at_once);
+  free_runs_.reserve(most_at_once);
   contacts_.reserve(most_contacts);
   track_steps_.reserve(most_tracked_steps);
   track_.reserve(most_tracked);
@@ -47,18 +47,18 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   options_ = options;
   origin_m_ = Vector3d(origin_m.x(), origin_m.y(), 0.0);
   memory_.begin();
-  // Contacts refer to the bodies in place.
+  // Contacts keep pointers to the bodies, so the array must not move.
   memory_.bodies.reserve(bodies.size());
   members_.assign(bodies.size(), {});
   near_.resize(bodies.size() * most_near);
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
-  goes_on_.resize(most_at_once);
+  is_push_.resize(most_at_once);
   chain_.clear();
-  live_.clear();
-  spare_.clear();
+  active_.clear();
+  free_runs_.clear();
   for (std::size_t k = most_at_once; k > 0; --k)
-    spare_.push_back(static_cast<std::uint32_t>(k - 1));
+    free_runs_.push_back(static_cast<std::uint32_t>(k - 1));
   contacts_.clear();
   first_run_ = nullptr;
   start_s_ = now_s_ = placed_s_ = last_force_s_ = start_s;
@@ -67,28 +67,28 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   track_.clear();
   track_ends_ = false;
   track_step_s_ = 0.0;
-  crowded_ = false;
+  limit_exceeded_ = false;
   steps_ = 0;
   ended_work_ = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Vehicle& v = *bodies[i].vehicle;
     Member& m = members_[i];
-    measure(v, m);
+    compute_extents(v, m);
     m.state = v.movable() ? State::planned : State::fixed;
-    ContactBody given;
-    given.vehicle = &v;
-    bodies[i].plan->state_at(start_s, given.pose, given.velocity);
-    given.pose.translation += bodies[i].shift_m;
-    if (!v.movable()) given.velocity = {};
-    memory_.add_body(given, origin_m_, options.variant);
-    m.pose = given.pose;
+    ContactBody contact_body;
+    contact_body.vehicle = &v;
+    bodies[i].plan->state_at(start_s, contact_body.pose, contact_body.velocity);
+    contact_body.pose.translation += bodies[i].shift_m;
+    if (!v.movable()) contact_body.velocity = {};
+    memory_.add_body(contact_body, origin_m_, options.variant);
+    m.pose = contact_body.pose;
     m.start = motion_of(i);
     m.placed_s = start_s;
     if (!v.movable()) continue;
     const MotionBound bound = bodies[i].plan->bound(start_s, start_s + options.longest_s);
-    fastest_plan_mps_ =
-        std::max(fastest_plan_mps_,
-                 bound.speed_mps + bound.angular_radps * (m.rim_m + v.center_m.head<2>().norm()));
+    fastest_plan_mps_ = std::max(
+        fastest_plan_mps_,
+        bound.speed_mps + bound.angular_radps * (m.radius_m + v.center_m.head<2>().norm()));
   }
   over_ = bodies.size() < 2;
   if (over_) return;
@@ -101,7 +101,7 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   partner_ = partner;
 }
 
-ContactBody SceneRun::given(std::size_t i) const {
+ContactBody SceneRun::contact_body(std::size_t i) const {
   ContactBody body;
   const Member& m = members_[i];
   body.vehicle = bodies_[i].vehicle;
@@ -120,12 +120,12 @@ ContactBody SceneRun::given(std::size_t i) const {
   return body;
 }
 
-/// Puts a planned body where it is now.
-void SceneRun::place(std::size_t i) {
+/// Places a planned body at its pose for the present time.
+void SceneRun::place_planned(std::size_t i) {
   Member& m = members_[i];
   if (m.state != State::planned || m.placed_s == now_s_) return;
   m.placed_s = now_s_;
-  const ContactBody body = given(i);
+  const ContactBody body = contact_body(i);
   motion_of(i) = make_planar(body, origin_m_);
 }
 
@@ -137,13 +137,13 @@ void SceneRun::join_chain(std::size_t i) {
   chain_.push_back(static_cast<std::uint32_t>(i));
 }
 
-/// From its plan to what acts on it; from rest, too.
-void SceneRun::touch(std::size_t i) {
+/// Marks a body that a contact force acts on; a planned or resting body becomes free.
+void SceneRun::mark_touched(std::size_t i) {
   Member& m = members_[i];
   m.pressed = true;
   if (m.state == State::fixed || m.state == State::free) return;
   if (m.state == State::planned) {
-    m.pose = given(i).pose;
+    m.pose = contact_body(i).pose;
     m.start = motion_of(i);
     m.state = State::free;
     join_chain(i);
@@ -159,33 +159,35 @@ void SceneRun::set_wheels(std::size_t i) {
   m.wheels = wheels_after(*body.footing, options_.after, body.steering_rad, body.brake, m.damaged);
 }
 
-/// Every pair of which one is in the chain and one moves, once.
-template <typename Each> void SceneRun::each_near_pair(Each each) {
-  // By index: what is touched in it joins the chain.
+/// Calls a function once for every pair of near bodies of which at least one is in the chain and at
+/// least one moves.
+template <typename Function> void SceneRun::for_each_near_pair(Function function) {
+  // Loop by index, because the function may append bodies to the chain.
   for (std::size_t c = 0; c < chain_.size(); ++c) {
     const std::size_t i = chain_[c];
     const Member& m = members_[i];
     for (std::size_t k = 0; k < m.near; ++k) {
       const std::size_t j = near_[i * most_near + k];
       if (moves(i)) {
-        if (j < i && members_[j].in_chain && moves(j) && lists(j, i)) continue;
+        if (j < i && members_[j].in_chain && moves(j) && has_listed(j, i)) continue;
       } else if (!moves(j) || members_[j].in_chain) {
-        // What rests is still in the way of what keeps its plan; all else that moves lists it.
+        // A resting body is only paired here with bodies that still follow their plans; all other
+        // moving bodies list it themselves.
         continue;
       }
-      each(i, j);
+      function(i, j);
     }
   }
 }
 
 double SceneRun::next_step_s() {
   double step_s = options_.rolling_step_s;
-  for (const std::uint32_t k : live_) step_s = std::min(step_s, runs_[k].next_step_s());
-  each_near_pair([&](std::size_t i, std::size_t j) {
+  for (const std::uint32_t k : active_) step_s = std::min(step_s, runs_[k].next_step_s());
+  for_each_near_pair([&](std::size_t i, std::size_t j) {
     const double closing = closing_bound(i, j);
     if (!(closing * step_s > options_.contact.travel_m)) return;
-    if (least_gap_m(i, j) - 0.5 * live_m > closing * step_s) return;
-    // Nearer ones are live and say themselves what they need.
+    if (gap_lower_bound_m(i, j) - 0.5 * live_m > closing * step_s) return;
+    // Closer pairs have an open contact, which limits the step itself.
     const double gap = gap_m(i, j);
     if (gap < live_m && live_with(i, j) != nullptr) return;
     const double free_m = std::max(gap - 0.5 * live_m, options_.contact.travel_m);
@@ -195,7 +197,7 @@ double SceneRun::next_step_s() {
 }
 
 ContactRun* SceneRun::live_with(std::size_t i, std::size_t j) {
-  for (const std::uint32_t k : live_) {
+  for (const std::uint32_t k : active_) {
     ContactRun& run = runs_[k];
     for (const std::uint32_t pair : run.pairs()) {
       const std::size_t second = memory_.pairs[pair].second;
@@ -205,62 +207,64 @@ ContactRun* SceneRun::live_with(std::size_t i, std::size_t j) {
   return nullptr;
 }
 
-/// Index of what is remembered of the two, or `no_pair`; `in_memory`: they have met before.
-std::uint32_t SceneRun::pair_of(std::size_t i, std::size_t j, bool& in_memory) {
+/// Returns the index of the pair of two bodies, or `no_pair` if there is no room; `seen_before` is
+/// set if they have had a contact before.
+std::uint32_t SceneRun::pair_of(std::size_t i, std::size_t j, bool& seen_before) {
   for (std::size_t k = 0; k < memory_.pairs_in_use; ++k) {
     const BodyPair& pair = memory_.pairs[k];
     if ((pair.first == i && pair.second == j) || (pair.first == j && pair.second == i)) {
-      in_memory = true;
+      seen_before = true;
       return static_cast<std::uint32_t>(k);
     }
   }
-  in_memory = false;
+  seen_before = false;
   if (memory_.pairs_in_use == most_pairs) return no_pair;
-  const bool swapped = goes_second(given(i), given(j));
+  const bool swapped = goes_second(contact_body(i), contact_body(j));
   return memory_.take_pair(swapped ? j : i, swapped ? i : j);
 }
 
-void SceneRun::open(std::size_t i, std::size_t j) {
-  bool in_memory = false;
-  const std::uint32_t index = pair_of(i, j, in_memory);
-  if (index == no_pair || spare_.empty()) {
-    crowded_ = true;
+void SceneRun::open_contact(std::size_t i, std::size_t j) {
+  bool seen_before = false;
+  const std::uint32_t index = pair_of(i, j, seen_before);
+  if (index == no_pair || free_runs_.empty()) {
+    limit_exceeded_ = true;
     return;
   }
   BodyPair& pair = memory_.pairs[index];
-  if (in_memory) pair.meet_again(steps_);
+  if (seen_before) pair.begin_further_contact(steps_);
   const std::size_t first = pair.first;
   const std::size_t second = pair.second;
-  for (const std::uint32_t k : live_) {
+  for (const std::uint32_t k : active_) {
     ContactRun& run = runs_[k];
     if (run.first() != first || !adjoins_any(second, run)) continue;
-    if (!run.add(index)) crowded_ = true;
+    if (!run.add(index)) limit_exceeded_ = true;
     return;
   }
-  const std::uint32_t k = spare_.back();
-  spare_.pop_back();
-  live_.push_back(k);
+  const std::uint32_t k = free_runs_.back();
+  free_runs_.pop_back();
+  active_.push_back(k);
   begun_s_[k] = now_s_;
-  goes_on_[k] = now_s_ < pair.faded_until_s ? 1 : 0;
-  runs_[k].begin(memory_, first, index, given(first), given(second), origin_m_, options_.variant,
-                 options_.contact);
-  if (goes_on_[k] != 0) runs_[k].continue_push();
+  is_push_[k] = now_s_ < pair.push_until_s ? 1 : 0;
+  runs_[k].begin(memory_, first, index, contact_body(first), contact_body(second), origin_m_,
+                 options_.variant, options_.contact);
+  if (is_push_[k] != 0) runs_[k].begin_as_push();
 }
 
 void SceneRun::open_contacts() {
-  each_near_pair([&](std::size_t i, std::size_t j) {
-    if (least_gap_m(i, j) > live_m || live_with(i, j) != nullptr) return;
-    if (gap_m(i, j) < live_m) open(i, j);
+  for_each_near_pair([&](std::size_t i, std::size_t j) {
+    if (gap_lower_bound_m(i, j) > live_m || live_with(i, j) != nullptr) return;
+    if (gap_m(i, j) < live_m) open_contact(i, j);
   });
 }
 
-/// What has come to rest stays until it is pushed.
-void SceneRun::settle() {
+/// Stops bodies that have come to rest; they stay so until a contact moves them. Ends the scene
+/// when no body moves or its time is over.
+void SceneRun::stop_resting_bodies() {
   bool all_rest = true;
   for (const std::uint32_t i : chain_) {
     Member& m = members_[i];
     PlanarBody& b = motion_of(i);
-    if (m.state == State::free && !m.pressed && rim_speed(b, m.rim_m) < rest_mps) {
+    if (m.state == State::free && !m.pressed && speed_bound(b, m.radius_m) < rest_mps) {
       b.vx = b.vy = b.spin = 0.0;
       m.state = State::rests;
     }
@@ -270,36 +274,36 @@ void SceneRun::settle() {
   const double end_s = std::max(last_force_s_ + options_.after_last_contact_s, options_.until_s);
   over_ = all_rest || now_s_ > end_s || now_s_ - start_s_ > options_.longest_s;
   if (!over_) return;
-  for (const std::uint32_t k : live_) close(runs_[k]);
-  live_.clear();
+  for (const std::uint32_t k : active_) close_contact(runs_[k]);
+  active_.clear();
 }
 
-void SceneRun::press() {
+void SceneRun::apply_contact_forces() {
   for (const std::uint32_t i : chain_) {
     const PlanarBody& b = motion_of(i);
     members_[i].pressing = 0;
     members_[i].before_mps = Eigen::Vector2d(b.vx, b.vy);
   }
-  const auto each_side = [&](auto&& each) {
-    for (const std::uint32_t k : live_) {
+  const auto for_each_side = [&](auto&& function) {
+    for (const std::uint32_t k : active_) {
       ContactRun& run = runs_[k];
-      each(run, true, run.first());
-      each(run, false, run.second());
+      function(run, true, run.first());
+      function(run, false, run.second());
     }
   };
-  each_side([&](const ContactRun& run, bool /*first*/, std::size_t i) {
+  for_each_side([&](const ContactRun& run, bool /*first*/, std::size_t i) {
     if (run.presses()) ++members_[i].pressing;
   });
-  for (const std::uint32_t k : live_) {
-    runs_[k].press();
-    if (runs_[k].presses()) runs_[k].weigh_step();
+  for (const std::uint32_t k : active_) {
+    runs_[k].apply_forces();
+    if (runs_[k].presses()) runs_[k].compute_counted_share();
   }
-  each_side([&](ContactRun& run, bool first, std::size_t i) {
+  for_each_side([&](ContactRun& run, bool first, std::size_t i) {
     const Member& m = members_[i];
     if (m.state != State::free) return;
     const PlanarBody& b = motion_of(i);
-    run.undergo(first, Eigen::Vector2d(b.vx, b.vy) - m.before_mps,
-                m.pressing > (run.presses() ? 1 : 0));
+    run.add_velocity_change(first, Eigen::Vector2d(b.vx, b.vy) - m.before_mps,
+                            m.pressing > (run.presses() ? 1 : 0));
   });
 }
 
@@ -314,50 +318,50 @@ void SceneRun::step() {
   now_s_ += 0.5 * step_s;
   placed_s_ = now_s_;
   for (const std::uint32_t i : chain_) {
-    place(i);
-    for (std::size_t k = 0; k < members_[i].near; ++k) place(near_[i * most_near + k]);
+    place_planned(i);
+    for (std::size_t k = 0; k < members_[i].near; ++k) place_planned(near_[i * most_near + k]);
   }
   open_contacts();
   track(step_s);
-  for (const std::uint32_t k : live_) runs_[k].feel(step_s);
-  for (const std::uint32_t k : live_) {
+  for (const std::uint32_t k : active_) runs_[k].compute_forces(step_s);
+  for (const std::uint32_t k : active_) {
     ContactRun& run = runs_[k];
     if (!run.presses()) continue;
     last_force_s_ = now_s_;
     if (!run.acts() && &run != first_run_) {
-      run.begin_here(given(run.first()), given(run.second()));
+      run.begin_at_first_force(contact_body(run.first()), contact_body(run.second()));
       begun_s_[k] = now_s_;
     }
-    touch(run.first());
-    for (const std::uint32_t pair : run.pairs()) touch(memory_.pairs[pair].second);
+    mark_touched(run.first());
+    for (const std::uint32_t pair : run.pairs()) mark_touched(memory_.pairs[pair].second);
   }
-  press();
+  apply_contact_forces();
   for (const std::uint32_t i : chain_) {
     Member& m = members_[i];
     if (m.state != State::free) continue;
     PlanarBody& b = motion_of(i);
-    if (bodies_[i].footing != nullptr) drive_on_road(i, step_s);
+    if (bodies_[i].footing != nullptr) apply_road_forces(i, step_s);
     b.move(0.5 * step_s);
-    fastest_mps_ = std::max(fastest_mps_, rim_speed(b, m.rim_m));
+    fastest_mps_ = std::max(fastest_mps_, speed_bound(b, m.radius_m));
   }
   track_fastest_mps_ = std::max(track_fastest_mps_, fastest_mps_);
   now_s_ += 0.5 * step_s;
   ++steps_;
-  for (std::size_t k = 0; k < live_.size();) {
-    ContactRun& run = runs_[live_[k]];
+  for (std::size_t k = 0; k < active_.size();) {
+    ContactRun& run = runs_[active_[k]];
     run.end_step();
     if (!run.over()) {
       ++k;
       continue;
     }
-    close(run);
-    spare_.push_back(live_[k]);
-    live_.erase(live_.begin() + static_cast<std::ptrdiff_t>(k));
+    close_contact(run);
+    free_runs_.push_back(active_[k]);
+    active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(k));
   }
-  // Both of a pair may have moved as far.
+  // Both bodies of a pair may have moved this far.
   const double fastest_mps = std::max(fastest_before_mps, fastest_mps_);
   for (const std::uint32_t i : chain_) members_[i].slack_m -= 2.0 * step_s * fastest_mps;
-  settle();
+  stop_resting_bodies();
 }
 
 bool SceneRun::advance(int steps) {
@@ -367,7 +371,7 @@ bool SceneRun::advance(int steps) {
 
 std::uint64_t SceneRun::work() const noexcept {
   std::uint64_t pieces = ended_work_;
-  for (const std::uint32_t k : live_) pieces += runs_[k].work();
+  for (const std::uint32_t k : active_) pieces += runs_[k].work();
   return pieces;
 }
 

@@ -16,124 +16,136 @@
 
 namespace crashrank::detail {
 
-/// A body of a scene, as it is until something in the chain touches it.
+/// A body of a scene before its first contact.
 struct SceneBody {
   const Vehicle* vehicle = nullptr;
-  const Motion* plan = nullptr;      ///< where it is by time; what nothing moves stays
-  const Footing* footing = nullptr;  ///< null: the road does nothing to it
-  double steering_rad = 0.0;         ///< of its front wheels once it is hit, left positive
-  double brake = 0.02;               ///< share of grip with which it brakes then, [0, 1]
-  /// Added to the plan's positions, m.
+  const Motion* plan = nullptr;      ///< pose over time; a fixed body stays at its start pose
+  const Footing* footing = nullptr;  ///< null: no road forces
+  double steering_rad = 0.0;         ///< front wheels after its first contact, left positive
+  double brake = 0.02;  ///< share of grip used for braking after its first contact, [0, 1]
+  /// Offset added to the plan's positions, m.
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-  std::uint32_t number = 0;  ///< by which `adjoins` refers to it
-  /// Numbers of the fixed bodies that this fixed body adjoins; symmetric. Those that press on a
-  /// body at the same time are one contact, all other fixed bodies are contacts of their own.
+  std::uint32_t number = 0;  ///< number by which `adjoins` refers to the body
+  /// Numbers of the fixed bodies that this fixed body adjoins; symmetric. Adjoining fixed bodies
+  /// that press on a body at the same time form one contact; other fixed bodies have contacts of
+  /// their own.
   View<const std::uint32_t> adjoins;
 };
 
+/// Options of a scene.
 struct SceneOptions {
   ContactVariant variant;
   ContactOptions contact;
-  AfterContact after = AfterContact::brakes;  ///< what the wheels of all that were hit do
-  double grip = 0.7;                          ///< of tyres on the road
-  View<const Area> drivable;                  ///< empty: the road has no end
-  double off_road_grip = 0.7;                 ///< of tyres where the centre of mass is beside it
-  double sliding_grip = 0.5;                  ///< of what has no wheels that turn
-  double rolling_step_s = 0.02;               ///< longest step without contact
-  double after_last_contact_s = 3.0;          ///< the scene ends so long after the last force
-  double until_s = 0.0;                       ///< but while anything moves not before this time
-  double longest_s = 30.0;                    ///< and so long after its start at the latest
-  /// Bodies that are asked about with `would_act` are no faster on their plans.
+  AfterContact after = AfterContact::brakes;  ///< wheels of all bodies after their first contact
+  double grip = 0.7;                          ///< friction of tyres on the road
+  View<const Area> drivable;                  ///< drivable areas; empty: everywhere
+  double off_road_grip = 0.7;    ///< friction of tyres while the centre of mass is off the road
+  double sliding_grip = 0.5;     ///< upper bound of the friction of bodies without turning wheels
+  double rolling_step_s = 0.02;  ///< longest step without contact
+  double after_last_contact_s = 3.0;  ///< the scene ends this long after the last force
+  double until_s = 0.0;               ///< but not before this time while a body moves
+  double longest_s = 30.0;            ///< and at the latest this long after its start
+  /// Upper bound of the speed that bodies passed to `would_act` have on their plans, m/s.
   double fastest_plan_mps = 0.0;
-  bool records_track = false;  ///< needed by `would_act`
+  bool records_track = false;  ///< records the track that `would_act` needs
 };
 
-/// A contact between two bodies of a scene. Its velocities are those of the contact law's end; what
-/// follows within `same_contact_s` and changes neither velocity by more than `rubbing_mps`, rubbing
-/// on and pushing along, adds to its damage, energy and motion.
+/// A contact between two bodies of a scene. Its velocities are those at the end of the contact law.
+/// Later forces between the same bodies are merged into it (damage, energy and motion) if they
+/// begin within `merge_window_s` and change neither velocity by more than `max_merged_mps`: the
+/// bodies scrape along or push each other.
 struct SceneContact {
-  static constexpr double same_contact_s = 0.1;
-  static constexpr double rubbing_mps = 0.5;
-  /// Forces that follow within this time after the contact law's end, s.
-  static constexpr double faded_s = 0.1;
+  static constexpr double merge_window_s = 0.1;
+  static constexpr double max_merged_mps = 0.5;
+  /// A force that begins within this time after the contact law has ended a contact on a negligible
+  /// force continues the push, s.
+  static constexpr double push_window_s = 0.1;
 
-  std::uint32_t a = 0;   ///< index of the body that moves, of two the lower
-  std::uint32_t b = 0;   ///< and of the other; of several that adjoin the one pressed most
-  double begin_s = 0.0;  ///< on the plans' clock: of its first force
-  /// It goes on where the contact law ended an earlier contact of the two, which is validated as
-  /// far as that end: no part of that one's event.
-  bool goes_on = false;
-  /// With the body that the chain's first body meets first. Where other fixed bodies press more,
-  /// the contact is theirs.
+  std::uint32_t a = 0;  ///< index of the movable body; of two movable bodies the lower index
+  /// Index of the other body; of several adjoining fixed bodies the one with the largest impulse.
+  std::uint32_t b = 0;
+  double begin_s = 0.0;  ///< time of its first force on the plans' clock
+  /// The contact continues the push of an earlier contact of the two bodies that ended on a
+  /// negligible force. The contact law is validated up to that end, so this contact is not part of
+  /// the same event.
+  bool is_continued_push = false;
+  /// Contact with the partner: the body that the chain's first body contacts first. If the partner
+  /// is fixed and another fixed body of the contact receives more impulse, the contact is reported
+  /// for that body and this is false.
   bool is_first = false;
-  ContactBody given_a;  ///< as it began
+  ContactBody given_a;  ///< state at the beginning of the contact
   ContactBody given_b;
   ContactOutcome outcome;
-  /// Fixed bodies that adjoin each other and pressed on the other body: the first few.
+  /// Adjoining fixed bodies that pressed on the other body, up to `most_pressed`.
   static constexpr std::size_t most_pressed = 8;
   std::array<std::uint32_t, most_pressed> pressed{};
   std::size_t pressed_count = 0;
 };
 
-/// Everything that follows from the chain's first body: it and what it touches, what those touch
-/// and so on are rigid bodies in the plane that press on each other and stand on the road; all
-/// others keep their plans and pass through each other.
+/// Simulates a crash with all its consequences. The chain consists of its first body, the bodies
+/// that it contacts, those that they contact and so on. Bodies of the chain are rigid bodies in the
+/// plane, subject to contact forces and the forces of the road; all others follow their plans and
+/// pass through each other.
 ///
-/// Momentum is conserved but for the road's forces, energy is never gained. What is crushed stays
-/// crushed: a pair of bodies that meets again presses where it has not been. The same bits for the
-/// same input; the order of contacts that act on one body at a time changes only rounding, but in
-/// the steps in which one of them is stiff enough to take all of the energy along it.
+/// Momentum is conserved except for the forces of the road, and energy never grows. Crushed
+/// structure stays crushed: a pair of bodies in a further contact presses only where it has not
+/// crushed yet. Equal input gives equal bits. The order of contacts that act on one body at the
+/// same time changes only rounding, except in steps in which one of them is stiff enough to take
+/// all energy along its direction.
 class SceneRun {
 public:
-  static constexpr std::size_t most_contacts = 64;  ///< told; further ones act untold
-  static constexpr std::size_t most_pairs = 64;     ///< of bodies; further ones do not act
-  static constexpr std::size_t most_at_once = 40;   ///< contacts; further ones wait
-  static constexpr std::size_t most_near = 32;      ///< bodies within a few metres of one
+  static constexpr std::size_t most_contacts = 64;  ///< recorded; further ones are not recorded
+  static constexpr std::size_t most_pairs = 64;     ///< pairs in contact; further ones do not act
+  static constexpr std::size_t most_at_once = 40;   ///< open contacts; further ones open later
+  static constexpr std::size_t most_near = 32;      ///< near bodies listed for each body
 
-  /// Room for scenes of so many bodies with so many pieces of outline each.
+  /// Allocates room for scenes with up to `bodies` bodies of up to `pieces` outline pieces each.
   void prepare(std::size_t bodies, std::size_t pieces);
 
-  /// Begins at a time with the chain's first body and the one that it meets then. Bodies' vehicles,
-  /// plans and footings outlive the run. Allocates where more room is needed than was prepared.
+  /// Starts the simulation at `start_s` with the chain's first body and the partner that it
+  /// contacts at that time. Vehicles, plans and footings have to outlive the run. Allocates where
+  /// `prepare` did not provide enough room.
   void begin(View<const SceneBody> bodies, std::size_t first, std::size_t partner, double start_s,
              const Eigen::Vector3d& origin_m, const SceneOptions& options);
-  /// Takes at most so many steps; false once the scene is over.
+  /// Takes up to `steps` steps; returns false once the scene is over.
   bool advance(int steps);
 
-  /// Contacts with a force that have ended, by the end of their force.
+  /// Contacts with a force that have ended, in the order of their ends.
   View<const SceneContact> contacts() const noexcept {
     return {contacts_.data(), contacts_.size()};
   }
-  /// Contacts that go on.
-  std::size_t at_once() const noexcept { return live_.size(); }
-  const ContactRun& live(std::size_t k) const { return runs_[live_[k]]; }
+  /// Number of contacts in progress.
+  std::size_t at_once() const noexcept { return active_.size(); }
+  const ContactRun& live(std::size_t k) const { return runs_[active_[k]]; }
   double now_s() const noexcept { return now_s_; }
   const PlanarBody& body(std::size_t i) const { return memory_.bodies[i].motion; }
-  /// Whether something in the chain has touched it.
+  /// Returns true if a body of the chain has contacted it.
   bool touched(std::size_t i) const { return members_[i].state >= State::free; }
-  /// Pose of its origin now.
-  Pose pose(std::size_t i) const { return given(i).pose; }
-  /// Whether a body that follows its plan might have come so near the chain as to press or to
-  /// shorten a step. One that has not changes no bit of a run: with it, without it or on another
-  /// such plan all steps, contacts and outcomes are the same. `most_bodies`: no run that this one
-  /// is compared with has more bodies.
+  /// Present pose of the body origin.
+  Pose pose(std::size_t i) const { return contact_body(i).pose; }
+  /// Returns true if a body on its plan might have come close enough to the chain to press on it or
+  /// to shorten a step. If false, the body does not influence the run: without it, or with another
+  /// plan for which the result is false, all steps, contacts and outcomes have the same bits.
+  /// `most_bodies`: largest number of bodies in the runs that are compared.
   bool would_act(const SceneBody& body, std::size_t most_bodies) const;
-  /// Some bodies were too many to be followed: see the limits.
-  bool crowded() const noexcept { return crowded_; }
+  /// Returns true if a limit (see the constants above) was exceeded, so that some contacts were
+  /// left out.
+  bool crowded() const noexcept { return limit_exceeded_; }
   std::uint64_t steps() const noexcept { return steps_; }
-  /// Pieces moved in contacts.
+  /// Number of outline pieces moved in contacts: the amount of work done.
   std::uint64_t work() const noexcept;
 
 private:
-  /// A step, as it is when contacts are opened, in its middle.
+  /// A step as recorded in its middle, when contacts are opened.
   struct TrackedStep {
     double time_s = 0.0;
     double step_s = 0.0;
-    double before_s = 0.0;    ///< the step before
-    std::uint32_t first = 0;  ///< of its bodies in `track_`, in the order of the chain
+    double before_s = 0.0;    ///< length of the previous step
+    std::uint32_t first = 0;  ///< index of its first body in `track_`, in the order of the chain
     std::uint32_t count = 0;
   };
-  /// Where a body of the chain is then, and how it moves: to a millimetre is enough.
+  /// State of a body of the chain at that time. Single precision resolves the position to better
+  /// than 1 mm.
   struct TrackedBody {
     float x = 0.0F;
     float y = 0.0F;
@@ -145,73 +157,77 @@ private:
 
     PlanarBody body() const;
   };
-  /// Enough for most scenes; after more every body counts as acting.
+  /// Size of the track. It suffices for most scenes; once it is full, `would_act` returns true for
+  /// every body.
   static constexpr std::size_t most_tracked = std::size_t{1} << 17U;
   static constexpr std::size_t most_tracked_steps = std::size_t{1} << 14U;
-  /// Bodies nearer than this are in each other's lists, m.
+  /// Bodies nearer than this are in the lists of near bodies, m.
   static constexpr double listed_m = 5.0;
-  /// Bodies nearer than this may press within the next steps, m.
+  /// Bodies nearer than this have an open contact, because they may press within the next steps, m.
   static constexpr double live_m = 0.15;
 
+  /// fixed: not movable; planned: follows its plan; free: moved by forces; rests: free and at rest.
   enum class State : std::uint8_t { fixed, planned, free, rests };
   struct Member {
     State state = State::fixed;
     bool in_chain = false;
-    bool pressed = false;       ///< in this step
-    std::uint8_t pressing = 0;  ///< contacts that press on it in this step
-    Eigen::Vector2d before_mps = Eigen::Vector2d::Zero();  ///< velocity before their forces
-    std::uint8_t damaged = 0;                              ///< wheels, see `wheels_after`
-    Pose pose;         ///< when it was touched, or where it is fixed
-    PlanarBody start;  ///< then
-    double rim_m = 0.0;
-    double box_x = 0.0;  ///< middle of the outlines' box from the centre of mass, body axes, m
+    bool pressed = false;       ///< a contact force acted in this step
+    std::uint8_t pressing = 0;  ///< number of contacts with a force in this step
+    /// Velocity before the contact forces of this step.
+    Eigen::Vector2d before_mps = Eigen::Vector2d::Zero();
+    std::uint8_t damaged = 0;  ///< damaged wheels, see `wheels_after`
+    Pose pose;                 ///< pose at its first contact, or of a fixed body
+    PlanarBody start;          ///< planar state at that time
+    double radius_m = 0.0;     ///< of the bounding circle about the centre of mass
+    /// Centre of the outlines' bounding box relative to the centre of mass, body axes, m.
+    double box_x = 0.0;
     double box_y = 0.0;
-    double half_x = 0.0;
+    double half_x = 0.0;  ///< half the size of that box, m
     double half_y = 0.0;
     Wheels wheels;
-    double struck_s = -1e9;  ///< when a force last acted that was more than a push
-    double placed_s = 0.0;   ///< planned: when it was last placed
-    double slack_m = -1.0;   ///< travel until its list of near bodies has to be made anew
-    std::size_t near = 0;    ///< bodies in that list
+    double last_impact_s = -1e9;  ///< time of the last force larger than a push
+    double placed_s = 0.0;        ///< planned body: time of its last placement
+    double slack_m = -1.0;        ///< relative travel until a new list of near bodies is needed
+    std::size_t near = 0;         ///< number of bodies in that list
   };
 
   PlanarBody& motion_of(std::size_t i) { return memory_.bodies[i].motion; }
   bool moves(std::size_t i) const {
     return members_[i].state == State::free || members_[i].state == State::planned;
   }
-  ContactBody given(std::size_t i) const;
-  void place(std::size_t i);
+  ContactBody contact_body(std::size_t i) const;
+  void place_planned(std::size_t i);
   void join_chain(std::size_t i);
-  void touch(std::size_t i);
+  void mark_touched(std::size_t i);
   void set_wheels(std::size_t i);
-  double least_gap_m(std::size_t i, std::size_t j) const;
+  double gap_lower_bound_m(std::size_t i, std::size_t j) const;
   double gap_m(std::size_t i, std::size_t j) const;
   static double gap_m(const Member& m, const PlanarBody& p, const Member& n, const PlanarBody& q);
   static double corner_distance2(const Member& box, const Member& of, double x, double y,
                                  double cosine, double sine);
-  static void measure(const Vehicle& vehicle, Member& member);
+  static void compute_extents(const Vehicle& vehicle, Member& member);
   double closing_bound(std::size_t i, std::size_t j) const;
-  bool lists(std::size_t i, std::size_t j) const;
+  bool has_listed(std::size_t i, std::size_t j) const;
   void track(double step_s);
   bool comes_near(const SceneBody& body, const Member& member, std::size_t place,
                   double more_m) const;
   void list_near();
   void list_near(std::size_t i);
-  template <typename Each> void each_near_pair(Each each);
+  template <typename Function> void for_each_near_pair(Function function);
   double next_step_s();
   void open_contacts();
-  void open(std::size_t i, std::size_t j);
+  void open_contact(std::size_t i, std::size_t j);
   ContactRun* live_with(std::size_t i, std::size_t j);
   bool adjoins_any(std::size_t i, const ContactRun& run) const;
-  std::uint32_t pair_of(std::size_t i, std::size_t j, bool& in_memory);
-  void close(ContactRun& run);
-  void tell(const ContactRun& run, const ContactOutcome& outcome, bool swapped);
-  void tell_pressed(const ContactRun& run, SceneContact& told) const;
+  std::uint32_t pair_of(std::size_t i, std::size_t j, bool& seen_before);
+  void close_contact(ContactRun& run);
+  void record_contact(const ContactRun& run, const ContactOutcome& outcome, bool swapped);
+  void record_pressed(const ContactRun& run, SceneContact& contact) const;
   void lock_damaged_wheels(std::size_t i, const Box& damaged);
-  void press();
+  void apply_contact_forces();
   double grip_of(std::size_t i) const;
-  void drive_on_road(std::size_t i, double step_s);
-  void settle();
+  void apply_road_forces(std::size_t i, double step_s);
+  void stop_resting_bodies();
   void step();
 
   View<const SceneBody> bodies_;
@@ -220,28 +236,28 @@ private:
   ContactWorkspace::State memory_;
   std::vector<Member> members_;
   std::vector<std::uint32_t> chain_;
-  std::vector<std::uint32_t> near_;  ///< `most_near` for each body
+  std::vector<std::uint32_t> near_;  ///< `most_near` entries for each body
   std::vector<ContactRun> runs_;
-  std::vector<double> begun_s_;       ///< by run
-  std::vector<char> goes_on_;         ///< by run, see SceneContact
-  std::vector<std::uint32_t> live_;   ///< runs that go on
-  std::vector<std::uint32_t> spare_;  ///< runs that do not
+  std::vector<double> begun_s_;           ///< by run: time of its beginning
+  std::vector<char> is_push_;             ///< by run, see SceneContact::is_continued_push
+  std::vector<std::uint32_t> active_;     ///< runs in progress
+  std::vector<std::uint32_t> free_runs_;  ///< unused runs
   std::vector<SceneContact> contacts_;
   std::vector<TrackedStep> track_steps_;
   std::vector<TrackedBody> track_;
-  bool track_ends_ = false;                ///< there was more than room
-  double track_step_s_ = 0.0;              ///< the last one's
-  double track_fastest_mps_ = 0.0;         ///< of any point of the chain
-  const ContactRun* first_run_ = nullptr;  ///< with the first body's partner
+  bool track_ends_ = false;                ///< the track is full
+  double track_step_s_ = 0.0;              ///< length of the last tracked step
+  double track_fastest_mps_ = 0.0;         ///< upper bound of the speed of any point of the chain
+  const ContactRun* first_run_ = nullptr;  ///< contact with the first body's partner
   std::size_t partner_ = 0;
   double start_s_ = 0.0;
   double now_s_ = 0.0;
   double placed_s_ = 0.0;  ///< middle of the last step, for which near bodies were placed
   double last_force_s_ = 0.0;
-  double fastest_plan_mps_ = 0.0;  ///< of any point of a planned body
-  double fastest_mps_ = 0.0;       ///< and of those that were touched
+  double fastest_plan_mps_ = 0.0;  ///< upper bound of the speed of any point of a planned body
+  double fastest_mps_ = 0.0;       ///< the same, also over bodies in contact
   bool over_ = true;
-  bool crowded_ = false;
+  bool limit_exceeded_ = false;
   std::uint64_t steps_ = 0;
   std::uint64_t ended_work_ = 0;
 };

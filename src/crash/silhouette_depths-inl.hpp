@@ -1,4 +1,4 @@
-// Depths of eight places below the sides of an outline. Included once per target.
+// Depths of eight places inside an outline. Included once per vector target.
 #if defined(CRASHRANK_SILHOUETTE_DEPTHS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CRASHRANK_SILHOUETTE_DEPTHS_INL
 #undef CRASHRANK_SILHOUETTE_DEPTHS_INL
@@ -15,18 +15,18 @@
 HWY_BEFORE_NAMESPACE();
 namespace crashrank::detail::HWY_NAMESPACE {
 
-/// How deep places lie below the four sides of a band's silhouettes.
+/// Depths of places below the four sides of a height band's silhouettes.
 struct Depths {
   F8 front, rear, left, right;
-  M8 known;  ///< the place lies beside all of them
+  M8 known;  ///< the place lies within the nodes of all silhouettes
 
   HWY_INLINE F8 least() const {
     return select(known, minimum(minimum(front, rear), minimum(left, right)), all(-1.0F));
   }
 };
 
-/// Number of the node before a place and the share of the way to the next; any valid number beside
-/// the nodes.
+/// Index of the node before a place and the fraction of the distance to the next node; outside the
+/// nodes some valid index.
 struct NodePlace {
   I8 node;
   F8 share;
@@ -36,12 +36,12 @@ struct NodePlace {
 HWY_INLINE NodePlace node_place(const Silhouette& s, F8 at) {
   const F8 row = (at - all(s.low_m)) * all(s.nodes_per_m);
   const auto last = static_cast<float>(s.count - 1);
-  // Bounds in this order also bound what is not a number.
+  // In this order the bounds also limit NaN.
   const I8 node = truncate(maximum(minimum(row, all(last - 1.0F)), all(0.0F)));
   return {node, row - to_floats(node), both(at_most(all(0.0F), row), less(row, all(last)))};
 }
 
-/// Between the nodes around places: greatest and least of the silhouettes.
+/// Greatest and least coordinate of a silhouette, interpolated between the neighbouring nodes.
 struct Edges {
   F8 greatest, least;
 };
@@ -50,7 +50,7 @@ HWY_INLINE Edges edges_at(const Silhouettes& s, const Silhouette& of, const Node
   static_assert(sizeof(SilhouetteNode) == 2 * sizeof(float));
   alignas(32) std::int32_t at[8];
   store(place.node + place.node, at);
-  // A node and the next one: greatest, least, greatest, least.
+  // Values of a node and the next one: greatest, least, greatest, least.
   F8 node[4];
   gather_rows(&s.nodes[of.first].greatest_m, at, node);
   return {node[0] + place.share * (node[2] - node[0]), node[1] + place.share * (node[3] - node[1])};

@@ -10,48 +10,49 @@
 
 namespace crashrank::detail {
 
-/// Rigid transformation from one body's axes to another's, and the velocity of the first one's
-/// material against the second one's, in the second one's axes.
-struct Carrier {
+/// Rigid transformation from the axes of one body to those of another, and the velocity of the
+/// first body relative to the second, in the second body's axes.
+struct RelativeMotion {
   float c = 1.0F;
   float s = 0.0F;
   float x = 0.0F;
   float y = 0.0F;
-  float vx = 0.0F;  ///< at the origin of the axes
+  float vx = 0.0F;  ///< velocity at the origin of the axes
   float vy = 0.0F;
   float spin = 0.0F;
 };
 
-/// A pass for the vector units.
+/// Arguments of a pass: one evaluation of the forces of one outline on another body.
 struct PressQuery {
-  Carrier to;  ///< from the pusher to the pressed body
+  RelativeMotion to;  ///< from the axes of `pusher` to those of `pressed`
   const PressedBody* pusher = nullptr;
   const PressedBody* pressed = nullptr;
   const PassSettings* settings = nullptr;
-  float narrow_m = 1.0F;  ///< width of the narrower body
-  float wider_m = 0.0F;   ///< width of the pressed body beside the pusher, >= 0
-  float dragged_kgm3 = 0.0F;
+  float narrower_width_m = 1.0F;  ///< width of the narrower body
+  float excess_width_m = 0.0F;  ///< width of the pressed body in excess of that of the pusher, >= 0
+  float dragged_density_kgm3 = 0.0F;
 };
 
-/// Sums of a pass in the pressed body's axes.
+/// Sums of a pass, in the pressed body's axes.
 struct PressTotals {
   bool approaching = false;
   double force_x = 0.0;
   double force_y = 0.0;
   double moment = 0.0;
-  double point_x = 0.0;  ///< force times its place
+  double point_x = 0.0;  ///< force times position
   double point_y = 0.0;
 };
 
-/// Makes the list anew: blocks with pieces that may press within the next `near_m` of travel.
+/// Makes a new list of the blocks with pieces that may press within the next `near_m` of relative
+/// travel.
 void list_blocks(const PressQuery& query, float near_m, NearPieces& near);
 
-/// Moves the pieces of the listed blocks by a step and adds up the forces of those that press; of
-/// `sums` all but what is in world axes. The same bits on every vector unit.
-void press_blocks(const PressQuery& query, NearPieces& near, PressTotals& totals, PassSums& sums,
-                  PassRecord& record);
+/// Advances the pieces of the listed blocks by a step and sums the forces of those that press.
+/// Fills all of `sums` except the members in world axes. Every vector unit gives the same bits.
+void accumulate_forces(const PressQuery& query, NearPieces& near, PressTotals& totals,
+                       PassSums& sums, PassRecord& record);
 
-/// Whether a piece of one fixed body is covered by another.
+/// Returns true if a piece of one fixed body is covered by another fixed body.
 bool is_hidden(const PressedBody& owner, const OutlinePiece& piece, std::size_t band,
                const PassSettings& settings);
 

@@ -8,15 +8,17 @@
 namespace crashrank::detail {
 namespace {
 
-/// Mass that is pushed aside, times the mean density: a vehicle's mass lies in the lower half of
-/// its volume, and what is pushed drags about as much beside it along.
-constexpr float dragged = 4.0F;
-/// Travel for which a list of pieces is made, m.
+/// Ratio of the density of the material pushed aside to the mean density of the body. The mass of a
+/// vehicle lies in the lower half of its volume, and displaced material drags about the same mass
+/// along beside it.
+constexpr float dragged_mass_factor = 4.0F;
+/// Relative travel for which a list of pieces is valid, m.
 constexpr double list_travel_m = 0.15;
-/// It is made anew in the first step beyond that: no step takes more than this, m.
+/// Upper bound of the relative travel of a step, m: a new list is made in the first step beyond
+/// `list_travel_m`.
 constexpr double step_travel_m = 0.1;
 
-Carrier carrier(const PressedBody& from, const PressedBody& to) {
+RelativeMotion relative_motion(const PressedBody& from, const PressedBody& to) {
   const PlanarBody& p = from.motion;
   const PlanarBody& q = to.motion;
   const double pcx = from.vehicle->center_m.x();
@@ -25,20 +27,20 @@ Carrier carrier(const PressedBody& from, const PressedBody& to) {
   const double qcy = to.vehicle->center_m.y();
   const double c = q.cosine * p.cosine + q.sine * p.sine;
   const double s = q.cosine * p.sine - q.sine * p.cosine;
-  // The first body's centre of mass in the second one's axes.
+  // Centre of mass of the first body in the second body's axes.
   const double mx = qcx + q.cosine * (p.x - q.x) + q.sine * (p.y - q.y);
   const double my = qcy - q.sine * (p.x - q.x) + q.cosine * (p.y - q.y);
   const double ux = q.cosine * (p.vx - q.vx) + q.sine * (p.vy - q.vy);
   const double uy = -q.sine * (p.vx - q.vx) + q.cosine * (p.vy - q.vy);
-  Carrier carrier;
-  carrier.c = static_cast<float>(c);
-  carrier.s = static_cast<float>(s);
-  carrier.x = static_cast<float>(mx - (c * pcx - s * pcy));
-  carrier.y = static_cast<float>(my - (s * pcx + c * pcy));
-  carrier.vx = static_cast<float>(ux + p.spin * my - q.spin * qcy);
-  carrier.vy = static_cast<float>(uy - p.spin * mx + q.spin * qcx);
-  carrier.spin = static_cast<float>(p.spin - q.spin);
-  return carrier;
+  RelativeMotion relative_motion;
+  relative_motion.c = static_cast<float>(c);
+  relative_motion.s = static_cast<float>(s);
+  relative_motion.x = static_cast<float>(mx - (c * pcx - s * pcy));
+  relative_motion.y = static_cast<float>(my - (s * pcx + c * pcy));
+  relative_motion.vx = static_cast<float>(ux + p.spin * my - q.spin * qcy);
+  relative_motion.vy = static_cast<float>(uy - p.spin * mx + q.spin * qcx);
+  relative_motion.spin = static_cast<float>(p.spin - q.spin);
+  return relative_motion;
 }
 
 }  // namespace
@@ -85,34 +87,35 @@ bool is_hidden(const PressedBody& owner, const OutlinePiece& piece, std::size_t 
   return false;
 }
 
-void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
-                  const PassSettings& settings, double moved_m, NearPieces& near, PassSums& sums,
-                  PassRecord& record) {
+void compute_piece_forces(const PressedBody& pusher, const PressedBody& pressed,
+                          const PassSettings& settings, double moved_m, NearPieces& near,
+                          PassSums& sums, PassRecord& record) {
   const Silhouettes& shape = pusher.vehicle->silhouettes;
   const Silhouettes& target = pressed.vehicle->silhouettes;
-  // A wall is as wide as it is long, a vehicle as it is across.
+  // A fixed body counts with its larger dimension, a vehicle with its width.
   const auto pusher_width = pusher.vehicle->movable()
                                 ? static_cast<float>(shape.width_m())
                                 : std::max(shape.max_x - shape.min_x, shape.max_y - shape.min_y);
   const auto own_width = static_cast<float>(target.width_m());
   PressQuery query;
-  query.to = carrier(pusher, pressed);
+  query.to = relative_motion(pusher, pressed);
   query.pusher = &pusher;
   query.pressed = &pressed;
   query.settings = &settings;
-  query.narrow_m = std::max(std::min(pusher_width, own_width), 1e-3F);
-  query.wider_m = std::max(0.0F, own_width - pusher_width);
-  query.dragged_kgm3 = dragged * static_cast<float>(pressed.vehicle->density_kgm3);
+  query.narrower_width_m = std::max(std::min(pusher_width, own_width), 1e-3F);
+  query.excess_width_m = std::max(0.0F, own_width - pusher_width);
+  query.dragged_density_kgm3 =
+      dragged_mass_factor * static_cast<float>(pressed.vehicle->density_kgm3);
   near.valid_for_m -= moved_m;
   if (!(near.valid_for_m > 0.0)) {
     list_blocks(query, static_cast<float>(list_travel_m + step_travel_m), near);
     near.valid_for_m = list_travel_m;
   }
   PressTotals totals;
-  press_blocks(query, near, totals, sums, record);
+  accumulate_forces(query, near, totals, sums, record);
   sums.approaching = totals.approaching;
 
-  // From the pressed body's axes to the world's.
+  // Transform from the pressed body's axes to world axes.
   const PlanarBody& q = pressed.motion;
   const double cx = pressed.vehicle->center_m.x();
   const double cy = pressed.vehicle->center_m.y();

@@ -12,57 +12,60 @@
 
 namespace crashrank::detail {
 
-/// A body of a contact: what it is, how it resists, where it is now.
+/// A body of a contact: its vehicle, its strength and its present motion.
 struct PressedBody {
   const Vehicle* vehicle = nullptr;
   CrushResponse response;
   PlanarBody motion;
 };
 
-/// Sums of one pass.
+/// Sums of one pass. "Own" is the body whose material is pressed in, "other" the body whose outline
+/// pieces press.
 struct PassSums {
-  bool approaching = false;  ///< pieces within the other's bounds advance, pressing or not yet
-  PlanarForce on_pressed;    ///< on the body whose material is pressed in
-  double pressing = 0.0;     ///< N, without the gate of the advance
-  double closing = 0.0;      ///< N·m/s: pressing times advance
-  double passing = 0.0;      ///< N·m/s: pressing times relative speed
-  double fresh = 0.0;        ///< N: pressing times the share of its free crush length that is left
-  double weight = 0.0;       ///< N: pressing forces
-  double point_x = 0.0;      ///< N·m: force times its place, world axes from first contact
-  double point_y = 0.0;      ///< N·m
-  double power_own = 0.0;    ///< W: crushing the body whose material is pressed in
-  double power_other = 0.0;  ///< W: crushing the body whose pieces press
+  bool approaching =
+      false;  ///< pieces within the other body's bounds advance, with or without a force
+  PlanarForce on_pressed;     ///< force on `pressed`
+  double pressing = 0.0;      ///< N: normal forces before the reduction at low closing speed
+  double closing = 0.0;       ///< N·m/s: pressing times closing speed along the normal
+  double speed = 0.0;         ///< N·m/s: pressing times relative speed
+  double unused_crush = 0.0;  ///< N: pressing times the unused share of the crush length
+  double weight = 0.0;        ///< N: normal forces
+  double point_x = 0.0;       ///< N·m: normal force times position, world axes from first contact
+  double point_y = 0.0;       ///< N·m
+  double power_own = 0.0;     ///< W: crush power of `pressed`
+  double power_other = 0.0;   ///< W: crush power of `pusher`
   double power_friction = 0.0;  ///< W
   float depth_own = 0.0F;       ///< greatest crush depth, m
   float depth_other = 0.0F;     ///< m
 };
 
-/// What a pass records of both bodies over a whole contact.
+/// Damage of both bodies that the passes of a contact record.
 struct PassRecord {
-  Box own;                       ///< where pieces pressed, axes of the pressed body
-  Box other;                     ///< the pieces that pressed, axes of their body
-  float intrusion_own = 0.0F;    ///< greatest reach into the compartment, m
+  Box own;                       ///< region where pieces pressed, axes of the pressed body
+  Box other;                     ///< pieces that pressed, axes of their own body
+  float intrusion_own = 0.0F;    ///< greatest intrusion, m
   float intrusion_other = 0.0F;  ///< m
 };
 
-/// What does not change within a contact.
+/// Parameters of a pass.
 struct PassSettings {
   float friction = 0.3F;
-  float interlocked = 1.0F;  ///< friction where both bodies are crushed
+  float interlocked = 1.0F;  ///< friction coefficient where both bodies are crushed
   double step_s = 0.001;
-  double since_s = 0.001;  ///< from the last pass until this one
-  /// Other bodies that nothing moves: pieces inside one of them do not press.
+  double pass_interval_s = 0.001;  ///< time from the last pass to this one
+  /// All fixed bodies of the contact: pieces inside another of them do not press.
   View<const PressedBody* const> neighbours;
-  std::size_t self = 0;  ///< the pressing body's place among them
+  std::size_t self = 0;  ///< index of the pressing body in `neighbours`
 };
 
-/// Whether a point (body axes, m) lies inside an outline of the band: O(pieces of the band).
+/// Returns true if a point (body axes, m) lies inside an outline of the height band. O(pieces of
+/// the band).
 bool inside_outline(const Vehicle& vehicle, std::size_t band, float x, float y);
 
-/// Forces of the pieces of `pusher` on the material of `pressed`, which yields. `moved_m` is how
-/// far points of the two have moved against each other since the last pass.
-void press_pieces(const PressedBody& pusher, const PressedBody& pressed,
-                  const PassSettings& settings, double moved_m, NearPieces& near, PassSums& sums,
-                  PassRecord& record);
+/// Computes the forces of the outline pieces of `pusher` on the deformable body `pressed`.
+/// `moved_m`: upper bound of the relative travel of points of the two bodies since the last pass.
+void compute_piece_forces(const PressedBody& pusher, const PressedBody& pressed,
+                          const PassSettings& settings, double moved_m, NearPieces& near,
+                          PassSums& sums, PassRecord& record);
 
 }  // namespace crashrank::detail

@@ -26,12 +26,12 @@ constexpr double track_over_width = 0.86;
 // Height bands of the outline that hold the body's width but no mirrors: up to 0.6 m.
 constexpr std::size_t low_bands = 3;
 
-// Speeds below which directions of sliding mean nothing, m/s.
+// Below this speed the direction of sliding is undefined, m/s.
 constexpr double least_sliding_mps = 1e-9;
-// Most damping of one point over a step, as a multiple of the body's momentum: a direction so
-// damped loses 99.98 % of its speed. Limits the condition of the equations.
+// Upper bound of the damping of one point over a step, as a multiple of the body's momentum: it
+// removes 99.98 % of the speed in that direction. Limits the condition number of the equations.
 constexpr double most_damping = 100.0;
-// A body slower than this stands, m/s (spin: times the radius of gyration).
+// A body slower than this is at rest, m/s (yaw rate: times the radius of gyration).
 constexpr double standing_mps = 1e-6;
 
 struct OutlineBox {
@@ -58,7 +58,7 @@ OutlineBox outline_box(const Profile& profile, std::size_t bands) {
   return box;
 }
 
-/// Velocity of the centre of mass in body axes, m/s, and spin, rad/s.
+/// Velocity of the centre of mass in body axes, m/s, and yaw rate, rad/s.
 struct BodyVelocity {
   double x = 0.0;
   double y = 0.0;
@@ -78,36 +78,36 @@ struct Symmetric3 {
   double ss = 0.0;
 };
 
-/// What the forces of a step depend on besides the velocity, by wheel (left, right).
+/// Parameters of the tyre forces of an axle in a step, by wheel (left, right).
 struct AxleStep {
   Array2d load;
   Array2d locked;
   bool any_locked;
-  Array2d braking;    ///< braking share times grip·g·seconds, m/s
-  Array2d side;       ///< most side force over load times g·seconds, m/s
-  Array2d cornering;  ///< slope of the side force times g·seconds, m/s
+  Array2d braking;    ///< braking share times friction·g·seconds, m/s
+  Array2d side;       ///< upper bound of side force over load, times g·seconds, m/s
+  Array2d cornering;  ///< side force over load and slip angle, times g·seconds, m/s
 };
 
-/// Velocities of an axle's contact points: along its wheels and to the left of them, m/s.
+/// Velocities of an axle's contact points along its wheels and to their left, m/s.
 struct AxleVelocity {
   Array2d along;
   Array2d across;
 };
 
-/// Damping of an axle's wheels: impulse of the step over the body's mass and the velocity.
+/// Damping of an axle's wheels: impulse of the step per mass of the body and per velocity.
 struct AxleDamping {
   Array2d along;
   Array2d across;
 };
 
-/// Sums over an axle have two terms, so that exchanging left and right changes no bit.
+/// Sum over an axle. With two terms, exchanging left and right changes no bit.
 double both(const Array2d& a) { return a[0] + a[1]; }
 
 inline AxleDamping axle_damping(const AxleStep& step, const AxleVelocity& v) {
   const Array2d along = v.along.abs().max(least_sliding_mps);
   const Array2d across = v.across.abs().max(least_sliding_mps);
-  // A locked wheel's force is against the whole velocity; slip angle and braking of a turning one
-  // refer to the speed along the wheel.
+  // The force of a locked wheel opposes its whole velocity; slip angle and braking force of a
+  // turning wheel refer to the speed along the wheel.
   Array2d speed = along;
   if (step.any_locked) speed = (along * along + step.locked * (across * across)).sqrt();
   const Array2d per = 1.0 / (speed * across);
@@ -134,7 +134,7 @@ struct RoadStep {
   }
 };
 
-/// Impulse of the step over mass at a velocity: dx, dy, and moment over mass, m²/s.
+/// Impulse of the step per mass for a velocity: x and y in m/s, moment in m²/s.
 inline BodyVelocity road_impulse(const RoadStep& step, const BodyVelocity& v) {
   const AxleVelocity front = step.front_velocity(v);
   const AxleVelocity rear = step.rear_velocity(v);
@@ -152,8 +152,9 @@ inline BodyVelocity road_impulse(const RoadStep& step, const BodyVelocity& v) {
       both(x * step.footing.y_m) - (step.footing.front_m * front_y + step.footing.rear_m * rear_y)};
 }
 
-/// The same per velocity: impulse = -D(v)·v. Every wheel's D is positive semidefinite, so no step
-/// with D at whatever velocity adds energy.
+/// Damping matrix D of the step: impulse = -D(v)·v. The matrix of every wheel is positive
+/// semidefinite, so that a step with D adds no energy, whatever the velocity at which D was
+/// evaluated.
 inline Symmetric3 road_damping(const RoadStep& step, const BodyVelocity& v) {
   const AxleDamping f = axle_damping(step.front, step.front_velocity(v));
   const AxleDamping r = axle_damping(step.rear, step.rear_velocity(v));
@@ -162,7 +163,7 @@ inline Symmetric3 road_damping(const RoadStep& step, const BodyVelocity& v) {
   const Array2d& y = step.footing.y_m;
   const double xf = step.footing.front_m;
   const double xr = step.footing.rear_m;
-  // The front wheels' damping turned by the steering angle.
+  // Damping of the front wheels, rotated by the steering angle.
   const Array2d f_xx = cc * f.along + ss * f.across;
   const Array2d f_xy = (step.cosine * step.sine) * (f.along - f.across);
   const double f_yy = both(ss * f.along + cc * f.across);
@@ -232,8 +233,9 @@ Footing footing_of(const Vehicle& vehicle) {
     half_y = 0.5 * track_over_width * (box.high_y - box.low_y);
     footing.cornering = vehicle.kind == BodyKind::car ? car_cornering : lorry_cornering;
   } else {
-    // Friction of an evenly loaded rod turning in place: exactly that of weights in the middles of
-    // its halves; of a square, 8 % more than that of its quarters'.
+    // Friction of an evenly loaded rod that turns in place equals that of two loads at the middles
+    // of its halves; for a square it is 8 % more than that of four loads at the middles of its
+    // quarters.
     const OutlineBox box = outline_box(profile, profile_bands);
     const double middle_x = 0.5 * (box.low_x + box.high_x);
     const double half_x = 0.25 * (box.high_x - box.low_x);
@@ -246,7 +248,8 @@ Footing footing_of(const Vehicle& vehicle) {
   rear -= vehicle.center_m.x();
   const double left = middle_y + half_y - vehicle.center_m.y();
   const double right = middle_y - half_y - vehicle.center_m.y();
-  // Each from its own lever, so that the mirrored vehicle's loads are the mirrored ones.
+  // Compute each share from its own lever arm, so that a mirrored vehicle has exactly the mirrored
+  // loads.
   const double on_front = std::clamp(-rear / (front - rear), 0.0, 1.0);
   const double on_rear = std::clamp(front / (front - rear), 0.0, 1.0);
   const double on_left = std::clamp(-right / (left - right), 0.0, 1.0);
@@ -278,8 +281,8 @@ Wheels wheels_after(const Footing& footing, AfterContact after, double steering_
   return wheels;
 }
 
-void drive(const Footing& footing, const Wheels& wheels, double grip, double seconds,
-           PlanarBody& body) {
+void apply_tyre_forces(const Footing& footing, const Wheels& wheels, double grip, double seconds,
+                       PlanarBody& body) {
   const double most_mps = grip * road_gravity_mps2 * seconds;
   if (!(grip > 0.0 && seconds > 0.0) || body.inverse_mass == 0.0) return;
   if (body.vx == 0.0 && body.vy == 0.0 && body.spin == 0.0) return;
@@ -298,10 +301,10 @@ void drive(const Footing& footing, const Wheels& wheels, double grip, double sec
   };
   const RoadStep step{footing, wheels.cosine, wheels.sine, axle(footing.front_load, wheels.front),
                       axle(footing.rear_load, wheels.rear)};
-  // With D frozen, the velocity would decay as exp(-D). 1/(1 + D + D²/2) is of second order and
-  // neither overshoots nor oscillates, however stiff the tyres are at walking pace. D is taken at
-  // an estimate of the velocity at half the step: an explicit half step, shortened where the forces
-  // would more than stop the body, since any D keeps the energy from growing.
+  // With constant D the velocity would decay as exp(-D). 1/(1 + D + D²/2) is a second-order
+  // approximation that neither overshoots nor oscillates, however stiff the tyres are at walking
+  // pace. D is evaluated at an estimate of the velocity at half the step: an explicit half step,
+  // shortened where the forces would more than stop the body. Any D keeps the energy from growing.
   const BodyVelocity push = road_impulse(step, before);
   const double energy = before.squared(gyration2);
   const double pushed = push.x * push.x + push.y * push.y + per_gyration2 * (push.spin * push.spin);
@@ -313,12 +316,12 @@ void drive(const Footing& footing, const Wheels& wheels, double grip, double sec
   BodyVelocity change{after.x - before.x, after.y - before.y, after.spin - before.spin};
   const double changed = change.x * change.x + change.y * change.y;
   if (changed > most_mps * most_mps) {
-    // Energy is convex between two velocities: a part of the change does not add any either.
+    // Energy is convex in the velocity: a part of the change adds no energy either.
     const double part = most_mps / std::sqrt(changed);
     change = {part * change.x, part * change.y, part * change.spin};
   }
   const BodyVelocity now{before.x + change.x, before.y + change.y, before.spin + change.spin};
-  // Where almost no energy is lost, rounding could add some.
+  // If almost no energy is lost, rounding could add some: keep the velocity.
   if (now.squared(gyration2) > energy) return;
   if (now.squared(gyration2) < standing_mps * standing_mps &&
       before.x * before.x + before.y * before.y <= most_mps * most_mps) {

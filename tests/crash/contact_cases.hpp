@@ -22,7 +22,7 @@
 
 namespace crashrank::test {
 
-/// An upright prism with a regular base: posts and poles.
+/// A mesh of a vertical prism with a regular polygon as base, for posts and poles.
 inline TriangleMesh prism_mesh(double radius, double height, std::uint32_t sides) {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i < sides; ++i) {
@@ -43,7 +43,7 @@ inline TriangleMesh prism_mesh(double radius, double height, std::uint32_t sides
   return mesh;
 }
 
-/// A box that stands on the ground, its middle at the origin.
+/// A mesh of a box on the ground, centred at the origin.
 inline TriangleMesh block_mesh(double length, double width, double height) {
   return box_mesh({0.5 * length, 0.5 * width, 0.5 * height}, {0, 0, 0.5 * height});
 }
@@ -60,9 +60,10 @@ inline Vehicle vehicle_from(const TriangleMesh& mesh, BodyKind kind) {
   return vehicle_from(mesh, facts);
 }
 
-/// A body without core, hardening and mass to push aside: one law on all sides and at all heights.
-inline Vehicle even_block(double length, double width, double height, double mass_kg,
-                          const CrushLaw& law) {
+/// A body without rigid core, hardening and displaced mass: the same crush law on all sides and at
+/// all heights.
+inline Vehicle uniform_block(double length, double width, double height, double mass_kg,
+                             const CrushLaw& law) {
   VehicleFacts facts;
   facts.mass_kg = mass_kg;
   Vehicle v = vehicle_from(block_mesh(length, width, height), facts);
@@ -75,7 +76,7 @@ inline Vehicle even_block(double length, double width, double height, double mas
   return v;
 }
 
-/// A shipped model.
+/// A model from data/models.
 struct ShippedModel {
   const char* name;
   BodyKind kind;
@@ -97,19 +98,19 @@ inline TriangleMesh shipped_mesh(const std::string& name) {
   return std::move(*mesh);
 }
 
-/// A body of the random contacts.
-struct Cast {
+/// A body for random contacts.
+struct NamedBody {
   std::string name;
   Vehicle vehicle;
 };
 
-/// All bodies of the random contacts: shipped models that move, then what stands: shipped models
-/// and posts. Described once, mirrored or as they are.
-struct Company {
-  std::vector<Cast> movable;
-  std::vector<Cast> fixed;
+/// All bodies for random contacts: movable models, then fixed models and posts. Optionally
+/// mirrored.
+struct BodySet {
+  std::vector<NamedBody> movable;
+  std::vector<NamedBody> fixed;
 
-  explicit Company(bool mirror) {
+  explicit BodySet(bool mirror) {
     const auto described = [&](TriangleMesh mesh, BodyKind kind) {
       return vehicle_from(mirror ? mirrored(std::move(mesh)) : std::move(mesh), kind);
     };
@@ -126,17 +127,17 @@ struct Company {
     }
   }
   std::size_t size() const { return movable.size() + fixed.size(); }
-  const Cast& any(std::size_t i) const {
+  const NamedBody& any(std::size_t i) const {
     return i < movable.size() ? movable[i] : fixed[i - movable.size()];
   }
 };
 
-inline const Company& company() {
-  static const Company one(false);
+inline const BodySet& test_bodies() {
+  static const BodySet one(false);
   return one;
 }
-inline const Company& mirrored_company() {
-  static const Company one(true);
+inline const BodySet& mirrored_bodies() {
+  static const BodySet one(true);
   return one;
 }
 
@@ -168,8 +169,8 @@ inline std::vector<OutlineEnds> outline_in_world(const ContactBody& body, std::s
   return ends;
 }
 
-/// Distance that A can travel along a unit direction before the outlines of a band meet; infinity
-/// if they never do. Sets the place where they meet.
+/// Distance that A can travel along a unit direction until the outlines of a height band touch;
+/// infinity if they never do. Sets the point of contact.
 inline double travel_to_contact(const ContactBody& a, const ContactBody& b,
                                 const Eigen::Vector2d& direction, Eigen::Vector2d& point) {
   double least = std::numeric_limits<double>::infinity();
@@ -179,7 +180,7 @@ inline double travel_to_contact(const ContactBody& a, const ContactBody& b,
   for (std::size_t band = 0; band < profile_bands; ++band) {
     const std::vector<OutlineEnds> of_a = outline_in_world(a, band);
     const std::vector<OutlineEnds> of_b = outline_in_world(b, band);
-    // A vertex of one outline against a segment of the other; `sign` 1 if the vertex moves.
+    // Vertices of one outline against segments of the other; `sign` is 1 if the vertices move.
     const auto sweep = [&](const std::vector<OutlineEnds>& vertices,
                            const std::vector<OutlineEnds>& segments, double sign) {
       std::vector<std::pair<double, double>> ranges;
@@ -211,9 +212,9 @@ inline double travel_to_contact(const ContactBody& a, const ContactBody& b,
   return least;
 }
 
-/// Moves A along the relative velocity until its outline is `gap_m` before B's. False if it would
-/// pass.
-inline bool bring_together(ContactScene& scene, double gap_m) {
+/// Moves A along the relative velocity until its outline is `gap_m` from B's. Returns false if they
+/// would pass each other.
+inline bool move_to_contact(ContactScene& scene, double gap_m) {
   const Eigen::Vector3d closing = scene.a.velocity.linear_mps - scene.b.velocity.linear_mps;
   const Eigen::Vector2d direction = closing.head<2>().normalized();
   constexpr double far_m = 60.0;
@@ -230,14 +231,14 @@ inline Pose flat_pose(double x, double y, double yaw) {
   return pose_from_angles({x, y, 0}, yaw, 0, 0);
 }
 
-/// Which bodies of a company meet.
+/// The two bodies of a contact.
 struct Pairing {
-  std::size_t a = 0;  ///< index into `Company::movable`
-  std::size_t b = 0;  ///< index for `Company::any`
+  std::size_t a = 0;  ///< index into `BodySet::movable`
+  std::size_t b = 0;  ///< index for `BodySet::any`
 };
 
-/// Random headings, directions and offsets at a closing speed; B moves in half the contacts in
-/// which it can. Draws the same numbers whatever the bodies are.
+/// Random headings, directions and offsets. B moves in half of the contacts in which it is movable.
+/// Uses the same random numbers for all bodies.
 struct ContactDraw {
   double yaw_a;
   double yaw_b;
@@ -256,8 +257,8 @@ struct ContactDraw {
         spin_a(random.uniform(-0.5, 0.5)),
         spin_b(random.uniform(-0.5, 0.5)) {}
 
-  /// The draw seen in a mirror at the plane y = 0.
-  ContactDraw in_mirror() const {
+  /// The draw mirrored at the plane y = 0.
+  ContactDraw mirrored_copy() const {
     ContactDraw d = *this;
     for (double* value : {&d.yaw_a, &d.yaw_b, &d.course, &d.offset, &d.spin_a, &d.spin_b}) {
       *value = -*value;
@@ -272,7 +273,7 @@ inline double half_diagonal(const Vehicle& v) {
          std::hypot(static_cast<double>(s.max_x - s.min_x), static_cast<double>(s.max_y - s.min_y));
 }
 
-/// The contact of a draw; false if the bodies pass each other.
+/// Sets up the contact of a draw; returns false if the bodies pass each other.
 inline bool make_contact(const ContactDraw& draw, const Vehicle& a, const Vehicle& b,
                          double closing_mps, double gap_m, ContactScene& scene) {
   scene = {};
@@ -282,7 +283,8 @@ inline bool make_contact(const ContactDraw& draw, const Vehicle& a, const Vehicl
   const Eigen::Vector3d aside(-direction.y(), direction.x(), 0);
   scene.a.pose = flat_pose(0, 0, draw.yaw_a);
   scene.b.pose = flat_pose(0, 0, draw.yaw_b);
-  // The middles of the outlines on one line, then aside by a share of what can still meet.
+  // Align the centres of the outlines, then offset A by a share of the distance at which they still
+  // touch.
   const auto middle = [](const ContactBody& body) {
     const Silhouettes& s = body.vehicle->silhouettes;
     const Eigen::Vector3d local(0.5 * static_cast<double>(s.min_x + s.max_x),
@@ -295,7 +297,7 @@ inline bool make_contact(const ContactDraw& draw, const Vehicle& a, const Vehicl
   const double share = b.movable() ? draw.share : 0.0;
   scene.a.velocity.linear_mps = (1.0 - share) * closing_mps * direction;
   scene.b.velocity.linear_mps = -share * closing_mps * direction;
-  if (!bring_together(scene, gap_m)) return false;
+  if (!move_to_contact(scene, gap_m)) return false;
   return true;
 }
 
@@ -305,7 +307,7 @@ inline void spin(const ContactDraw& draw, ContactScene& scene) {
   if (scene.b.vehicle->movable()) scene.b.velocity.angular_radps.z() = draw.spin_b;
 }
 
-/// Kinetic energy in the plane, J, of a centre of mass's velocity and a yaw rate.
+/// Kinetic energy of planar motion, J, for the velocity of the centre of mass and the yaw rate.
 inline double energy_j(const Vehicle& v, const Eigen::Vector3d& velocity, double yaw_rate) {
   if (!v.movable()) return 0.0;
   return 0.5 *
@@ -323,7 +325,7 @@ inline Eigen::Vector3d center_velocity(const ContactBody& body) {
       .cwiseProduct(Eigen::Vector3d(1, 1, 0));
 }
 
-/// Value that a share of the values does not exceed.
+/// The value that the given share of the values does not exceed.
 inline double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());

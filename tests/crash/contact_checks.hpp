@@ -24,21 +24,22 @@ inline ContactOutcome simulate(const ContactScene& scene, const ContactVariant& 
   return simulate_contact(scene.a, scene.b, {}, scene.point_m, variant, workspace, options);
 }
 
-/// Calls a test with random contacts of all pairs: number, draw, indices of the bodies, speed.
+/// Calls a check for random contacts of all pairs of bodies, with number, draw, indices of the
+/// bodies and closing speed.
 inline void for_random_contacts(
     std::uint64_t seed, int count,
     const std::function<void(int, const ContactDraw&, std::size_t, std::size_t, double)>& check) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
-  const auto movable = static_cast<std::uint32_t>(company().movable.size());
-  const auto all = static_cast<std::uint32_t>(company().size());
+  const auto movable = static_cast<std::uint32_t>(test_bodies().movable.size());
+  const auto all = static_cast<std::uint32_t>(test_bodies().size());
   for (int i = 0; i < count; ++i) {
     const std::size_t a = random.below(movable);
     const std::size_t b = random.below(all);
     const double closing = std::exp(random.uniform(0.0, std::log(140.0)));
     const ContactDraw draw(random);
-    SCOPED_TRACE("contact " + std::to_string(i) + " of " + company().movable[a].name + " and " +
-                 company().any(b).name + " at " + std::to_string(closing) + " m/s");
+    SCOPED_TRACE("contact " + std::to_string(i) + " of " + test_bodies().movable[a].name + " and " +
+                 test_bodies().any(b).name + " at " + std::to_string(closing) + " m/s");
     check(i, draw, a, b, closing);
     if (::testing::Test::HasFatalFailure()) return;
   }
@@ -46,13 +47,13 @@ inline void for_random_contacts(
 
 inline bool make_scene(const ContactDraw& draw, std::size_t a, std::size_t b, double closing,
                        ContactScene& scene, double gap_m = 0.001) {
-  const bool meets = make_contact(draw, company().movable[a].vehicle, company().any(b).vehicle,
-                                  closing, gap_m, scene);
+  const bool meets = make_contact(draw, test_bodies().movable[a].vehicle,
+                                  test_bodies().any(b).vehicle, closing, gap_m, scene);
   if (meets) spin(draw, scene);
   return meets;
 }
 
-inline ContactVariant any_variant(int i) {
+inline ContactVariant variant_for(int i) {
   constexpr std::array<ContactVariant, 4> variants{
       {{1, 1, 1}, {0.33, 0.7, 3.0}, {2.0, 1.4, 0.0}, {0.0, 1.0, 1.0}}};
   return variants[static_cast<std::size_t>(i) % variants.size()];
@@ -94,7 +95,7 @@ inline void expect_same_bits(const ContactOutcome& p, const ContactOutcome& q) {
   EXPECT_EQ(p.pieces, q.pieces);
 }
 
-/// Shares of the closing speed by which delta-v of A and of B differ, the greater of the two.
+/// Difference of the delta-v of A and of B, relative to the closing speed; the greater of the two.
 inline double change(const ContactOutcome& p, const ContactOutcome& q, double closing) {
   return std::max((p.a.delta_v_mps - q.a.delta_v_mps).norm(),
                   (p.b.delta_v_mps - q.b.delta_v_mps).norm()) /
@@ -109,7 +110,7 @@ inline void print_changes(const char* name, const std::vector<double>& changes) 
       percentile(changes, 0.95), percentile(changes, 0.99), percentile(changes, 1.0));
 }
 
-/// Speeds of closing from 1 to 140 m/s.
+/// 41 closing speeds from 1 to 140 m/s, evenly spaced on a logarithmic scale.
 inline std::vector<double> all_speeds() {
   constexpr int count = 40;
   std::vector<double> speeds;
@@ -117,16 +118,16 @@ inline std::vector<double> all_speeds() {
   return speeds;
 }
 
-/// Driven forward, centred on the other body.
-inline ContactScene square_hit(const Vehicle& a, const Vehicle& b, double speed) {
+/// A body that drives forward, centred on the other body.
+inline ContactScene full_frontal_hit(const Vehicle& a, const Vehicle& b, double speed) {
   ContactScene scene;
   scene.a = {&a, flat_pose(0, 0, 0), {{speed, 0, 0}, {0, 0, 0}}};
   scene.b = {&b, flat_pose(0, 0, 0), {}};
-  EXPECT_TRUE(bring_together(scene, 0.001));
+  EXPECT_TRUE(move_to_contact(scene, 0.001));
   return scene;
 }
 
-/// A wall across x = 0, 12 m wide, in that many adjoining blocks.
+/// A wall along x = 0, 12 m wide, cut into `count` adjoining blocks.
 inline std::vector<Vehicle> wall_in_blocks(int count, double thickness) {
   std::vector<Vehicle> blocks;
   const double width = 12.0 / count;
@@ -138,6 +139,6 @@ inline std::vector<Vehicle> wall_in_blocks(int count, double thickness) {
   return blocks;
 }
 
-inline constexpr CrushLaw even_law{100e3, 1000e3, std::numeric_limits<double>::infinity()};
+inline constexpr CrushLaw uniform_law{100e3, 1000e3, std::numeric_limits<double>::infinity()};
 
 }  // namespace crashrank::test

@@ -15,26 +15,26 @@ namespace crashrank {
 namespace {
 
 using Eigen::Vector3d;
-using test::any_variant;
 using test::change;
-using test::company;
 using test::ContactDraw;
 using test::ContactScene;
-using test::even_law;
 using test::for_random_contacts;
 using test::make_scene;
 using test::percentile;
 using test::Random;
 using test::simulate;
+using test::test_bodies;
+using test::uniform_law;
+using test::variant_for;
 
-TEST(ContactLaw, MomentumAndMomentOfMomentumAreConserved) {
+TEST(ContactLaw, MomentumAndAngularMomentumAreConserved) {
   std::vector<double> momentum;
   std::vector<double> moment;
   for_random_contacts(
       105, 2000, [&](int i, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
         ContactScene scene;
-        if (b >= company().movable.size() || !make_scene(draw, a, b, closing, scene)) return;
-        const ContactOutcome r = simulate(scene, any_variant(i));
+        if (b >= test_bodies().movable.size() || !make_scene(draw, a, b, closing, scene)) return;
+        const ContactOutcome r = simulate(scene, variant_for(i));
         const std::array<const ContactBody*, 2> bodies{&scene.a, &scene.b};
         const std::array<const BodyContact*, 2> results{&r.a, &r.b};
         Vector3d change = Vector3d::Zero();
@@ -57,7 +57,7 @@ TEST(ContactLaw, MomentumAndMomentOfMomentumAreConserved) {
         momentum.push_back(change.head<2>().norm() / scale);
         moment.push_back(std::abs(turning) / moment_scale);
       });
-  std::printf("momentum off by at most %.3g, moment of momentum p50 %.3g, p90 %.3g, most %.3g\n",
+  std::printf("error of momentum at most %.3g, of angular momentum p50 %.3g, p90 %.3g, most %.3g\n",
               percentile(momentum, 1.0), percentile(moment, 0.5), percentile(moment, 0.9),
               percentile(moment, 1.0));
   EXPECT_GT(momentum.size(), 500U);
@@ -71,7 +71,7 @@ TEST(ContactLaw, EnergyNeverGrows) {
       106, 2000, [&](int i, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
         ContactScene scene;
         if (!make_scene(draw, a, b, closing, scene)) return;
-        const ContactOutcome r = simulate(scene, any_variant(i));
+        const ContactOutcome r = simulate(scene, variant_for(i));
         double before = 0.0;
         double after = 0.0;
         for (const auto& [body, result] : {std::pair{&scene.a, &r.a}, std::pair{&scene.b, &r.b}}) {
@@ -88,17 +88,17 @@ TEST(ContactLaw, EnergyNeverGrows) {
         ASSERT_NEAR(r.friction_j + r.a.crush_energy_j + r.b.crush_energy_j, r.dissipated_j,
                     1e-9 * before);
       });
-  std::printf("energy after over energy before less 1: at most %.3g\n", most);
+  std::printf("relative growth of kinetic energy: at most %.3g\n", most);
 }
 
-TEST(ContactLaw, WhatNothingMovesDoesNotMove) {
+TEST(ContactLaw, FixedBodiesDoNotMove) {
   for_random_contacts(
       107, 500, [&](int i, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
         ContactScene scene;
-        if (b < company().movable.size() || !make_scene(draw, a, b, closing, scene)) return;
-        // A stated velocity of a body that nothing moves is not read.
+        if (b < test_bodies().movable.size() || !make_scene(draw, a, b, closing, scene)) return;
+        // The velocity of a fixed body is ignored.
         if (i % 2 == 0) scene.b.velocity.linear_mps = Vector3d(3, 4, 0);
-        const ContactOutcome r = simulate(scene, any_variant(i));
+        const ContactOutcome r = simulate(scene, variant_for(i));
         EXPECT_TRUE(r.b.delta_v_mps.isZero(0.0));
         EXPECT_TRUE(r.b.moved_m.isZero(0.0));
         EXPECT_EQ(r.b.turned_rad, 0.0);
@@ -108,8 +108,8 @@ TEST(ContactLaw, WhatNothingMovesDoesNotMove) {
         EXPECT_TRUE(Vector3d(r.b.impulse_ns + r.a.impulse_ns).isZero(0.0));
         ASSERT_FALSE(testing::Test::HasFailure());
       });
-  const Vehicle& wall = company().fixed[0].vehicle;
-  const Vehicle& post = company().fixed[4].vehicle;
+  const Vehicle& wall = test_bodies().fixed[0].vehicle;
+  const Vehicle& post = test_bodies().fixed[4].vehicle;
   ContactScene scene;
   scene.a = {&post, test::flat_pose(-0.06, 0, 0), {{20, 0, 0}, {0, 0, 0}}};
   scene.b = {&wall, test::flat_pose(0, 0, 0), {}};
@@ -117,11 +117,11 @@ TEST(ContactLaw, WhatNothingMovesDoesNotMove) {
 }
 
 TEST(ContactLaw, OverlapAtTheStartProducesNoForce) {
-  const Vehicle block = test::even_block(4.0, 1.8, 1.0, 1500.0, even_law);
+  const Vehicle block = test::uniform_block(4.0, 1.8, 1.0, 1500.0, uniform_law);
   ContactScene scene;
   scene.a = {&block, test::flat_pose(0, 0, 0), {{1, 0.5, 0}, {0, 0, 0}}};
-  // One inside the other, as deep as they go.
-  const Vehicle large = test::even_block(12.0, 8.0, 1.0, 15000.0, even_law);
+  // One body inside the other.
+  const Vehicle large = test::uniform_block(12.0, 8.0, 1.0, 15000.0, uniform_law);
   scene.b = {&large, test::flat_pose(0, 0, 0.3), {}};
   const ContactOutcome r = simulate(scene);
   EXPECT_FALSE(r.acts);
@@ -141,8 +141,8 @@ TEST(ContactLaw, EveryContactEndsWithFiniteNumbers) {
           body->velocity.linear_mps *= speed;
           body->velocity.angular_radps *= std::min(speed, 1.0);
         }
-        const ContactOutcome r = simulate(scene, any_variant(i));
-        // The longest that a contact is followed, and a step.
+        const ContactOutcome r = simulate(scene, variant_for(i));
+        // The maximum duration of a contact plus one step.
         EXPECT_LE(r.duration_s, 1.5 + ContactOptions{}.longest_s);
         EXPECT_GE(r.duration_s, 0.0);
         EXPECT_LT(r.steps, 20000U);
@@ -165,13 +165,13 @@ TEST(ContactLaw, EveryContactEndsWithFiniteNumbers) {
       });
 }
 
-TEST(ContactLaw, ConvexBodiesThatPartDoNotAct) {
+TEST(ContactLaw, SeparatingConvexBodiesDoNotAct) {
   constexpr std::uint64_t seed = 114;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
-  const Vehicle block = test::even_block(4.0, 1.8, 1.0, 1500.0, even_law);
-  const std::array<const Vehicle*, 3> others{&block, &company().fixed[0].vehicle,
-                                             &company().fixed[4].vehicle};
+  const Vehicle block = test::uniform_block(4.0, 1.8, 1.0, 1500.0, uniform_law);
+  const std::array<const Vehicle*, 3> others{&block, &test_bodies().fixed[0].vehicle,
+                                             &test_bodies().fixed[4].vehicle};
   int parted = 0;
   for (int i = 0; i < 300; ++i) {
     const ContactDraw draw(random);

@@ -16,34 +16,34 @@ namespace {
 using Eigen::Vector3d;
 using test::all_speeds;
 using test::change;
-using test::company;
 using test::ContactDraw;
 using test::ContactScene;
 using test::expect_same_bits;
 using test::for_random_contacts;
+using test::full_frontal_hit;
 using test::make_scene;
 using test::percentile;
 using test::print_changes;
 using test::Random;
 using test::simulate;
-using test::square_hit;
+using test::test_bodies;
 using test::wall_in_blocks;
 
-TEST(ContactLaw, FasterIsMilderInFewGeometries) {
+TEST(ContactLaw, DeltaVRarelyFallsWithTheClosingSpeed) {
   constexpr std::uint64_t seed = 108;
   constexpr int geometries = 12;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   const std::vector<double> speeds = all_speeds();
   std::vector<double> drops;
-  std::vector<double> full;  // of contacts that at 10 m/s take most of the closing speed
-  for (std::size_t a = 0; a < company().movable.size(); ++a) {
-    for (std::size_t b = 0; b < company().size(); ++b) {
+  std::vector<double> full;  // contacts whose delta-v at 10 m/s is most of the closing speed
+  for (std::size_t a = 0; a < test_bodies().movable.size(); ++a) {
+    for (std::size_t b = 0; b < test_bodies().size(); ++b) {
       for (int i = 0; i < geometries; ++i) {
         const ContactDraw draw(random);
         ContactScene scene;
-        if (!make_contact(draw, company().movable[a].vehicle, company().any(b).vehicle, 1.0, 0.001,
-                          scene)) {
+        if (!make_contact(draw, test_bodies().movable[a].vehicle, test_bodies().any(b).vehicle, 1.0,
+                          0.001, scene)) {
           continue;
         }
         const Vector3d of_a = scene.a.velocity.linear_mps;
@@ -72,10 +72,12 @@ TEST(ContactLaw, FasterIsMilderInFewGeometries) {
   };
   for (const auto* of : {&drops, &full}) {
     std::printf(
-        "%zu %s: delta-v drops by over 2 %% in %.1f %%, over 5 %% in %.1f %%, over 10 %% in "
+        "%zu %s: delta-v falls at a higher speed by over 2 %% in %.1f %%, over 5 %% in %.1f %%, "
+        "over 10 %% in "
         "%.1f %%, at most by %.1f %%\n",
-        of->size(), of == &drops ? "geometries" : "full hits", 100 * share_over(*of, 0.02),
-        100 * share_over(*of, 0.05), 100 * share_over(*of, 0.1), 100 * percentile(*of, 1.0));
+        of->size(), of == &drops ? "geometries" : "full-overlap contacts",
+        100 * share_over(*of, 0.02), 100 * share_over(*of, 0.05), 100 * share_over(*of, 0.1),
+        100 * percentile(*of, 1.0));
   }
   EXPECT_GT(full.size(), 150U);
   EXPECT_LE(share_over(drops, 0.02), 0.30);
@@ -86,7 +88,7 @@ TEST(ContactLaw, FasterIsMilderInFewGeometries) {
   EXPECT_LE(share_over(full, 0.1), 0.08) << "the goal is none";
 }
 
-TEST(ContactLaw, AWallCutInBlocksActsAsOne) {
+TEST(ContactLaw, WallCutIntoBlocksActsAsOneWall) {
   constexpr std::uint64_t seed = 109;
   constexpr double thickness = 0.6;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
@@ -101,7 +103,7 @@ TEST(ContactLaw, AWallCutInBlocksActsAsOne) {
     std::vector<double> crush;
     ContactWorkspace workspace;
     for (int i = 0; i < 60; ++i) {
-      const test::Cast& car = company().movable[random.below(5)];
+      const test::NamedBody& car = test_bodies().movable[random.below(5)];
       const double course = random.uniform(-0.9, 0.9);
       const double yaw = course + random.uniform(-0.5, 0.5);
       const double y = random.uniform(-2, 2);
@@ -111,15 +113,15 @@ TEST(ContactLaw, AWallCutInBlocksActsAsOne) {
                  test::flat_pose(0, y, yaw),
                  {{speed * std::cos(course), speed * std::sin(course), 0}, {0, 0, 0}}};
       scene.b = at(whole[0], 0, 1);
-      ASSERT_TRUE(test::bring_together(scene, 0.001));
+      ASSERT_TRUE(test::move_to_contact(scene, 0.001));
       const ContactOutcome one = simulate(scene);
-      // The block that holds the point of first contact is met first.
-      const int met = std::clamp(
+      // The block with the point of first contact is the second body.
+      const int hit_block = std::clamp(
           static_cast<int>(std::floor((scene.point_m.y() + 6.0) * count / 12.0)), 0, count - 1);
       std::vector<ContactBody> fixed;
       for (int k = 0; k < count; ++k) {
         const ContactBody block = at(cut[static_cast<std::size_t>(k)], k, count);
-        if (k == met) {
+        if (k == hit_block) {
           scene.b = block;
         } else {
           fixed.push_back(block);
@@ -149,13 +151,13 @@ TEST(ContactLaw, AWallCutInBlocksActsAsOne) {
 }
 
 TEST(ContactLaw, ThicknessOfAWallChangesDeltaVLittle) {
-  const Vehicle& sedan = company().movable[0].vehicle;
+  const Vehicle& sedan = test_bodies().movable[0].vehicle;
   const double speed = 15.6;
   std::vector<double> depths;
   std::vector<double> delta_v;
   for (const double thickness : {0.25, 0.6, 3.0}) {
     const std::vector<Vehicle> wall = wall_in_blocks(1, thickness);
-    const ContactOutcome r = simulate(square_hit(sedan, wall[0], speed));
+    const ContactOutcome r = simulate(full_frontal_hit(sedan, wall[0], speed));
     depths.push_back(r.a.crush_depth_m);
     delta_v.push_back(r.a.delta_v_mps.norm());
     std::printf("wall of %.2f m: crush depth %.3f m, delta-v %.3f m/s\n", thickness,
@@ -185,9 +187,9 @@ TEST(ContactLaw, ShorterStepsChangeLittle) {
   EXPECT_LT(percentile(changes, 0.95), 0.10) << "the goal is 0.02";
 }
 
-/// Cars and lorries against each other, walls, barriers and poles.
+/// Returns true for contacts of cars and lorries with each other, walls, barriers and poles.
 bool between_vehicles(std::size_t a, std::size_t b) {
-  const std::size_t movable = company().movable.size();
+  const std::size_t movable = test_bodies().movable.size();
   return a < 3 && (b < 3 || (b >= movable && b < movable + 3));
 }
 

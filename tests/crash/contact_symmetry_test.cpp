@@ -17,9 +17,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using test::any_variant;
 using test::change;
-using test::company;
 using test::ContactDraw;
 using test::ContactScene;
 using test::expect_same_bits;
@@ -28,6 +26,8 @@ using test::make_scene;
 using test::percentile;
 using test::print_changes;
 using test::simulate;
+using test::test_bodies;
+using test::variant_for;
 
 TEST(ContactLaw, ExchangeOfTheBodiesChangesNoBit) {
   int acting = 0;
@@ -35,9 +35,9 @@ TEST(ContactLaw, ExchangeOfTheBodiesChangesNoBit) {
       101, 1000, [&](int i, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
         ContactScene scene;
         if (!make_scene(draw, a, b, closing, scene)) return;
-        const ContactOutcome plain = simulate(scene, any_variant(i));
+        const ContactOutcome plain = simulate(scene, variant_for(i));
         std::swap(scene.a, scene.b);
-        const ContactOutcome exchanged = simulate(scene, any_variant(i));
+        const ContactOutcome exchanged = simulate(scene, variant_for(i));
         acting += plain.acts ? 1 : 0;
         expect_same_bits(plain, exchanged);
         expect_same_bits(plain.a, exchanged.b);
@@ -47,14 +47,14 @@ TEST(ContactLaw, ExchangeOfTheBodiesChangesNoBit) {
   EXPECT_GT(acting, 800);
 }
 
-TEST(ContactLaw, AWorkspaceKeepsNothingBetweenContacts) {
+TEST(ContactLaw, WorkspaceKeepsNoStateBetweenContacts) {
   ContactWorkspace used;
   for_random_contacts(
       102, 200, [&](int i, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
         ContactScene scene;
         if (!make_scene(draw, a, b, closing, scene)) return;
         ContactWorkspace fresh;
-        const ContactVariant variant = any_variant(i);
+        const ContactVariant variant = variant_for(i);
         const ContactOutcome first =
             simulate_contact(scene.a, scene.b, {}, scene.point_m, variant, fresh);
         const ContactOutcome again =
@@ -79,7 +79,7 @@ TEST(ContactLaw, EveryVectorUnitHasTheSameBits) {
         [&](int i, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
           ContactScene scene;
           if (!make_scene(draw, a, b, closing, scene)) return;
-          const ContactOutcome outcome = simulate(scene, any_variant(i));
+          const ContactOutcome outcome = simulate(scene, variant_for(i));
           if (units == 0) {
             expected.push_back(outcome);
             return;
@@ -122,8 +122,8 @@ TEST(ContactLaw, TurningTheWorldTurnsTheOutcome) {
   EXPECT_LT(percentile(changes, 0.99), 1e-6);
 }
 
-/// The vehicle with its outlines mirrored at the plane y = 0, piece by piece.
-Vehicle in_mirror(const Vehicle& v) {
+/// A copy of the vehicle with every outline piece mirrored at the plane y = 0.
+Vehicle mirrored_copy(const Vehicle& v) {
   Vehicle m = v;
   Profile profile = *v.profile;
   for (OutlinePiece& piece : profile.pieces) {
@@ -136,7 +136,8 @@ Vehicle in_mirror(const Vehicle& v) {
   return m;
 }
 
-/// Changes of delta-v in a mirror whose bodies are given by index.
+/// Differences of delta-v between contacts and their mirror images, for bodies mirrored by the
+/// given function.
 std::vector<double> mirror_changes(const std::function<const Vehicle*(std::size_t)>& mirrored) {
   std::vector<double> changes;
   for_random_contacts(
@@ -163,8 +164,8 @@ std::vector<double> mirror_changes(const std::function<const Vehicle*(std::size_
 
 TEST(ContactLaw, MirroredOutlinesMirrorTheOutcome) {
   std::vector<Vehicle> mirrored;
-  for (std::size_t i = 0; i < company().size(); ++i) {
-    mirrored.push_back(in_mirror(company().any(i).vehicle));
+  for (std::size_t i = 0; i < test_bodies().size(); ++i) {
+    mirrored.push_back(mirrored_copy(test_bodies().any(i).vehicle));
   }
   const std::vector<double> changes = mirror_changes([&](std::size_t i) { return &mirrored[i]; });
   print_changes("mirrored outlines", changes);
@@ -175,7 +176,7 @@ TEST(ContactLaw, MirroredOutlinesMirrorTheOutcome) {
 
 TEST(ContactLaw, MirroredMeshesMirrorTheOutcome) {
   const std::vector<double> changes =
-      mirror_changes([](std::size_t i) { return &test::mirrored_company().any(i).vehicle; });
+      mirror_changes([](std::size_t i) { return &test::mirrored_bodies().any(i).vehicle; });
   print_changes("mirrored meshes", changes);
   EXPECT_LT(percentile(changes, 0.5), 1e-6) << "the goal is 1e-6 in 99 % of contacts";
   EXPECT_LT(percentile(changes, 0.9), 0.001);

@@ -23,7 +23,7 @@ float log_uniform(Random& random, double low, double high) {
 
 namespace lanes = detail::HWY_NAMESPACE;
 
-/// One of the eight curves of `CrushCurves`; the others are the same.
+/// One lane of `CrushCurves`; all eight lanes are equal.
 struct CrushCurve {
   float yield = 0.0F;
   float slope = 1.0F;
@@ -83,8 +83,8 @@ HWY_ATTR float inside_compartment(const CrushResponse& response, float x, float 
       lanes::inside_compartment(response, lanes::all(x), lanes::all(y), lanes::all(nx)));
 }
 
-/// A curve with parts of it absent now and then.
-CrushCurve any_curve(Random& random) {
+/// A random curve, sometimes without yield force, crush length limit, hardening or rigid part.
+CrushCurve random_curve(Random& random) {
   CrushCurve curve;
   curve.yield = random.below(5) == 0 ? 0.0F : log_uniform(random, 1e2, 1e6);
   curve.slope = log_uniform(random, 3e4, 3e6);
@@ -102,10 +102,10 @@ TEST(CrushCurve, DepthInvertsForce) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   for (int i = 0; i < cases; ++i) {
-    const CrushCurve curve = any_curve(random);
+    const CrushCurve curve = random_curve(random);
     const float depth = log_uniform(random, 1e-3, 3.0);
     const float force = curve.force_at(depth);
-    // Force carries the rounding of the yield, which the slope turns into depth.
+    // The force has the rounding error of the yield force, which the slope converts to depth.
     const float rounding = 1e-6F * force / curve.slope;
     ASSERT_NEAR(curve.depth_at(force), depth, 1e-4F * depth + rounding) << "case " << i;
     ASSERT_GE(curve.force_at(depth * 1.01F), force) << "case " << i;
@@ -128,26 +128,26 @@ TEST(CrushCurve, ForceHasItsThreeSlopes) {
   EXPECT_FLOAT_EQ(curve.force_at(1.0F), 1.85e6F + 0.25F * 1.05e8F);
 }
 
-TEST(ShareCrush, BothCurvesBearTheSameForce) {
+TEST(ShareCrush, BothCurvesHaveTheSameForce) {
   constexpr std::uint64_t seed = 202;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   double most = 0.0;
   for (int i = 0; i < cases; ++i) {
-    const CrushCurve a = any_curve(random);
-    const CrushCurve b = any_curve(random);
+    const CrushCurve a = random_curve(random);
+    const CrushCurve b = random_curve(random);
     const float depth = log_uniform(random, 1e-3, 3.0);
     const SharedCrush shared = share_crush(a, b, depth);
     ASSERT_GE(shared.depth_a, 0.0F) << "case " << i;
     ASSERT_LE(shared.depth_a, depth) << "case " << i;
     ASSERT_GE(shared.force, std::min(a.yield, b.yield) * (1.0F - 1e-5F)) << "case " << i;
-    // The depths of both at that force add up to the whole.
+    // The depths of both curves at that force add up to the total.
     const float own = a.depth_at(shared.force);
     const float other = b.depth_at(shared.force);
     const float rounding = 1e-6F * shared.force * (1.0F / a.slope + 1.0F / b.slope);
     ASSERT_NEAR(own + other, depth, 1e-4F * depth + rounding) << "case " << i;
     ASSERT_NEAR(own, shared.depth_a, 1e-4F * depth + rounding) << "case " << i;
-    // A body that gives way bears the force of its own depth.
+    // A body above its yield force has the force that belongs to its own depth.
     for (const auto& [curve, part] :
          {std::pair{&a, shared.depth_a}, std::pair{&b, depth - shared.depth_a}}) {
       if (shared.force <= curve->yield * 1.0001F) continue;
@@ -167,8 +167,8 @@ TEST(ShareCrush, RisesWithTheDepth) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   for (int i = 0; i < cases / 20; ++i) {
-    const CrushCurve a = any_curve(random);
-    const CrushCurve b = any_curve(random);
+    const CrushCurve a = random_curve(random);
+    const CrushCurve b = random_curve(random);
     SharedCrush before;
     for (float depth = 0.002F; depth < 3.0F; depth *= 1.2F) {
       const SharedCrush shared = share_crush(a, b, depth);
@@ -184,8 +184,8 @@ TEST(ShareCrush, ExchangeOfTheCurvesExchangesTheDepths) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   for (int i = 0; i < cases; ++i) {
-    const CrushCurve a = any_curve(random);
-    const CrushCurve b = any_curve(random);
+    const CrushCurve a = random_curve(random);
+    const CrushCurve b = random_curve(random);
     const float depth = log_uniform(random, 1e-3, 3.0);
     const SharedCrush one = share_crush(a, b, depth);
     const SharedCrush other = share_crush(b, a, depth);
@@ -194,7 +194,7 @@ TEST(ShareCrush, ExchangeOfTheCurvesExchangesTheDepths) {
   }
 }
 
-TEST(CrushResponse, BandsShareTheLawOfAnEvenBody) {
+TEST(CrushResponse, ForcesOfAllBandsAddUpToTheLaw) {
   CrushStrength strength;
   strength.front = {100e3, 1000e3, 0.5};
   strength.side = {50e3, 500e3, 0.3};
@@ -210,14 +210,14 @@ TEST(CrushResponse, BandsShareTheLawOfAnEvenBody) {
     }
     return force;
   };
-  // Pressed from ahead, from the left and from behind: normals of what presses point inward.
+  // Pressed from the front, the left and the rear: the normals of the pressing pieces point inward.
   EXPECT_NEAR(sum(-1, 0, 0.2F), 2 * (100e3 + 0.2 * 1000e3), 1.0);
   EXPECT_NEAR(sum(0, -1, 0.2F), 2 * (50e3 + 0.2 * 500e3), 1.0);
   EXPECT_NEAR(sum(1, 0, 0.2F), 2 * (80e3 + 0.2 * 700e3), 1.0);
   EXPECT_TRUE(CrushResponse(CrushStrength::unyielding(), 1.0).rigid);
 }
 
-TEST(CrushResponse, TheCompartmentIsMeasuredFromItsNearestSide) {
+TEST(CrushResponse, IntrusionIsMeasuredFromTheNearestSide) {
   CrushStrength strength;
   strength.core.cage_half_width_m = 0.7;
   strength.core.cage_front_m = 2.0;

@@ -16,7 +16,7 @@ using detail::Footing;
 using detail::Wheels;
 using Eigen::Vector3d;
 
-/// A box on the ground, its rear wall at x = 0, `left` of the x axis by its middle.
+/// A box on the ground with its rear face at x = 0 and its centre at y = `left`.
 Vehicle box_vehicle(BodyKind kind, double length, double width, double height, double left = 0.0,
                     const std::optional<Vector3d>& center = {}) {
   VehicleFacts facts;
@@ -31,7 +31,7 @@ Vehicle box_vehicle(BodyKind kind, double length, double width, double height, d
 
 double total_load(const Footing& f) { return f.front_load.sum() + f.rear_load.sum(); }
 
-/// Sum of load times arm: zero where the loads balance the centre of mass.
+/// Sum of load times lever arm: zero if the loads balance the centre of mass.
 Eigen::Vector2d imbalance(const Footing& f) {
   return {f.front_m * f.front_load.sum() + f.rear_m * f.rear_load.sum(),
           (f.y_m * (f.front_load + f.rear_load)).sum()};
@@ -43,10 +43,10 @@ TEST(Footing, CarsStandOnFourWheelsAtTheirAxles) {
   EXPECT_TRUE(f.wheels);
   EXPECT_NEAR(f.front_m + v.center_m.x(), v.rear_axle_x_m + v.wheelbase_m, 1e-12);
   EXPECT_NEAR(f.rear_m + v.center_m.x(), v.rear_axle_x_m, 1e-12);
-  // Track 0.86 of the width; outlines are exact to a cell of 2 cm.
+  // The track is 0.86 of the width; outlines are exact to a cell of 2 cm.
   EXPECT_NEAR(f.y_m[0] - f.y_m[1], 0.86 * 1.8, 0.03);
   EXPECT_NEAR(f.y_m.sum(), 0.0, 0.02);
-  // 58 % of the load in front, see Vehicle.
+  // 58 % of the load is on the front axle, see Vehicle.
   EXPECT_NEAR(f.front_load.sum(), 0.58, 1e-12);
   EXPECT_NEAR(total_load(f), 1.0, 1e-12);
   EXPECT_NEAR(imbalance(f).norm(), 0.0, 1e-12);
@@ -54,25 +54,25 @@ TEST(Footing, CarsStandOnFourWheelsAtTheirAxles) {
   EXPECT_LT(f.cornering, 30.0 * 0.573);
 }
 
-TEST(Footing, AStatedCentreOfMassShiftsTheLoads) {
+TEST(Footing, CentreOfMassDeterminesTheLoads) {
   const Vehicle v = box_vehicle(BodyKind::car, 4.5, 1.8, 1.4, 0.0, Vector3d(2.0, 0.2, 0.5));
   const Footing f = detail::footing_of(v);
   EXPECT_GT(f.front_load[0], f.front_load[1]);
   EXPECT_NEAR(total_load(f), 1.0, 1e-12);
   EXPECT_NEAR(imbalance(f).norm(), 0.0, 1e-12);
-  // Beyond the front axle all load is on it.
+  // A centre of mass in front of the front axle puts all load on that axle.
   const Footing nose =
       detail::footing_of(box_vehicle(BodyKind::car, 4.5, 1.8, 1.4, 0.0, Vector3d(4.4, 0, 0.5)));
   EXPECT_NEAR(nose.front_load.sum(), 1.0, 1e-12);
   EXPECT_EQ(nose.rear_load.sum(), 0.0);
 }
 
-TEST(Footing, BodiesWithoutAxlesSlideOnTheMiddlesOfTheirQuarters) {
+TEST(Footing, BodiesWithoutAxlesSlideOnFourPatches) {
   for (const BodyKind kind : {BodyKind::motorcycle, BodyKind::bicycle, BodyKind::pedestrian,
                               BodyKind::truck, BodyKind::bus}) {
     Vehicle v = box_vehicle(kind, 2.0, 0.8, 1.5);
     v.wheelbase_m = 0.0;
-    v.center_m.x() = 1.0;  // the middle of the box
+    v.center_m.x() = 1.0;  // centre of the box
     const Footing f = detail::footing_of(v);
     EXPECT_FALSE(f.wheels);
     EXPECT_EQ(f.cornering, 0.0);
@@ -82,7 +82,7 @@ TEST(Footing, BodiesWithoutAxlesSlideOnTheMiddlesOfTheirQuarters) {
     EXPECT_NEAR(f.y_m[1], -0.2, 0.03);
     EXPECT_NEAR(total_load(f), 1.0, 1e-12);
     EXPECT_NEAR(imbalance(f).norm(), 0.0, 1e-12);
-    // Nothing of them turns, whatever is asked for.
+    // Patches never turn, whatever state is requested.
     const Wheels w = detail::wheels_after(f, AfterContact::releases, 0.3, 0.5);
     EXPECT_TRUE((w.front.locked == 1.0).all() && (w.rear.locked == 1.0).all());
     EXPECT_TRUE((w.front.brake == 1.0).all() && (w.rear.side == 1.0).all());

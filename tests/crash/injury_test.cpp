@@ -36,7 +36,8 @@ Exposure outside(Person person, double v, double edge = 0.75) {
 
 double logistic(double z) { return 1.0 / (1.0 + std::exp(-z)); }
 
-/// A published curve with the argument z, which is z0 at zero exposure, through zero there.
+/// Published logistic curve with argument z, transformed to be zero at its argument z0 of zero
+/// exposure.
 double through_zero(double z, double z0) {
   return (logistic(z) - logistic(z0)) / (1.0 - logistic(z0));
 }
@@ -66,7 +67,7 @@ TEST(Injury, TenPercentAtTheSpeedsOfLubbe) {
   EXPECT_NEAR(injury_risk(RiskModel::tum, outside(Person::motorcyclist, 48 * kmh)), 0.1, 1e-12);
 }
 
-TEST(Injury, TouchingHurtsHardlyAnybody) {
+TEST(Injury, RiskAtTouchingSpeedIsSmall) {
   for (const double pdof : {0.0, 45.0, 90.0, 135.0, 180.0}) {
     EXPECT_LE(injury_risk(RiskModel::tum, occupant(0.3, pdof)), 0.002);
   }
@@ -92,7 +93,8 @@ TEST(Injury, RiskRisesWithSpeedAndStaysAProbability) {
   }
 }
 
-/// Any person, direction, edge and description, with exposures up to where the risk is nearly 1.
+/// A random person, direction, leading edge and description, with exposures up to a risk of nearly
+/// 1.
 Exposure random_exposure(test::Random& random) {
   Exposure e;
   e.person = persons[random.below(4)];
@@ -138,7 +140,8 @@ TEST(Injury, RiskIsZeroAtZeroContinuousAndMonotone) {
 
 TEST(Injury, RiskIsContinuousInTheDirection) {
   for (const RiskModel model : models) {
-    // The steepest blend, Malliaris between rear and side: (1.462 + 1.921) · 0.01 degrees · 0.25.
+    // Bound from the steepest blend, Malliaris between rear and side: (1.462 + 1.921) · 0.01
+    // degrees · 0.25.
     const double most = model == RiskModel::tum ? 1e-4 : 1.5e-4;
     const auto step = [&](double v, double pdof, double by) {
       return std::abs(injury_risk(model, occupant(v, pdof + by)) -
@@ -175,7 +178,7 @@ TEST(Injury, PureDirectionsAreTheExtremes) {
   }
 }
 
-TEST(Injury, TheWorstLeadingEdgeIsEnclosed) {
+TEST(Injury, LargestRiskOverLeadingEdgesIsEnclosed) {
   for (const RiskModel model : models) {
     for (double v = 0.5; v < 30; v += 0.25) {
       double most = 0.0;
@@ -212,7 +215,7 @@ TEST(Injury, IntrusionMultipliesTheOdds) {
               1e-6);
 }
 
-TEST(Injury, AgeAndSexOfPedestriansCountWhereTheCurveKnowsThem) {
+TEST(Injury, AgeAndSexMatterOnlyInCurvesThatUseThem) {
   for (const RiskModel model : models) {
     Exposure e = outside(Person::pedestrian, 11);
     const double mean = injury_risk(model, e);
@@ -275,10 +278,10 @@ TEST(Injury, RidersFareBetterThanPedestriansAndHighFrontsAreWorse) {
 }
 
 TEST(Injury, TheLeadingEdgeIsWhereALeaningEdgeTouches) {
-  // A wedge-free block: its upper front edge, if not above the reach of the edge.
+  // For a block it is the upper front edge, if the leaning edge reaches that high.
   EXPECT_NEAR(leading_edge_m(test::box_mesh({2, 0.9, 0.4}, {0, 0, 0.4}, 8)), 0.8, 1e-6);
   EXPECT_NEAR(leading_edge_m(test::box_mesh({2, 0.9, 0.2}, {0, 0, 0.2}, 8)), 0.4, 1e-6);
-  // Bonnet over bumper, cabin behind: the bonnet's.
+  // For a bonnet with a cabin behind it, the front edge of the bonnet.
   TriangleMesh car = test::box_mesh({2, 0.9, 0.35}, {0, 0, 0.35}, 8);
   const TriangleMesh cabin = test::box_mesh({0.8, 0.8, 0.3}, {-0.4, 0, 1.0}, 8);
   const auto base = static_cast<std::uint32_t>(car.vertices.size());

@@ -1,5 +1,5 @@
-// First contacts that the outlines find, against the exact search over the meshes; and what a pair
-// of bodies remembers of its last contact.
+// First contacts of the outlines against the exact search over the meshes, and further contacts of
+// a pair of bodies that has crushed before.
 
 #include "campaign.hpp"
 #include "crash/contact_checks.hpp"
@@ -23,7 +23,6 @@ namespace crashrank {
 namespace {
 
 using detail::SceneRun;
-using test::company;
 using test::ContactDraw;
 using test::ContactScene;
 using test::flat_pose;
@@ -31,10 +30,11 @@ using test::for_random_contacts;
 using test::named;
 using test::percentile;
 using test::Random;
-using test::Stage;
+using test::SceneSetup;
+using test::test_bodies;
 
-/// Trees of all bodies of the company, in its order.
-std::vector<AabbTree> company_trees() {
+/// Bounding-volume trees of the test bodies, in their order.
+std::vector<AabbTree> body_trees() {
   std::vector<AabbTree> trees;
   for (const test::ShippedModel& m : test::movable_models) {
     trees.push_back(test::tree_of(test::shipped_mesh(m.name)));
@@ -48,25 +48,25 @@ std::vector<AabbTree> company_trees() {
   return trees;
 }
 
-/// When two bodies on their plans first press on each other; infinity if they never do.
-double first_force_s(SceneRun& run, Stage& stage, double until_s) {
-  run.begin(stage.ready(false), 0, 1, 0.0, Eigen::Vector3d::Zero(), {});
+/// Time of the first force between two bodies on their plans; infinity if there is none.
+double first_force_s(SceneRun& run, SceneSetup& setup, double until_s) {
+  run.begin(setup.make_bodies(false), 0, 1, 0.0, Eigen::Vector3d::Zero(), {});
   bool going = true;
   while (going && run.now_s() < until_s) {
     const double before_s = run.now_s();
     going = run.advance(1);
     if (run.at_once() > 0 && run.live(0).acts()) return 0.5 * (before_s + run.now_s());
-    // Over in the step in which it began.
+    // The contact ended in the step in which it began.
     if (!run.contacts().empty()) return run.contacts()[0].begin_s;
   }
   return std::numeric_limits<double>::infinity();
 }
 
 // Campaigns set CRASHRANK_SCENE_COUNT and CRASHRANK_SCENE_SEED.
-TEST(SceneFirstContact, IsThatOfTheExactSearch) {
+TEST(SceneFirstContact, MatchesTheExactSearch) {
   const std::uint64_t seed = test::wished("CRASHRANK_SCENE_SEED", 451);
   const auto count = static_cast<int>(test::wished("CRASHRANK_SCENE_COUNT", 2000));
-  const std::vector<AabbTree> trees = company_trees();
+  const std::vector<AabbTree> trees = body_trees();
   SceneRun run;
   ImpactWorkspace workspace;
   std::vector<double> early_m;
@@ -79,17 +79,17 @@ TEST(SceneFirstContact, IsThatOfTheExactSearch) {
       seed, count, [&](int, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
         ContactScene scene;
         if (!test::make_scene(draw, a, b, closing, scene, 1.0)) return;
-        Stage stage;
-        stage.add(scene.a);
-        stage.add(scene.b);
+        SceneSetup setup;
+        setup.add(scene.a);
+        setup.add(scene.b);
         const double until_s = 4.0 / closing;
-        const Impact exact = time_of_impact(trees[a], stage.plans[0], trees[b], stage.plans[1], 0.0,
+        const Impact exact = time_of_impact(trees[a], setup.plans[0], trees[b], setup.plans[1], 0.0,
                                             until_s, workspace);
         ASSERT_NE(exact.state, ImpactState::undecided);
         if (exact.state == ImpactState::overlapping || exact.state == ImpactState::contained) {
           return;
         }
-        const double force_s = first_force_s(run, stage, until_s);
+        const double force_s = first_force_s(run, setup, until_s);
         const bool presses = std::isfinite(force_s);
         if (!exact.hit() || !presses) {
           neither += !exact.hit() && !presses ? 1U : 0U;
@@ -98,24 +98,26 @@ TEST(SceneFirstContact, IsThatOfTheExactSearch) {
           return;
         }
         ++both;
-        // Relative travel of the material between the two times.
+        // Relative travel between the two times.
         const double travel_m = (force_s - exact.time_s) * closing;
         (travel_m < 0.0 ? early_m : late_m).push_back(std::abs(travel_m));
       });
   std::vector<double> all = early_m;
   all.insert(all.end(), late_m.begin(), late_m.end());
-  std::printf("%zu in both, %zu in neither, %zu by the exact search alone, %zu by outlines alone\n",
-              both, neither, exact_alone, outlines_alone);
+  std::printf(
+      "contacts found by both: %zu, by neither: %zu, by the exact search only: %zu, by outlines "
+      "only: %zu\n",
+      both, neither, exact_alone, outlines_alone);
   for (const auto& [name, values] :
-       {std::pair{"off either way", &all}, std::pair{"outlines before the meshes", &early_m},
-        std::pair{"outlines after the meshes", &late_m}}) {
+       {std::pair{"absolute difference", &all}, std::pair{"outlines earlier than meshes", &early_m},
+        std::pair{"outlines later than meshes", &late_m}}) {
     std::printf("%s, m of travel: %zu, p50 %.3g, p90 %.3g, p95 %.3g, p99 %.3g, most %.3g\n", name,
                 values->size(), percentile(*values, 0.5), percentile(*values, 0.9),
                 percentile(*values, 0.95), percentile(*values, 0.99), percentile(*values, 1.0));
   }
   EXPECT_GT(both, static_cast<std::size_t>(count) / 2);
-  // Force takes some depth, so it comes a step later, or where only a corner is clipped none at
-  // all. Outlines lie around the meshes by less than a hole that they close.
+  // A force needs some depth, so it begins a step later, or not at all where only corners graze.
+  // Outlines lie outside the meshes by less than the size of the holes that they close.
   EXPECT_LT(percentile(early_m, 1.0), 0.04);
   EXPECT_LT(percentile(late_m, 0.5), 0.08);
   EXPECT_LT(percentile(late_m, 0.95), 0.3);
@@ -123,42 +125,42 @@ TEST(SceneFirstContact, IsThatOfTheExactSearch) {
   EXPECT_LT(static_cast<double>(exact_alone), 0.01 * static_cast<double>(both));
 }
 
-/// What two contacts of one pair begin and reach, m: how far the rear body has come towards the
-/// other.
-struct Reach {
-  std::vector<double> begins_m;
-  std::vector<double> most_m;
-  double turned_rad = 0.0;  ///< of both against each other, greatest
+/// Advance of the rear body relative to the front body at the first force of each contact, and its
+/// maximum, m.
+struct PushRecord {
+  std::vector<double> first_force_m;
+  std::vector<double> max_advance_m;
+  double turned_rad = 0.0;  ///< greatest heading difference of the bodies
 };
 
-/// A body drives into a standing one; a lorry behind pushes it there once more.
-Reach pushed_again(const char* rear, const char* front, double speed_mps, double lorry_mps,
-                   double y_m) {
+/// A body drives into a body at rest; a lorry then pushes it into that body again.
+PushRecord simulate_second_push(const char* rear, const char* front, double speed_mps,
+                                double lorry_mps, double y_m) {
   const Vehicle& first = named(rear);
   const Vehicle& second = named(front);
   const Vehicle& lorry = named("truck");
   const double gap_m = 0.5;
   const double nose = static_cast<double>(first.silhouettes.max_x);
   const double tail = static_cast<double>(first.silhouettes.min_x);
-  Stage stage;
+  SceneSetup setup;
   const double half = -static_cast<double>(second.silhouettes.min_x);
-  stage.add(first, flat_pose(-half - gap_m - nose, y_m, 0), speed_mps);
-  stage.add(second, flat_pose(0, 0, 0), 0.0);
-  // Comes a second or more after the first crash.
+  setup.add(first, flat_pose(-half - gap_m - nose, y_m, 0), speed_mps);
+  setup.add(second, flat_pose(0, 0, 0), 0.0);
+  // The lorry arrives a second or more after the first crash.
   const double behind_m = lorry_mps * (gap_m / speed_mps + 1.2) + 3.0;
-  stage.add(lorry,
+  setup.add(lorry,
             flat_pose(-half - gap_m - nose + tail - behind_m -
                           static_cast<double>(lorry.silhouettes.max_x),
                       y_m, 0),
             lorry_mps);
   SceneRun run;
-  // What rolls on keeps the scene going until the lorry is there.
+  // Rolling bodies keep the scene running until the lorry arrives.
   detail::SceneOptions options;
   options.after = AfterContact::releases;
-  run.begin(stage.ready(true), 0, 1, 0.0, Eigen::Vector3d::Zero(), options);
-  Reach reach;
+  run.begin(setup.make_bodies(true), 0, 1, 0.0, Eigen::Vector3d::Zero(), options);
+  PushRecord reach;
   bool pressed = false;
-  double quiet_s = 1.0;
+  double forceless_s = 1.0;
   bool going = true;
   while (going) {
     const double before_s = run.now_s();
@@ -173,21 +175,21 @@ Reach pushed_again(const char* rear, const char* front, double speed_mps, double
     }
     const double advance_m = run.body(0).x - run.body(1).x;
     reach.turned_rad = std::max(reach.turned_rad, std::abs(p.cosine * q.sine - p.sine * q.cosine));
-    quiet_s += run.now_s() - before_s;
+    forceless_s += run.now_s() - before_s;
     if (!presses) continue;
-    // Forces that follow within 0.3 s are one contact.
-    if (!pressed || quiet_s > 0.3) {
-      reach.begins_m.push_back(0.5 * (p.x - q.x + advance_m));
-      reach.most_m.push_back(advance_m);
+    // Forces less than 0.3 s apart belong to one contact.
+    if (!pressed || forceless_s > 0.3) {
+      reach.first_force_m.push_back(0.5 * (p.x - q.x + advance_m));
+      reach.max_advance_m.push_back(advance_m);
     }
     pressed = true;
-    quiet_s = 0.0;
-    reach.most_m.back() = std::max(reach.most_m.back(), advance_m);
+    forceless_s = 0.0;
+    reach.max_advance_m.back() = std::max(reach.max_advance_m.back(), advance_m);
   }
   return reach;
 }
 
-TEST(SceneMemory, APairThatMeetsAgainPressesWhereItHasNotBeen) {
+TEST(SceneMemory, FurtherContactPressesBeyondTheEarlierCrush) {
   constexpr std::uint64_t seed = 452;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
@@ -201,27 +203,29 @@ TEST(SceneMemory, APairThatMeetsAgainPressesWhereItHasNotBeen) {
       const double speed = random.uniform(4, 16);
       const double lorry = random.uniform(6, 20);
       const double y = random.uniform(-0.1, 0.1);
-      const Reach reach = pushed_again(rear, front, speed, lorry, y);
-      if (reach.begins_m.size() < 2) continue;
-      // Turned bodies press with other pieces.
+      const PushRecord reach = simulate_second_push(rear, front, speed, lorry, y);
+      if (reach.first_force_m.size() < 2) continue;
+      // Bodies that have turned press with other outline pieces.
       if (reach.turned_rad > 0.03) {
         ++turned;
         continue;
       }
-      crush.push_back(reach.most_m[0] - reach.begins_m[0]);
-      off.push_back(reach.begins_m[1] - reach.most_m[0]);
+      crush.push_back(reach.max_advance_m[0] - reach.first_force_m[0]);
+      off.push_back(reach.first_force_m[1] - reach.max_advance_m[0]);
     }
     all += off.size();
     std::printf(
-        "into %s: %zu pairs meet again, %zu more turn; first crush p50 %.3g m; the second force "
-        "begins beyond the first's furthest by p50 %.3g m, least %.3g, most %.3g\n",
+        "into %s: %zu pairs with a further contact, %zu others turned; first crush p50 %.3g m; the "
+        "second force begins beyond the greatest first advance by p50 %.3g m, least %.3g, most "
+        "%.3g\n",
         front, off.size(), turned, percentile(crush, 0.5), percentile(off, 0.5),
         percentile(off, 0.0), percentile(off, 1.0));
-    // Other outlines have corners that a body moved sideways meets for the first time.
+    // Outlines other than the wall have corners that a laterally shifted body contacts for the
+    // first time.
     if (std::string(front) != "wall" || off.empty()) continue;
     EXPECT_GT(percentile(crush, 0.0), 0.1);
     EXPECT_GT(percentile(off, 0.0), -0.01);
-    // Two steps of travel, and one until the pose that is measured.
+    // Tolerance: two steps of travel and one until the measured pose.
     EXPECT_LT(percentile(off, 1.0), 0.18);
   }
   ASSERT_GT(all, 20U);

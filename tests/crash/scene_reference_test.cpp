@@ -1,5 +1,5 @@
-// Where bodies rest after a push, against a plain integrator: the contact alone, then each body by
-// itself on its wheels, the forces written as forces, in steps of 0.1 ms.
+// Rest positions after a contact, against a plain integrator: the contact by itself, then each body
+// by itself on its wheels with explicit tyre forces, in steps of 0.1 ms.
 
 #include "campaign.hpp"
 #include "crash/contact_checks.hpp"
@@ -24,24 +24,24 @@ using detail::Footing;
 using detail::LoneContact;
 using detail::PlanarBody;
 using detail::SceneRun;
-using test::company;
 using test::ContactDraw;
 using test::ContactScene;
 using test::percentile;
 using test::Random;
 using test::ReferenceCar;
 using test::ReferenceWheel;
+using test::test_bodies;
 
-/// What the driver of both bodies does.
-struct Driving {
+/// Driver action in both bodies after the contact.
+struct DriverAction {
   AfterContact after = AfterContact::brakes;
   double brake = 0.45;
   double steering_rad = 0.0;
   double grip = 0.7;
 };
 
-/// Whether crushed structure reaches the wheel at (x, y), m from the centre of mass.
-bool wheel_is_crushed(const Vehicle& v, const Box& damaged, double x, double y) {
+/// Returns true if crushed structure reaches the wheel at (x, y), m from the centre of mass.
+bool wheel_is_in_damage(const Vehicle& v, const Box& damaged, double x, double y) {
   if (damaged.empty()) return false;
   const double at_x = x + v.center_m.x();
   const double at_y = y + v.center_m.y();
@@ -51,12 +51,12 @@ bool wheel_is_crushed(const Vehicle& v, const Box& damaged, double x, double y) 
          at_y < static_cast<double>(damaged.max.y()) + 0.1;
 }
 
-ReferenceCar reference_car(const Vehicle& v, const Driving& driving, const Box& damaged) {
+ReferenceCar reference_car(const Vehicle& v, const DriverAction& action, const Box& damaged) {
   const Footing footing = detail::footing_of(v);
   ReferenceCar car;
   car.mass_kg = v.mass_kg;
   car.inertia_kgm2 = v.yaw_inertia_kgm2;
-  car.grip = footing.wheels ? driving.grip : std::min(driving.grip, 0.5);
+  car.grip = footing.wheels ? action.grip : std::min(action.grip, 0.5);
   car.cornering = footing.cornering;
   for (int axle = 0; axle < 2; ++axle) {
     for (int side = 0; side < 2; ++side) {
@@ -64,10 +64,10 @@ ReferenceCar reference_car(const Vehicle& v, const Driving& driving, const Box& 
       wheel.x_m = axle == 0 ? footing.front_m : footing.rear_m;
       wheel.y_m = footing.y_m[side];
       wheel.load = (axle == 0 ? footing.front_load : footing.rear_load)[side];
-      wheel.steering_rad = axle == 0 ? driving.steering_rad : 0.0;
-      wheel.brake = driving.after == AfterContact::brakes ? driving.brake : 0.0;
-      wheel.locked = !footing.wheels || driving.after == AfterContact::locks ||
-                     wheel_is_crushed(v, damaged, wheel.x_m, wheel.y_m);
+      wheel.steering_rad = axle == 0 ? action.steering_rad : 0.0;
+      wheel.brake = action.after == AfterContact::brakes ? action.brake : 0.0;
+      wheel.locked = !footing.wheels || action.after == AfterContact::locks ||
+                     wheel_is_in_damage(v, damaged, wheel.x_m, wheel.y_m);
       car.wheels.push_back(wheel);
     }
   }
@@ -77,10 +77,10 @@ ReferenceCar reference_car(const Vehicle& v, const Driving& driving, const Box& 
 /// A body after a contact.
 struct PushedBody {
   const Vehicle* vehicle = nullptr;
-  ReferenceCar::State state = ReferenceCar::State::Zero();  ///< as ReferenceCar has it
+  ReferenceCar::State state = ReferenceCar::State::Zero();  ///< state in the form of ReferenceCar
   double time_s = 0.0;
-  double road_from_s = -1e9;  ///< the road acts from then on: no impact takes place any more
-  Box damaged;                ///< wheels in crushed structure lock now
+  double road_from_s = -1e9;  ///< the road forces act from then on, after the impact
+  Box damaged;                ///< region in which wheels are locked
 };
 
 ReferenceCar::State state_of(const PlanarBody& b) {
@@ -89,10 +89,10 @@ ReferenceCar::State state_of(const PlanarBody& b) {
   return s;
 }
 
-/// The contact of a scene step by step, the road's forces added where no impact takes place; false
-/// where they do not press.
-bool contact_on_road(const ContactScene& scene, const Driving& driving,
-                     std::array<PushedBody, 2>& bodies) {
+/// Simulates the contact of a scene step by step, with road forces outside impacts. Returns false
+/// if no force acts.
+bool simulate_contact_on_road(const ContactScene& scene, const DriverAction& action,
+                              std::array<PushedBody, 2>& bodies) {
   ContactWorkspace workspace;
   LoneContact contact(scene.a, scene.b, {}, scene.point_m, {}, {}, workspace);
   const bool a_is_first = contact.run().given_first().vehicle == scene.a.vehicle;
@@ -103,7 +103,7 @@ bool contact_on_road(const ContactScene& scene, const Driving& driving,
   for (std::size_t k = 0; k < 2; ++k) {
     bodies[k] = {};
     bodies[k].vehicle = k == 0 ? scene.a.vehicle : scene.b.vehicle;
-    cars[k] = reference_car(*bodies[k].vehicle, driving, {});
+    cars[k] = reference_car(*bodies[k].vehicle, action, {});
   }
   bool going = true;
   bool touched = false;
@@ -135,12 +135,12 @@ bool contact_on_road(const ContactScene& scene, const Driving& driving,
   return outcome.acts;
 }
 
-/// On the road until `until_s`, or at rest before.
-ReferenceCar::State rest_of(PushedBody body, const Driving& driving, double until_s) {
+/// State of the body at `until_s`, or at rest before.
+ReferenceCar::State rest_state(PushedBody body, const DriverAction& action, double until_s) {
   const double free_s = std::max(0.0, body.road_from_s - body.time_s);
   for (int k = 0; k < 3; ++k) body.state[k] += free_s * body.state[k + 3];
   body.time_s += free_s;
-  const ReferenceCar car = reference_car(*body.vehicle, driving, body.damaged);
+  const ReferenceCar car = reference_car(*body.vehicle, action, body.damaged);
   const double reach_m = static_cast<double>(
       std::max(body.vehicle->silhouettes.max_x, -body.vehicle->silhouettes.min_x));
   while (body.time_s < until_s) {
@@ -153,7 +153,7 @@ ReferenceCar::State rest_of(PushedBody body, const Driving& driving, double unti
 }
 
 // Campaigns set CRASHRANK_SCENE_COUNT and CRASHRANK_SCENE_SEED.
-TEST(SceneReference, PushedBodiesRestWhereAPlainIntegratorPutsThem) {
+TEST(SceneReference, RestPositionsMatchAPlainIntegrator) {
   const auto [seed, count] = test::scene_campaign(431, 300);
   Random random(seed);
   SceneRun run;
@@ -163,31 +163,31 @@ TEST(SceneReference, PushedBodiesRestWhereAPlainIntegratorPutsThem) {
   std::size_t again = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
     SCOPED_TRACE("scene " + std::to_string(i));
-    const auto kinds = static_cast<std::uint32_t>(company().movable.size());
-    const Vehicle& a = company().movable[random.below(kinds)].vehicle;
-    const Vehicle& b = company().movable[random.below(kinds)].vehicle;
+    const auto kinds = static_cast<std::uint32_t>(test_bodies().movable.size());
+    const Vehicle& a = test_bodies().movable[random.below(kinds)].vehicle;
+    const Vehicle& b = test_bodies().movable[random.below(kinds)].vehicle;
     const double closing = random.uniform(2, 25);
     const ContactDraw draw(random);
-    Driving driving;
-    driving.after = static_cast<AfterContact>(random.below(3));
-    driving.brake = random.uniform(0, 1);
-    driving.steering_rad = random.uniform(-0.3, 0.3);
-    driving.grip = random.uniform(0.2, 1.0);
+    DriverAction action;
+    action.after = static_cast<AfterContact>(random.below(3));
+    action.brake = random.uniform(0, 1);
+    action.steering_rad = random.uniform(-0.3, 0.3);
+    action.grip = random.uniform(0.2, 1.0);
     ContactScene scene;
     if (&a == &b || !test::make_contact(draw, a, b, closing, 0.001, scene)) continue;
     std::array<PushedBody, 2> pushed;
-    if (!contact_on_road(scene, driving, pushed)) continue;
-    test::Stage stage;
-    stage.add(scene.a);
-    stage.add(scene.b);
-    stage.ready(true, driving.brake);
-    for (detail::SceneBody& body : stage.bodies) body.steering_rad = driving.steering_rad;
+    if (!simulate_contact_on_road(scene, action, pushed)) continue;
+    test::SceneSetup setup;
+    setup.add(scene.a);
+    setup.add(scene.b);
+    setup.make_bodies(true, action.brake);
+    for (detail::SceneBody& body : setup.bodies) body.steering_rad = action.steering_rad;
     detail::SceneOptions options;
-    options.after = driving.after;
-    options.grip = driving.grip;
-    run.begin({stage.bodies.data(), stage.bodies.size()}, 0, 1, 0.0, scene.point_m, options);
+    options.after = action.after;
+    options.grip = action.grip;
+    run.begin({setup.bodies.data(), setup.bodies.size()}, 0, 1, 0.0, scene.point_m, options);
     test::run_to_end(run);
-    // Bodies that meet once more, or rub on, are not one push.
+    // Leave out scenes with further contacts or longer sliding contact.
     if (run.contacts().size() != 1 ||
         run.contacts()[0].outcome.motion.poses[run.contacts()[0].outcome.motion.count - 1].time_s >
             pushed[0].time_s) {
@@ -195,7 +195,7 @@ TEST(SceneReference, PushedBodiesRestWhereAPlainIntegratorPutsThem) {
       continue;
     }
     for (std::size_t k = 0; k < 2; ++k) {
-      const ReferenceCar::State rest = rest_of(pushed[k], driving, run.now_s());
+      const ReferenceCar::State rest = rest_state(pushed[k], action, run.now_s());
       const PlanarBody& body = run.body(k);
       const double way = std::hypot(rest[0] - pushed[k].state[0], rest[1] - pushed[k].state[1]);
       const double off = std::hypot(body.x - rest[0], body.y - rest[1]);
@@ -206,12 +206,13 @@ TEST(SceneReference, PushedBodiesRestWhereAPlainIntegratorPutsThem) {
       headings.push_back(std::abs(turned) * 180.0 / detail::pi);
     }
   }
-  std::printf("%zu bodies; %zu scenes left out whose bodies meet again\n", places.size(), again);
+  std::printf("%zu bodies; %zu scenes with further contacts left out\n", places.size(), again);
   for (const auto& [name, values] :
-       {std::pair{"place, m", &places}, std::pair{"place over way (1 m at least)", &shares},
+       {std::pair{"place, m", &places}, std::pair{"place over distance (at least 1 m)", &shares},
         std::pair{"heading, degrees", &headings}}) {
-    std::printf("%s off: p50 %.3g, p90 %.3g, p95 %.3g, most %.3g\n", name, percentile(*values, 0.5),
-                percentile(*values, 0.9), percentile(*values, 0.95), percentile(*values, 1.0));
+    std::printf("error of %s: p50 %.3g, p90 %.3g, p95 %.3g, most %.3g\n", name,
+                percentile(*values, 0.5), percentile(*values, 0.9), percentile(*values, 0.95),
+                percentile(*values, 1.0));
   }
   ASSERT_GT(places.size(), count / 5);
   EXPECT_LT(percentile(places, 0.5), 0.01);

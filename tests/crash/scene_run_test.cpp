@@ -19,17 +19,17 @@ namespace {
 using detail::SceneContact;
 using detail::SceneRun;
 using Eigen::Vector3d;
-using test::company;
 using test::ContactDraw;
 using test::ContactScene;
 using test::flat_pose;
 using test::for_random_contacts;
 using test::named;
 using test::percentile;
-using test::pile;
 using test::Random;
+using test::random_pile_up;
 using test::run_to_end;
-using test::Stage;
+using test::SceneSetup;
+using test::test_bodies;
 
 TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
   std::vector<double> changes;
@@ -38,28 +38,31 @@ TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
   for_random_contacts(
       401, 400, [&](int, const ContactDraw& draw, std::size_t a, std::size_t b, double closing) {
         ContactScene scene;
-        // Without yaw: a plan's origin keeps its velocity, a free body's centre of mass.
-        if (!test::make_contact(draw, company().movable[a].vehicle, company().any(b).vehicle,
-                                closing, 0.001, scene)) {
+        // No yaw rate: the plan keeps the origin's velocity constant, a free body that of the
+        // centre of mass.
+        if (!test::make_contact(draw, test_bodies().movable[a].vehicle,
+                                test_bodies().any(b).vehicle, closing, 0.001, scene)) {
           return;
         }
         const ContactOutcome alone =
             simulate_contact(scene.a, scene.b, {}, scene.point_m, {}, workspace);
-        Stage stage;
-        stage.add(scene.a);
-        stage.add(scene.b);
-        run.begin(stage.ready(false), 0, 1, 0.0, scene.point_m, {});
+        SceneSetup setup;
+        setup.add(scene.a);
+        setup.add(scene.b);
+        run.begin(setup.make_bodies(false), 0, 1, 0.0, scene.point_m, {});
         run_to_end(run);
         ASSERT_EQ(run.contacts().size() > 0, alone.acts);
         if (!alone.acts) return;
         const SceneContact& first = run.contacts()[0];
         EXPECT_EQ(first.a, 0U);
         EXPECT_EQ(first.b, 1U);
-        // What follows within 0.1 s, a slap of the tail or rubbing, belongs to it in a scene.
+        // In a scene, contacts that follow within 0.1 s (a second impact of the tail, scraping) are
+        // merged into it.
         if (first.outcome.steps != alone.steps) return;
         EXPECT_NEAR((first.outcome.a.impulse_ns - alone.a.impulse_ns).norm(), 0.0,
                     1e-3 * closing * scene.a.vehicle->mass_kg);
-        // Of longer ones a scene leaves out what accelerates no more than brakes do.
+        // In longer contacts a scene does not count accelerations that are no larger than those of
+        // braking.
         constexpr double impact_s = 0.3;
         if (alone.duration_s > impact_s) return;
         changes.push_back(test::change(first.outcome, alone, closing));
@@ -67,7 +70,8 @@ TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
       });
   test::print_changes("scene against contact alone", changes);
   ASSERT_GT(changes.size(), 150U);
-  // Centres of mass are rounded elsewhere, which may turn a piece's float the other way.
+  // Centres of mass have other rounding errors, which may change the rounding of a piece in single
+  // precision.
   EXPECT_LT(percentile(changes, 0.99), 1e-12);
   EXPECT_LT(percentile(changes, 1.0), 1e-3);
 }
@@ -107,17 +111,18 @@ TEST(SceneRun, PilesOnIceConserveMomentumAndNeverGainEnergy) {
   std::size_t contacts = 0;
   std::size_t bodies = 0;
   for (int i = 0; i < 60; ++i) {
-    Stage stage = pile(random, 3 + random.below(8), false);
-    const std::size_t count = stage.plans.size();
-    run.begin(stage.ready(false), 0, 1, 0.0, Vector3d::Zero(), {});
+    SceneSetup setup = random_pile_up(random, 3 + random.below(8), false);
+    const std::size_t count = setup.plans.size();
+    run.begin(setup.make_bodies(false), 0, 1, 0.0, Vector3d::Zero(), {});
     const Totals before = totals_of(run, count);
-    // A rebound gives back part of what was lost before it.
+    // A rebound restores only part of the energy lost before it.
     bool going = true;
     while (going) {
       going = run.advance(1);
       gained = std::max(gained, (totals_of(run, count).energy - before.energy) / before.energy);
     }
-    // What is still on its plan drives straight on: its moment is that of where it was last seen.
+    // A planned body moves straight on, so its angular momentum does not depend on when it was last
+    // placed.
     const Totals after = totals_of(run, count);
     momentum = std::max(momentum, (after.momentum - before.momentum).norm() / before.scale);
     contacts += run.contacts().size();
@@ -125,7 +130,8 @@ TEST(SceneRun, PilesOnIceConserveMomentumAndNeverGainEnergy) {
     moment = std::max(moment, std::abs(after.moment - before.moment) / before.moment_scale);
   }
   std::printf(
-      "%zu contacts, %zu bodies touched; momentum off by %.3g, moment by %.3g, energy gained "
+      "%zu contacts, %zu bodies in contact; error of momentum %.3g, of angular momentum %.3g, "
+      "energy gain "
       "%.3g\n",
       contacts, bodies, momentum, moment, gained);
   EXPECT_GT(contacts, 100U);
@@ -138,17 +144,17 @@ TEST(SceneRun, ACarIsPushedIntoThePersonBehindIt) {
   const Vehicle& hatch = named("hatch");
   const Vehicle& sedan = named("sedan");
   const Vehicle& person = named("pedestrian");
-  Stage stage;
-  stage.add(hatch, flat_pose(-10, 0, 0), 20.0);
-  stage.add(sedan, flat_pose(0, 0, 0), 0.0);
-  stage.add(person, flat_pose(8, 0, 0), 0.0);
+  SceneSetup setup;
+  setup.add(hatch, flat_pose(-10, 0, 0), 20.0);
+  setup.add(sedan, flat_pose(0, 0, 0), 0.0);
+  setup.add(person, flat_pose(8, 0, 0), 0.0);
   SceneRun run;
-  run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+  run.begin(setup.make_bodies(true), 0, 1, 0.0, Vector3d::Zero(), {});
   run_to_end(run);
   bool struck = false;
   bool pushed = false;
   for (const SceneContact& c : run.contacts()) {
-    std::printf("%u %u at %.3f s, delta-v %.2f and %.2f m/s\n", c.a, c.b, c.begin_s,
+    std::printf("%u and %u at %.3f s: delta-v %.2f and %.2f m/s\n", c.a, c.b, c.begin_s,
                 c.outcome.a.delta_v_mps.norm(), c.outcome.b.delta_v_mps.norm());
     struck = struck || (c.a == 0 && c.b == 1);
     pushed = pushed || (struck && c.a == 1 && c.b == 2);
@@ -160,31 +166,31 @@ TEST(SceneRun, ACarIsPushedIntoThePersonBehindIt) {
 
 TEST(SceneRun, OnlyTheChainOfTheFirstBodyActs) {
   const Vehicle& hatch = named("hatch");
-  Stage stage;
-  // Two others drive into each other; the first body is elsewhere.
-  stage.add(hatch, flat_pose(0, 50, 0), 10.0);
-  stage.add(hatch, flat_pose(-10, 0, 0), 10.0);
-  stage.add(hatch, flat_pose(10, 0, detail::pi), 10.0);
+  SceneSetup setup;
+  // Two other bodies drive into each other; the first body is elsewhere.
+  setup.add(hatch, flat_pose(0, 50, 0), 10.0);
+  setup.add(hatch, flat_pose(-10, 0, 0), 10.0);
+  setup.add(hatch, flat_pose(10, 0, detail::pi), 10.0);
   SceneRun run;
-  run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+  run.begin(setup.make_bodies(true), 0, 1, 0.0, Vector3d::Zero(), {});
   run_to_end(run);
   EXPECT_EQ(run.contacts().size(), 0U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(run.touched(i));
 }
 
-/// What has come to rest in the chain is hit by what keeps its plan, as soon as they meet.
-TEST(SceneRun, TrafficHitsWhatRests) {
-  // A motorcycle brushes a lorry that stands and slides on; a saloon comes from behind.
+/// A body on its plan contacts a body of the chain that has come to rest.
+TEST(SceneRun, PlannedBodiesHitRestingBodies) {
+  // A motorcycle grazes a lorry at rest and slides on; a car approaches from behind.
   constexpr double speed_mps = 20.0;
   const Vehicle& lorry = named("truck");
   const Vehicle& saloon = named("sedan");
   constexpr double away_m = 60.0;
-  Stage stage;
-  stage.add(named("motorcycle"), flat_pose(-8, 1.45, 0.0), 25.0);
-  stage.add(lorry, flat_pose(0, 0, 0.0), 0.0);
-  stage.add(saloon, flat_pose(-away_m, 0, 0.0), speed_mps);
+  SceneSetup setup;
+  setup.add(named("motorcycle"), flat_pose(-8, 1.45, 0.0), 25.0);
+  setup.add(lorry, flat_pose(0, 0, 0.0), 0.0);
+  setup.add(saloon, flat_pose(-away_m, 0, 0.0), speed_mps);
   SceneRun run;
-  run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+  run.begin(setup.make_bodies(true), 0, 1, 0.0, Vector3d::Zero(), {});
   bool rested = false;
   while (run.advance(1)) {
     const detail::PlanarBody& b = run.body(1);
@@ -196,19 +202,20 @@ TEST(SceneRun, TrafficHitsWhatRests) {
     if (hit == nullptr && contact.a == 1 && contact.b == 2) hit = &contact;
   }
   ASSERT_NE(hit, nullptr);
-  // As into a lorry that nothing has touched, but for a step of 0.06 m and what the lorry moved.
-  Stage alone;
+  // The contact equals that with an untouched lorry, except for a step of 0.06 m and the
+  // displacement of the lorry.
+  SceneSetup alone;
   alone.add(saloon, flat_pose(-away_m, 0, 0.0), speed_mps);
   alone.add(lorry, flat_pose(0, 0, 0.0), 0.0);
   SceneRun control;
-  control.begin(alone.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+  control.begin(alone.make_bodies(true), 0, 1, 0.0, Vector3d::Zero(), {});
   run_to_end(control);
   ASSERT_GT(control.contacts().size(), 0U);
   EXPECT_NEAR(hit->begin_s, control.contacts()[0].begin_s, 0.08 / speed_mps);
   EXPECT_NEAR(hit->given_b.velocity.linear_mps.x(), speed_mps, 1e-9);
 }
 
-TEST(SceneRun, MirrorsTo) {
+TEST(SceneRun, MirroredScenesGiveMirroredResults) {
   constexpr std::uint64_t seed = 403;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
@@ -220,19 +227,20 @@ TEST(SceneRun, MirrorsTo) {
     const double speed = random.uniform(5, 30);
     std::vector<Vector3d> ends;
     for (const double side : {1.0, -1.0}) {
-      const test::Company& cast = side > 0 ? company() : test::mirrored_company();
-      Stage stage;
-      stage.add(cast.movable[1].vehicle, flat_pose(-7, side * y, side * yaw), speed);
-      stage.add(cast.movable[0].vehicle, flat_pose(0, 0, side * 2.0), 8.0);
-      stage.add(cast.movable[1].vehicle, flat_pose(6, side * 2.0, side * 0.7), 0.0);
-      run.begin(stage.ready(true), 0, 1, 0.0, Vector3d::Zero(), {});
+      const test::BodySet& cast = side > 0 ? test_bodies() : test::mirrored_bodies();
+      SceneSetup setup;
+      setup.add(cast.movable[1].vehicle, flat_pose(-7, side * y, side * yaw), speed);
+      setup.add(cast.movable[0].vehicle, flat_pose(0, 0, side * 2.0), 8.0);
+      setup.add(cast.movable[1].vehicle, flat_pose(6, side * 2.0, side * 0.7), 0.0);
+      run.begin(setup.make_bodies(true), 0, 1, 0.0, Vector3d::Zero(), {});
       run_to_end(run);
       for (std::size_t k = 0; k < 3; ++k) ends.emplace_back(run.body(k).x, side * run.body(k).y, 0);
     }
     for (std::size_t k = 0; k < 3; ++k) off.push_back((ends[k] - ends[k + 3]).norm());
   }
-  std::printf("resting places of mirrored scenes, m: p50 %.3g, p90 %.3g, most %.3g\n",
-              percentile(off, 0.5), percentile(off, 0.9), percentile(off, 1.0));
+  std::printf(
+      "differences of rest positions of mirrored scenes, m: p50 %.3g, p90 %.3g, most %.3g\n",
+      percentile(off, 0.5), percentile(off, 0.9), percentile(off, 1.0));
   EXPECT_LT(percentile(off, 0.9), 1e-4);
 }
 }  // namespace

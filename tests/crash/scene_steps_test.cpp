@@ -19,32 +19,32 @@ using detail::SceneRun;
 using test::percentile;
 using test::Random;
 using test::run_to_end;
-using test::Stage;
+using test::SceneSetup;
 
-/// What a scene does to each of its bodies.
-struct SceneEnd {
-  std::vector<double> delta_v_mps;     ///< sum over its contacts
-  std::vector<Eigen::Vector2d> place;  ///< of the centre of mass, where it rests
-  double energy_j = 0.0;               ///< dissipated in contacts
+/// Results of a scene for each of its bodies.
+struct SceneResult {
+  std::vector<double> delta_v_mps;     ///< sum over the contacts
+  std::vector<Eigen::Vector2d> place;  ///< rest position of the centre of mass
+  double energy_j = 0.0;               ///< energy dissipated in contacts
   std::size_t contacts = 0;
 };
 
-SceneEnd end_of(const Stage& stage, const SceneRun& run) {
-  SceneEnd end;
-  end.delta_v_mps.assign(stage.plans.size(), 0.0);
+SceneResult result_of(const SceneSetup& setup, const SceneRun& run) {
+  SceneResult end;
+  end.delta_v_mps.assign(setup.plans.size(), 0.0);
   for (const SceneContact& c : run.contacts()) {
     end.delta_v_mps[c.a] += c.outcome.a.delta_v_mps.norm();
     end.delta_v_mps[c.b] += c.outcome.b.delta_v_mps.norm();
     end.energy_j += c.outcome.dissipated_j;
   }
   end.contacts = run.contacts().size();
-  for (std::size_t i = 0; i < stage.plans.size(); ++i) {
+  for (std::size_t i = 0; i < setup.plans.size(); ++i) {
     end.place.emplace_back(run.body(i).x, run.body(i).y);
   }
   return end;
 }
 
-void print_shares(const char* name, const std::vector<double>& values) {
+void print_percentiles(const char* name, const std::vector<double>& values) {
   std::printf("%s: p50 %.3g, p90 %.3g, p95 %.3g, p99 %.3g, most %.3g of %zu\n", name,
               percentile(values, 0.5), percentile(values, 0.9), percentile(values, 0.95),
               percentile(values, 0.99), percentile(values, 1.0), values.size());
@@ -63,15 +63,15 @@ TEST(SceneSteps, HalvedStepsChangeChainsLittle) {
     std::size_t other_contacts = 0;
     std::size_t contacts = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
-      Stage stage = test::row(random, 3 + random.below(5));
-      const double closing = stage.plans[0].velocity_at(0.0).linear_mps.norm();
-      const View<const detail::SceneBody> bodies = stage.ready(true);
-      run.begin(bodies, 0, 1, 0.0, Eigen::Vector3d::Zero(), test::with_steps(factor));
+      SceneSetup setup = test::random_queue(random, 3 + random.below(5));
+      const double closing = setup.plans[0].velocity_at(0.0).linear_mps.norm();
+      const View<const detail::SceneBody> bodies = setup.make_bodies(true);
+      run.begin(bodies, 0, 1, 0.0, Eigen::Vector3d::Zero(), test::options_with_steps(factor));
       run_to_end(run);
-      const SceneEnd p = end_of(stage, run);
-      run.begin(bodies, 0, 1, 0.0, Eigen::Vector3d::Zero(), test::with_steps(0.5 * factor));
+      const SceneResult p = result_of(setup, run);
+      run.begin(bodies, 0, 1, 0.0, Eigen::Vector3d::Zero(), test::options_with_steps(0.5 * factor));
       run_to_end(run);
-      const SceneEnd q = end_of(stage, run);
+      const SceneResult q = result_of(setup, run);
       contacts += p.contacts;
       other_contacts += p.contacts != q.contacts ? 1U : 0U;
       if (p.contacts == 0 && q.contacts == 0) continue;
@@ -88,10 +88,10 @@ TEST(SceneSteps, HalvedStepsChangeChainsLittle) {
     std::printf(
         "steps %.2g against %.2g: %zu contacts, their number differs in %zu of %zu scenes\n",
         factor, 0.5 * factor, contacts, other_contacts, worst.size());
-    print_shares("  delta-v of a body over closing speed", delta_v);
-    print_shares("  greatest of a scene's bodies", worst);
-    print_shares("  dissipated energy, relative", energies);
-    print_shares("  resting place of a body, m", places);
+    print_percentiles("  delta-v of a body over closing speed", delta_v);
+    print_percentiles("  greatest of a scene's bodies", worst);
+    print_percentiles("  dissipated energy, relative", energies);
+    print_percentiles("  rest position of a body, m", places);
     EXPECT_LT(percentile(delta_v, 0.5), 0.01);
     EXPECT_LT(percentile(energies, 0.9), 0.05);
   }

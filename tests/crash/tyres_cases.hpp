@@ -14,7 +14,7 @@ namespace crashrank::test {
 
 inline constexpr double gravity_mps2 = 9.80665;
 
-/// A mid-size saloon, 58 % of its load on the front axle.
+/// A mid-size car with 58 % of its load on the front axle.
 struct Saloon {
   double mass_kg = 1680.0;
   double inertia_kgm2 = 3280.0;
@@ -30,7 +30,7 @@ struct Saloon {
     footing.cornering = 9.5;
   }
 
-  /// At the origin; heading and the velocity's direction from the x axis, rad.
+  /// A body at the origin; heading and direction of the velocity from the x axis, rad.
   detail::PlanarBody body(double speed_mps, double heading, double direction,
                           double spin_radps) const {
     detail::PlanarBody b;
@@ -49,12 +49,12 @@ struct Saloon {
 inline void step_on_road(const detail::Footing& footing, const detail::Wheels& wheels, double grip,
                          double seconds, detail::PlanarBody& body) {
   body.move(0.5 * seconds);
-  detail::drive(footing, wheels, grip, seconds, body);
+  detail::apply_tyre_forces(footing, wheels, grip, seconds, body);
   body.move(0.5 * seconds);
 }
 
-inline void follow_road(const detail::Footing& footing, const detail::Wheels& wheels, double grip,
-                        double step_s, double until_s, detail::PlanarBody& body) {
+inline void move_on_road(const detail::Footing& footing, const detail::Wheels& wheels, double grip,
+                         double step_s, double until_s, detail::PlanarBody& body) {
   const auto steps = static_cast<int>(std::lround(until_s / step_s));
   for (int i = 0; i < steps; ++i) step_on_road(footing, wheels, grip, step_s, body);
 }
@@ -63,8 +63,8 @@ inline bool at_rest(const detail::PlanarBody& b) {
   return b.vx == 0.0 && b.vy == 0.0 && b.spin == 0.0;
 }
 
-/// Any state of the wheels.
-inline detail::Wheels any_wheels(Random& random, const detail::Footing& footing) {
+/// A random state of the wheels.
+inline detail::Wheels random_wheels(Random& random, const detail::Footing& footing) {
   const auto after = static_cast<AfterContact>(random.below(3));
   const double steering = random.uniform(-0.6, 0.6);
   const double brake = random.uniform(0, 1);
@@ -72,8 +72,8 @@ inline detail::Wheels any_wheels(Random& random, const detail::Footing& footing)
   return detail::wheels_after(footing, after, steering, brake, damaged);
 }
 
-/// A footing of any proportions, wheels or patches.
-inline detail::Footing any_footing(Random& random) {
+/// A random footing, wheels or patches.
+inline detail::Footing random_footing(Random& random) {
   detail::Footing f;
   f.front_m = random.uniform(0.1, 4.0);
   f.rear_m = -random.uniform(0.1, 4.0);
@@ -89,8 +89,8 @@ inline detail::Footing any_footing(Random& random) {
   return f;
 }
 
-/// Any body that moves, heading and velocity in any direction.
-inline detail::PlanarBody any_body(Random& random, const detail::Footing& f) {
+/// A random moving body with random heading and direction of velocity.
+inline detail::PlanarBody random_body(Random& random, const detail::Footing& f) {
   detail::PlanarBody b;
   const double gyration = random.uniform(0.3, 1.0) * (f.front_m - f.rear_m);
   b.inverse_mass = 1.0 / std::exp(random.uniform(std::log(50.0), std::log(4e4)));
@@ -98,7 +98,7 @@ inline detail::PlanarBody any_body(Random& random, const detail::Footing& f) {
   const double heading = random.uniform(-detail::pi, detail::pi);
   b.cosine = std::cos(heading);
   b.sine = std::sin(heading);
-  // From creeping to 60 m/s and 30 rad/s.
+  // From 10 µm/s to 60 m/s, and up to 30 rad/s.
   const double speed = std::exp(random.uniform(std::log(1e-5), std::log(60.0)));
   const double direction = random.below(3) == 0 ? heading : random.uniform(-detail::pi, detail::pi);
   b.vx = speed * std::cos(direction);
@@ -117,8 +117,8 @@ struct ReferenceWheel {
   bool locked = false;
 };
 
-/// Motion of a rigid body on wheels: the tyre's forces written as forces, the classical fourth
-/// order of Runge and Kutta at 0.1 ms. State: x, y, heading, velocity, spin.
+/// Motion of a rigid body on wheels: explicit tyre forces, integrated with the classical
+/// Runge-Kutta method of fourth order in steps of 0.1 ms. State: x, y, heading, velocity, yaw rate.
 class ReferenceCar {
 public:
   using State = Eigen::Matrix<double, 6, 1>;

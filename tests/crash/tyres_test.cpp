@@ -18,24 +18,24 @@ namespace {
 using detail::Footing;
 using detail::PlanarBody;
 using detail::Wheels;
-using test::any_body;
-using test::any_footing;
-using test::any_wheels;
 using test::at_rest;
-using test::follow_road;
 using test::gravity_mps2;
+using test::move_on_road;
 using test::Random;
+using test::random_body;
+using test::random_footing;
+using test::random_wheels;
 using test::ReferenceCar;
 using test::Saloon;
 using test::step_on_road;
 
-/// Prints a test's seed.
+/// Prints the seed and returns its random generator.
 Random seeded(std::uint64_t seed) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   return Random(seed);
 }
 
-TEST(Tyres, LockedCarStopsAfterTheSquareOfItsSpeed) {
+TEST(Tyres, StoppingDistanceOfALockedCarFollowsTheSquareOfItsSpeed) {
   const Saloon car;
   const Wheels locked = detail::wheels_after(car.footing, AfterContact::locks, 0.2, 0.0);
   constexpr double grip = 0.7;
@@ -43,7 +43,7 @@ TEST(Tyres, LockedCarStopsAfterTheSquareOfItsSpeed) {
     for (const double step_s : {0.001, 0.005, 0.020}) {
       for (const double heading : {0.0, 0.4, 1.6}) {
         PlanarBody b = car.body(speed, heading, 0.3, 0.0);
-        follow_road(car.footing, locked, grip, step_s, speed / (grip * gravity_mps2) + 0.2, b);
+        move_on_road(car.footing, locked, grip, step_s, speed / (grip * gravity_mps2) + 0.2, b);
         const double expected = speed * speed / (2.0 * grip * gravity_mps2);
         EXPECT_TRUE(at_rest(b)) << speed << " m/s, " << step_s << " s";
         EXPECT_NEAR(std::cos(0.3) * b.x + std::sin(0.3) * b.y, expected, 0.005 * expected)
@@ -54,7 +54,7 @@ TEST(Tyres, LockedCarStopsAfterTheSquareOfItsSpeed) {
   }
 }
 
-TEST(Tyres, SpunDiscOnSlidingPatchesStopsInItsTime) {
+TEST(Tyres, SpinningDiscOnPatchesStopsAfterTheClosedFormTime) {
   constexpr double grip = 0.6;
   constexpr double radius_m = 0.8;
   constexpr double gyration_m = 0.6;
@@ -63,7 +63,7 @@ TEST(Tyres, SpunDiscOnSlidingPatchesStopsInItsTime) {
   f.rear_m = -f.front_m;
   f.y_m << f.front_m, f.rear_m;
   const Wheels locked = detail::wheels_after(f, AfterContact::releases, 0.0, 0.0);
-  // The torque m·g·grip·r does not depend on the spin.
+  // The torque m·g·grip·r does not depend on the yaw rate.
   const double slowing = grip * gravity_mps2 * radius_m / (gyration_m * gyration_m);
   for (const double spin : {2.0, 10.0, -25.0}) {
     for (const double step_s : {0.001, 0.005, 0.020}) {
@@ -76,14 +76,14 @@ TEST(Tyres, SpunDiscOnSlidingPatchesStopsInItsTime) {
       while (!at_rest(b) && time_s < 2.0 * stops_s + 0.2) {
         step_on_road(f, locked, grip, step_s, b);
         time_s += step_s;
-        // A step that takes the share 1/k of the spin is wrong by the share 1/(6k³): over all of
-        // them by 0.3 steps' worth, most of it in the last.
+        // A step that removes the share 1/k of the yaw rate has an error of 1/(6k³) of it: 0.3
+        // steps in total, most of it in the last ones.
         if (time_s < stops_s - 2.0 * step_s) {
           EXPECT_NEAR(std::abs(b.spin), std::abs(spin) - slowing * time_s, 0.3 * slowing * step_s);
         }
       }
       EXPECT_TRUE(at_rest(b));
-      // The last hundredths decay over a few steps.
+      // The last hundredths of the yaw rate decay over a few steps.
       EXPECT_NEAR(time_s, stops_s, 0.005 * stops_s + 5.0 * step_s) << spin << ", " << step_s;
       EXPECT_NEAR(std::abs(b.turned), spin * spin / (2.0 * slowing),
                   0.002 * spin * spin / (2.0 * slowing) + slowing * step_s * step_s);
@@ -99,7 +99,7 @@ TEST(Tyres, ReleasedCarRollsOnAlongItsHeading) {
   for (const double heading : {0.0, 0.7, -2.4}) {
     for (const double speed : {0.01, 20.0, -15.0}) {
       PlanarBody b = car.body(speed, heading, heading, 0.0);
-      follow_road(car.footing, released, 0.8, 0.01, 5.0, b);
+      move_on_road(car.footing, released, 0.8, 0.01, 5.0, b);
       EXPECT_NEAR(std::hypot(b.vx, b.vy), std::abs(speed), 1e-12 * std::abs(speed));
       EXPECT_NEAR(b.x, 5.0 * speed * std::cos(heading), 1e-9);
       EXPECT_NEAR(b.y, 5.0 * speed * std::sin(heading), 1e-9);
@@ -107,7 +107,7 @@ TEST(Tyres, ReleasedCarRollsOnAlongItsHeading) {
   }
 }
 
-/// Wheels of the reference like those of a state.
+/// The reference model with the given state of the wheels.
 ReferenceCar reference_of(const Saloon& car, double grip, double steering, double brake,
                           bool locked, unsigned damaged) {
   ReferenceCar reference;
@@ -142,7 +142,7 @@ TEST(Tyres, BrakingCarInACurveFollowsTheBicycleModel) {
           detail::wheels_after(car.footing, AfterContact::brakes, steering, brake);
       for (const double step_s : {0.005, 0.010, 0.020}) {
         PlanarBody b = car.body(20.0, 0.0, 0.0, 0.0);
-        follow_road(car.footing, wheels, bicycle.grip, step_s, 2.0, b);
+        move_on_road(car.footing, wheels, bicycle.grip, step_s, 2.0, b);
         EXPECT_LT(std::hypot(b.x - s[0], b.y - s[1]), 0.1)
             << degrees << " degrees, brake " << brake << ", " << step_s << " s: " << b.x << ' '
             << b.y << ", bicycle " << s[0] << ' ' << s[1];
@@ -170,7 +170,7 @@ TEST(Tyres, SkidsFollowTheReference) {
     const Wheels wheels = detail::wheels_after(
         car.footing, locked ? AfterContact::locks : AfterContact::brakes, steering, brake, damaged);
     PlanarBody b = car.body(speed, heading, 0.0, spin);
-    follow_road(car.footing, wheels, grip, 0.005, 1.5, b);
+    move_on_road(car.footing, wheels, grip, 0.005, 1.5, b);
     errors.push_back(std::hypot(b.x - s[0], b.y - s[1]) / std::hypot(s[0], s[1]));
     EXPECT_LT(errors.back(), 0.01) << "draw " << i;
     EXPECT_NEAR(heading + b.turned, s[2], 0.05) << "draw " << i;
@@ -195,7 +195,7 @@ TEST(Tyres, SpunRollingCarLosesEnergyUntilItRollsStraight) {
       const double speed = std::hypot(b.vx, b.vy);
       EXPECT_LT(std::abs(b.spin), 1e-3);
       EXPECT_LT(std::abs(b.cosine * b.vy - b.sine * b.vx), 1e-3 * std::max(speed, 1.0));
-      std::printf("step %.3f s, heading %.1f: %.3f m/s left\n", step_s, heading, speed);
+      std::printf("step %.3f s, heading %.1f: final speed %.3f m/s\n", step_s, heading, speed);
     }
   }
 }
@@ -205,14 +205,14 @@ TEST(Tyres, HalvedStepsChangeThePathLittle) {
   const Saloon car;
   std::array<std::vector<double>, 3> changes;
   for (int i = 0; i < 300; ++i) {
-    const Wheels wheels = any_wheels(random, car.footing);
+    const Wheels wheels = random_wheels(random, car.footing);
     const double grip = random.uniform(0.2, 1.0);
     const double speed = random.uniform(5, 40);
     const PlanarBody start =
         car.body(speed, random.uniform(-detail::pi, detail::pi), 0.0, random.uniform(-5, 5));
     std::array<PlanarBody, 4> ends{start, start, start, start};
     for (std::size_t k = 0; k < 4; ++k) {
-      follow_road(car.footing, wheels, grip, 0.02 / static_cast<double>(1 << k), 3.0, ends[k]);
+      move_on_road(car.footing, wheels, grip, 0.02 / static_cast<double>(1 << k), 3.0, ends[k]);
     }
     const double travel = std::hypot(ends[3].x, ends[3].y);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -233,19 +233,19 @@ TEST(Tyres, NoStepAddsEnergyOrMoreMomentumThanTheGripGives) {
   double most_share = 0.0;
   double most_growth = -1.0;
   for (int i = 0; i < 1000000; ++i) {
-    const Footing f = any_footing(random);
-    const Wheels wheels = any_wheels(random, f);
+    const Footing f = random_footing(random);
+    const Wheels wheels = random_wheels(random, f);
     const double grip = i % 10 == 0 ? 0.0 : random.uniform(0, 1.5);
     const double seconds = std::exp(random.uniform(std::log(1e-5), std::log(0.02)));
-    PlanarBody b = any_body(random, f);
+    PlanarBody b = random_body(random, f);
     const PlanarBody start = b;
-    detail::drive(f, wheels, grip, seconds, b);
+    detail::apply_tyre_forces(f, wheels, grip, seconds, b);
     ASSERT_TRUE(std::isfinite(b.energy()));
     most_growth = std::max(most_growth, b.energy() / start.energy() - 1.0);
     ASSERT_LE(b.energy(), start.energy() * (1.0 + 1e-15)) << "draw " << i;
     const double change = std::hypot(b.vx - start.vx, b.vy - start.vy);
     const double most = grip * gravity_mps2 * seconds;
-    // The velocities' own rounding.
+    // Tolerance for the rounding of the velocities.
     ASSERT_LE(change, most * (1.0 + 1e-12) + 1e-15 * std::hypot(start.vx, start.vy))
         << "draw " << i;
     if (most > 0.0) most_share = std::max(most_share, change / most);
@@ -254,23 +254,24 @@ TEST(Tyres, NoStepAddsEnergyOrMoreMomentumThanTheGripGives) {
     ASSERT_EQ(b.cosine, start.cosine);
     ASSERT_EQ(b.turned, start.turned);
   }
-  std::printf("growth of energy at most %.1e; momentum at most %.6f of the grip\n", most_growth,
-              most_share);
+  std::printf(
+      "relative growth of energy at most %.1e; momentum change at most %.6f of grip·g·time\n",
+      most_growth, most_share);
   EXPECT_GT(most_share, 0.99);
 }
 
 TEST(Tyres, CreepingRoundACurveAddsNoEnergy) {
-  // Wheels that roll where they point lose nothing: all that changes the energy is rounding, with
-  // the tyres as stiff as they get.
+  // Wheels that roll in their own direction dissipate nothing: only rounding changes the energy,
+  // while the tyres are stiffest.
   Random random = seeded(816);
   double most_growth = -1.0;
   for (int i = 0; i < 300; ++i) {
-    Footing f = any_footing(random);
-    // Without track: wheels of an axle that point the same way drag a little in a curve.
+    Footing f = random_footing(random);
+    // No track width: parallel wheels of an axle would drag slightly in a curve.
     f.y_m.setZero();
     const Wheels wheels =
         detail::wheels_after(f, AfterContact::releases, random.uniform(-0.6, 0.6), 0.0);
-    PlanarBody b = any_body(random, f);
+    PlanarBody b = random_body(random, f);
     const double slow = std::exp(random.uniform(std::log(1e-4), std::log(2.0)));
     const double speed = std::hypot(b.vx, b.vy);
     b.vx *= slow / speed;
@@ -284,19 +285,19 @@ TEST(Tyres, CreepingRoundACurveAddsNoEnergy) {
       energy = b.energy();
     }
   }
-  std::printf("growth of energy at most %.1e\n", most_growth);
+  std::printf("relative growth of energy at most %.1e\n", most_growth);
 }
 
 TEST(Tyres, BrakedAndLockedBodiesComeToRestAndStay) {
   Random random = seeded(814);
   double longest_s = 0.0;
   for (int i = 0; i < 1000; ++i) {
-    const Footing f = any_footing(random);
+    const Footing f = random_footing(random);
     const auto after = i % 2 == 0 ? AfterContact::locks : AfterContact::brakes;
     const double steering = random.uniform(-0.6, 0.6);
     const double brake = random.uniform(0.3, 0.95);
     const Wheels wheels = detail::wheels_after(f, after, steering, brake, random.below(16));
-    PlanarBody b = any_body(random, f);
+    PlanarBody b = random_body(random, f);
     const double grip = random.uniform(0.3, 1.5);
     const double step_s = random.uniform(0.001, 0.02);
     double time_s = 0.0;
@@ -310,7 +311,7 @@ TEST(Tyres, BrakedAndLockedBodiesComeToRestAndStay) {
     ASSERT_TRUE(at_rest(b)) << "draw " << i << ": " << b.vx << ' ' << b.vy << ' ' << b.spin;
     longest_s = std::max(longest_s, time_s);
     const PlanarBody rest = b;
-    follow_road(f, wheels, grip, step_s, 1.0, b);
+    move_on_road(f, wheels, grip, step_s, 1.0, b);
     ASSERT_EQ(b.x, rest.x);
     ASSERT_EQ(b.y, rest.y);
     ASSERT_EQ(b.cosine, rest.cosine);
@@ -323,7 +324,7 @@ TEST(Tyres, BrakedAndLockedBodiesComeToRestAndStay) {
 TEST(Tyres, MirroredStateGivesTheMirroredBits) {
   Random random = seeded(815);
   for (int i = 0; i < 2000; ++i) {
-    const Footing f = any_footing(random);
+    const Footing f = random_footing(random);
     const auto after = static_cast<AfterContact>(random.below(3));
     const double steering = random.uniform(-0.6, 0.6);
     const double brake = random.uniform(0, 1);
@@ -335,7 +336,7 @@ TEST(Tyres, MirroredStateGivesTheMirroredBits) {
     const unsigned exchanged = ((damaged & 5U) << 1U) | ((damaged & 10U) >> 1U);
     const Wheels wheels = detail::wheels_after(f, after, steering, brake, damaged);
     const Wheels mirrored = detail::wheels_after(g, after, -steering, brake, exchanged);
-    PlanarBody b = any_body(random, f);
+    PlanarBody b = random_body(random, f);
     PlanarBody m = b;
     m.sine = -b.sine;
     m.vy = -b.vy;
@@ -363,7 +364,7 @@ TEST(Tyres, WithoutGripTimeOrMassNothingChanges) {
   for (const std::array<double, 2> none : {std::array{0.0, 0.01}, std::array{-1.0, 0.01},
                                            std::array{0.8, 0.0}, std::array{0.8, -0.01}}) {
     PlanarBody b = start;
-    detail::drive(car.footing, locked, none[0], none[1], b);
+    detail::apply_tyre_forces(car.footing, locked, none[0], none[1], b);
     EXPECT_EQ(b.vx, start.vx);
     EXPECT_EQ(b.vy, start.vy);
     EXPECT_EQ(b.spin, start.spin);
@@ -371,7 +372,7 @@ TEST(Tyres, WithoutGripTimeOrMassNothingChanges) {
   PlanarBody fixed = start;
   fixed.inverse_mass = 0.0;
   fixed.inverse_inertia = 0.0;
-  detail::drive(car.footing, locked, 0.8, 0.01, fixed);
+  detail::apply_tyre_forces(car.footing, locked, 0.8, 0.01, fixed);
   EXPECT_EQ(fixed.vx, start.vx);
 }
 

@@ -19,7 +19,7 @@
 
 namespace crashrank {
 
-/// What the wheels of a vehicle do after its first contact.
+/// State of the wheels of a vehicle after its first contact.
 enum class AfterContact {
   brakes,    ///< all undamaged wheels brake with one share of their grip, and steer as before
   releases,  ///< undamaged wheels roll freely, and steer as before
@@ -28,7 +28,7 @@ enum class AfterContact {
 
 /// The name in files: "brakes", "releases", "locks".
 CRASHRANK_API const char* after_contact_name(AfterContact after) noexcept;
-/// Reads a name; the error (usage) lists those there are.
+/// Parses a name; the error (usage) lists the valid names.
 CRASHRANK_API Result<AfterContact> after_contact_from_name(const std::string& name);
 
 /// The model was checked up to this closing speed, m/s: faster contacts are marked in reports.
@@ -36,24 +36,24 @@ inline constexpr double fastest_contact_mps = 140.0;
 
 /// A body at first contact. The vehicle has to outlive the call.
 struct ContactBody {
-  const Vehicle* vehicle = nullptr;  ///< what it is
+  const Vehicle* vehicle = nullptr;  ///< the body
   Pose pose;                         ///< body to world; only position and heading are read
-  Velocity velocity;                 ///< of its origin; a body that nothing moves stands
+  Velocity velocity;                 ///< velocity of its origin; ignored for fixed bodies
 };
 
 /// Factors on parameters that are not known exactly.
 struct ContactVariant {
-  double friction = 1.0;     ///< times the friction of the pair of surfaces
-  double strength = 1.0;     ///< times the resistance of both bodies
-  double restitution = 1.0;  ///< times the restitution
+  double friction = 1.0;     ///< factor on the friction of the pair of surfaces
+  double strength = 1.0;     ///< factor on the strength of both bodies
+  double restitution = 1.0;  ///< factor on the restitution
 };
 
 /// How a contact is integrated. The defaults are what ranking and validation use.
 struct ContactOptions {
-  double travel_m = 0.06;      ///< relative travel of a step, m
+  double travel_m = 0.06;      ///< relative travel per step, m
   double shortest_s = 0.0005;  ///< least step, s
   double longest_s = 0.008;    ///< greatest step, s
-  double speed_change = 0.05;  ///< share of the closing speed that a step may take
+  double speed_change = 0.05;  ///< maximum change of the closing speed per step, as a share of it
 };
 
 /// Result of a contact for one body. World axes unless stated otherwise.
@@ -62,58 +62,57 @@ struct BodyContact {
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();  ///< of the centre of mass, m/s
   double delta_yaw_rate_radps = 0.0;                      ///< left positive, rad/s
   Velocity after;                                         ///< linear: of the centre of mass
-  Eigen::Vector3d moved_m = Eigen::Vector3d::Zero();      ///< of the centre of mass in the contact
-  double turned_rad = 0.0;                                ///< left positive
-  double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
+  Eigen::Vector3d moved_m = Eigen::Vector3d::Zero();      ///< displacement of the centre of mass, m
+  double turned_rad = 0.0;                                ///< heading change, left positive
+  double pdof_deg = 0.0;        ///< direction of force, degrees clockwise from ahead, [0, 360)
   double crush_depth_m = 0.0;   ///< greatest, m
-  double crush_energy_j = 0.0;  ///< taken by its deformation, J
-  /// Greatest reach into the passenger compartment, m; in a scene what it exceeds that of earlier
-  /// contacts of the two by.
+  double crush_energy_j = 0.0;  ///< energy of its deformation, J
+  /// Greatest intrusion into the passenger compartment, m; in a scene only what exceeds the
+  /// intrusion by earlier contacts of the two bodies.
   double intrusion_m = 0.0;
-  Box damaged;  ///< bounds of the pressed outline, body coordinates; may be empty
+  Box damaged;  ///< bounds of the deformed outline, body coordinates; may be empty
 };
 
-/// Where both bodies are at a time of a contact.
+/// Poses of both bodies at a time of a contact.
 struct ContactPoses {
   double time_s = 0.0;  ///< since first contact, s
-  Pose a;               ///< A's body axes to world
-  Pose b;               ///< B's
+  Pose a;               ///< body axes of A to world
+  Pose b;               ///< body axes of B to world
 };
 
-/// How both bodies move during a contact, as poses of their origins in the order of time: at first
-/// contact, after the first and the last step of the integration that had a force, and after up to
-/// 13 steps with a force in between, evenly by number. One entry where no force acted. Height,
-/// pitch and roll stay those at first contact.
+/// Motion of both bodies during a contact, as poses of their origins in the order of time: at first
+/// contact, after the first and the last step with a force, and after up to 13 steps with a force
+/// in between, evenly spaced by number. One entry if no force acted. Height, pitch and roll stay
+/// those at first contact.
 struct ContactMotion {
   static constexpr std::size_t most = 16;  ///< entries
-  std::array<ContactPoses, most> poses;    ///< the first `count` of them hold
+  std::array<ContactPoses, most> poses;    ///< the first `count` are valid
   std::size_t count = 0;                   ///< at least 1 in an outcome
 
-  /// Those that hold.
+  /// The valid entries.
   View<const ContactPoses> all() const noexcept { return {poses.data(), count}; }
 };
 
 /// Result of a contact for both bodies.
 struct ContactOutcome {
-  bool acts = false;  ///< the surfaces pressed against each other
-  /// The surfaces still moved past each other with more than a fifth of the greatest speed at the
-  /// contact when the force ended.
+  bool acts = false;  ///< a contact force acted
+  /// The relative speed at the contact at the end of the force exceeded a fifth of its maximum.
   bool slides = false;
   double duration_s = 0.0;    ///< from first contact until the force ends, s
   double closing_mps = 0.0;   ///< greatest mean closing speed of the pressing surfaces, m/s
-  double restitution = 0.0;   ///< of the rebound, share of the impulse before it
-  double dissipated_j = 0.0;  ///< kinetic energy of all before less after, never negative
-  double friction_j = 0.0;    ///< part of it that sliding took
+  double restitution = 0.0;   ///< share of the compression impulse that the rebound added
+  double dissipated_j = 0.0;  ///< loss of kinetic energy of both bodies, >= 0
+  double friction_j = 0.0;    ///< part of it dissipated by friction
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< mean point of the force, world, m
   BodyContact a;                                      ///< result for A
   BodyContact b;                                      ///< result for B
-  ContactMotion motion;                               ///< of both while they pressed
-  std::uint32_t steps = 0;                            ///< of the integration
-  std::uint64_t pieces = 0;  ///< pieces of outlines moved, over all steps: the work done
+  ContactMotion motion;                               ///< motion of both during the contact
+  std::uint32_t steps = 0;                            ///< steps of the integration
+  std::uint64_t pieces = 0;  ///< outline pieces moved, summed over all steps: the amount of work
 };
 
-/// Memory of simulations, one for each thread. Grows with its first uses; a prepared one allocates
-/// nothing.
+/// Working memory of simulations, one for each thread. Grows with its first uses; after `prepare`,
+/// simulations allocate nothing.
 class CRASHRANK_API ContactWorkspace {
 public:
   ContactWorkspace();                                             ///< Empty.
@@ -123,8 +122,8 @@ public:
   ContactWorkspace(const ContactWorkspace&) = delete;             ///< One per thread.
   ContactWorkspace& operator=(const ContactWorkspace&) = delete;  ///< One per thread.
 
-  /// Room for contacts of bodies whose profiles have at most so many pieces, with at most so many
-  /// fixed bodies besides the first.
+  /// Allocates room for contacts of bodies whose profiles have up to `pieces` pieces, with up to
+  /// `fixed_bodies` fixed bodies besides the first.
   void prepare(std::size_t pieces, std::size_t fixed_bodies);
 
   struct State;  ///< Its contents, for the library.
@@ -139,31 +138,32 @@ private:
 /// steel at high pressure and speed, 0.1 to 0.2); else 0.3 (what openPASS uses between cars).
 CRASHRANK_API double friction_between(Surface a, Surface b) noexcept;
 
-/// Restitution of fresh structure at a closing speed, m/s: 0.26 + 0.15/(1 + v/4). A contact takes
-/// the share of it that its free crush length has left, so that it ends within what SAE 931842
-/// states: 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s, about 0.1 at medium and high speed.
+/// Restitution of uncrushed structure at a closing speed, m/s: 0.26 + 0.15/(1 + v/4). A contact
+/// uses the share of it that corresponds to the unused crush length, so that results agree with SAE
+/// 931842: 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s, about 0.1 at medium and high speed.
 CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 
-/// Simulates a contact from its first touch to the end of its force, in the plane: both bodies move
-/// on as rigid bodies with horizontal velocity and yaw, and press on each other where the outlines
-/// of the same height overlap.
+/// Simulates a contact in the plane, from the first touch to the end of its force. Both bodies move
+/// as rigid bodies with horizontal velocity and yaw rate, and press on each other where outlines of
+/// the same height band overlap.
 ///
-/// Every short piece of one body's outline inside the other meets the pressure at which both
-/// materials together give way by its depth. Depth is counted in the axes of the body that is
+/// Every outline piece of one body inside the other receives the pressure at which the crush depths
+/// of both materials add up to its depth. The depth is measured in the axes of the body that is
 /// pressed in, below its front or rear and below its flank, blended with the squares of the
-/// piece's normal: neither depends on a line chosen at first contact. Pieces of both bodies count,
-/// each in the share in which the other body is the one crushed, so that exchanging the bodies
-/// changes no bit. A piece presses while it advances along its normal further than it has been:
-/// what is crushed stays crushed. Structure of the core hardens and is never used up; the mass of
-/// what is pushed aside adds 4·density·speed². At greatest compression the bodies rebound once, by
-/// `restitution_at` times the impulse until then. docs/guide/crash-model.md has the formulas, the
-/// parameters with their reasons, and what the model leaves out.
+/// components of the piece's normal; it does not depend on a line chosen at first contact. Pieces
+/// of both bodies contribute, each weighted with the share of the crush that the other body takes,
+/// so that exchanging the bodies changes no bit. A piece presses while it advances along its normal
+/// beyond its greatest depth so far: crushed structure stays crushed. The structure of the core
+/// hardens and is never used up; the mass of the material pushed aside adds 4·density·speed². At
+/// greatest compression the bodies rebound once, by `restitution_at` times the impulse so far.
+/// docs/guide/crash-model.md has the formulas, the parameters with their reasons, and the limits of
+/// the model.
 ///
-/// Momentum and moment of momentum of movable bodies are conserved to rounding, energy is never
-/// gained. `fixed` are further bodies that nothing moves, which press at the same time as a B that
-/// nothing moves: pieces inside another of them do not press, so a wall cut in parts acts as a
-/// whole. Ends when the bodies part or rest. Two bodies that nothing moves, or that do not give
-/// way, do not act. Deep overlap at the start presses nowhere.
+/// Momentum and angular momentum of movable bodies are conserved to rounding; energy never grows.
+/// `fixed` lists further fixed bodies that press together with a fixed B; pieces inside another of
+/// these bodies do not press, so that a wall cut into parts acts as one wall. The contact ends when
+/// the bodies separate or come to relative rest. No force acts between two fixed bodies, between
+/// two rigid bodies, or from pieces that overlap deeply at the start.
 ///
 /// Cost: half a millisecond in the median, several in long slides; docs/guide/crash-model.md has
 /// measured figures. Safe from any thread with its own workspace.
@@ -174,8 +174,9 @@ CRASHRANK_API ContactOutcome simulate_contact(const ContactBody& a, const Contac
                                               ContactWorkspace& workspace,
                                               const ContactOptions& options = {});
 
-/// Principal direction of force: where a horizontal impulse on a body comes from, seen from above,
-/// degrees clockwise from the body's forward axis, [0, 360). 0 without a horizontal impulse.
+/// Principal direction of force: direction that a horizontal impulse on a body comes from, seen
+/// from above, degrees clockwise from the body's forward axis, [0, 360). 0 without a horizontal
+/// impulse.
 CRASHRANK_API double pdof_deg(const Eigen::Vector3d& impulse_on_body,
                               const Eigen::Vector3d& forward);
 
@@ -183,17 +184,18 @@ CRASHRANK_API double pdof_deg(const Eigen::Vector3d& impulse_on_body,
 /// lower edge included.
 CRASHRANK_API int clock_of(double pdof_deg);
 
-/// How far damage reaches in from the face of the body that it is nearest to, counted in the body's
-/// size that way: crush depth as it is measured from outside, m. 0 without damage.
+/// Crush depth as measured from outside, m: distance from a face of the body to the inner edge of
+/// the damage, for the face where it is least relative to the body's size in that direction. 0
+/// without damage.
 CRASHRANK_API double damage_depth_m(const Box& region, const Box& body);
 
-/// Where and how a body is deformed, for `cdc_code`; body coordinates, m.
+/// Inputs of `cdc_code`: place, direction and kind of a deformation; body coordinates, m.
 struct Deformation {
   double pdof_deg = 0.0;   ///< degrees clockwise from ahead
-  Box region;              ///< of the moved surface
+  Box region;              ///< bounds of the deformed surface
   Box body;                ///< bounds of the body
   double depth_m = 0.0;    ///< m
-  bool sideswipe = false;  ///< along the side rather than into it
+  bool sideswipe = false;  ///< the force is along the side rather than into it
 };
 
 /// Seven characters after SAE J224: clock direction (01 to 12), area (F, B, L, R, T), place across

@@ -86,14 +86,14 @@ inline constexpr double intrusion_gain_per_m = 4.62098;
 /// Inputs of the risk of one person.
 struct Exposure {
   Person person = Person::occupant;  ///< kind of person
-  double delta_v_mps = 0.0;          ///< of the occupant's vehicle, magnitude, m/s
+  double delta_v_mps = 0.0;          ///< delta-v of the occupant's vehicle, magnitude, m/s
   double pdof_deg = 0.0;          ///< direction the force comes from, degrees clockwise from ahead
   double impact_speed_mps = 0.0;  ///< closing speed, for people outside cars, m/s
   /// Height of the leading edge of the striking vehicle, m; 0.75 is a car's, 1.09 a pickup's.
   double leading_edge_m = 0.75;
   /// Deepest intrusion into the passenger compartment, for occupants, m, >= 0.
   double intrusion_m = 0.0;
-  PedestrianDescription description;  ///< of pedestrians
+  PedestrianDescription description;  ///< age and sex of a pedestrian
 };
 
 /// Probability of the model's outcome, in [0, 1]: 0 at zero exposure (delta-v and intrusion of
