@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Which thirds of [low, high] the range [from, to] covers by at least a third of their length.
+/// Returns which thirds of [low, high] the range [from, to] covers by at least a third of their
+/// length.
 std::array<bool, 3> thirds(double from, double to, double low, double high) {
   const double part = (high - low) / 3.0;
   std::array<bool, 3> covered{};

@@ -27,8 +27,8 @@ private:
     PlanarPlace first;
     PlanarPlace second;
   };
-  std::array<Entry, ContactMotion::most - 1>
-      entries_;  ///< first contact, then every `stride_`-th step
+  /// First contact, then every `stride_`-th step.
+  std::array<Entry, ContactMotion::most - 1> entries_;
   Entry last_;
   std::size_t count_ = 0;
   std::uint32_t steps_ = 0;

@@ -104,7 +104,7 @@ HWY_INLINE TransformedBoxes transform_boxes(const RelativeMotion& to, const Bloc
   return at;
 }
 
-/// Boxes that come nearer than `near_m` to the bounds of a height band.
+/// Returns which boxes come nearer than `near_m` to the bounds of a height band.
 HWY_INLINE M8 are_near(const TransformedBoxes& at, const BandBounds& bounds, float near_m) {
   const F8 reach_x = at.reach_x + all(near_m);
   const F8 reach_y = at.reach_y + all(near_m);
@@ -113,15 +113,16 @@ HWY_INLINE M8 are_near(const TransformedBoxes& at, const BandBounds& bounds, flo
       both(less(all(bounds.min_y), at.y + reach_y), less(at.y - reach_y, all(bounds.max_y))));
 }
 
-/// Blocks of a group with pieces within `near_m` of the bounds of a height band, a bit for each.
+/// Returns the blocks of a group with pieces within `near_m` of the bounds of a height band, a bit
+/// for each.
 HWY_INLINE std::uint32_t near_blocks(const PressQuery& q, const BlockGroup& group, float near_m) {
   const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[group.band];
   return bits(are_near(transform_boxes(q.to, group), bounds, near_m));
 }
 
-/// Pieces of a block within `near_m` of the bounds of the height band, a bit for each. Each piece
-/// is decided by itself, whatever its direction: its tracking does not depend on the other pieces
-/// of its block, and no piece that turns later is first found inside the body.
+/// Returns the pieces of a block within `near_m` of the bounds of the height band, a bit for each.
+/// Each piece is decided by itself, whatever its direction: its tracking does not depend on the
+/// other pieces of its block, and no piece that turns later is first found inside the body.
 HWY_INLINE std::uint32_t near_pieces(const PressQuery& q, const PieceBlock& block,
                                      const PieceRows& rows, float near_m) {
   const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[block.band];

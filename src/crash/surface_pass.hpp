@@ -22,9 +22,8 @@ struct PressedBody {
 /// Sums of one pass. "Own" is the body whose material is pressed in, "other" the body whose outline
 /// pieces press.
 struct PassSums {
-  bool approaching =
-      false;  ///< pieces within the other body's bounds advance, with or without a force
-  PlanarForce on_pressed;     ///< force on `pressed`
+  bool approaching = false;   ///< pieces inside the other body's bounds advance
+  PlanarForce on_pressed;     ///< force on the pressed body
   double pressing = 0.0;      ///< N: normal forces before the reduction at low closing speed
   double closing = 0.0;       ///< N·m/s: pressing times closing speed along the normal
   double speed = 0.0;         ///< N·m/s: pressing times relative speed
@@ -32,8 +31,8 @@ struct PassSums {
   double weight = 0.0;        ///< N: normal forces
   double point_x = 0.0;       ///< N·m: normal force times position, world axes from first contact
   double point_y = 0.0;       ///< N·m
-  double power_own = 0.0;     ///< W: crush power of `pressed`
-  double power_other = 0.0;   ///< W: crush power of `pusher`
+  double power_own = 0.0;     ///< W: crush power of the pressed body
+  double power_other = 0.0;   ///< W: crush power of the pushing body
   double power_friction = 0.0;  ///< W
   float depth_own = 0.0F;       ///< greatest crush depth, m
   float depth_other = 0.0F;     ///< m
