@@ -17,7 +17,7 @@ Result<AfterContact> after_contact_from_name(const std::string& name) {
   for (std::size_t i = 0; i < after_names.size(); ++i) {
     if (name == after_names[i]) return static_cast<AfterContact>(i);
   }
-  return make_error(ErrorCode::usage, "there is no \"" + name + "\" after a contact",
+  return make_error(ErrorCode::usage, "\"" + name + "\" is no state of the wheels after a contact",
                     "choose one of brakes, releases, locks");
 }
 
