@@ -12,40 +12,41 @@ namespace {
 
 using Eigen::Vector2d;
 
-double reach_along(const Rectangle& r, const Vector2d& direction) {
+double half_extent_along(const Rectangle& r, const Vector2d& direction) {
   return r.half[0] * std::abs(r.axis[0].dot(direction)) +
          r.half[1] * std::abs(r.axis[1].dot(direction));
 }
 
-constexpr double touching_m = 0.05;
+constexpr double side_gap_m = 0.05;
 
 /// How near parts of one body have to be: more where they stand end to end.
-double reach_of(const Rectangle& p, const Rectangle& q) {
+double max_gap_m(const Rectangle& p, const Rectangle& q) {
   const Vector2d apart = q.center - p.center;
   double widest_gap = 0.0;
-  double reach = touching_m;
+  double reach = side_gap_m;
   for (const Rectangle* r : {&p, &q}) {
     for (const Vector2d& axis : r->axis) {
-      const double gap = std::abs(apart.dot(axis)) - reach_along(p, axis) - reach_along(q, axis);
+      const double gap =
+          std::abs(apart.dot(axis)) - half_extent_along(p, axis) - half_extent_along(q, axis);
       if (gap <= widest_gap) continue;
       widest_gap = gap;
       const Vector2d across(-axis.y(), axis.x());
-      const double half_p = reach_along(p, across);
-      const double half_q = reach_along(q, across);
+      const double half_p = half_extent_along(p, across);
+      const double half_q = half_extent_along(q, across);
       const double common =
           std::min({half_p + half_q - std::abs(apart.dot(across)), 2.0 * half_p, 2.0 * half_q});
-      reach = common >= std::max(half_p, half_q) ? widest_joint_m : touching_m;
+      reach = common >= std::max(half_p, half_q) ? widest_joint_m : side_gap_m;
     }
   }
   return reach;
 }
 
 /// Separating axes of two rectangles.
-bool boxes_near(const Rectangle& p, const Rectangle& q, double reach_m) {
+bool boxes_within(const Rectangle& p, const Rectangle& q, double reach_m) {
   for (const Rectangle* r : {&p, &q}) {
     for (const Vector2d& axis : r->axis) {
-      const double gap =
-          std::abs((q.center - p.center).dot(axis)) - reach_along(p, axis) - reach_along(q, axis);
+      const double gap = std::abs((q.center - p.center).dot(axis)) - half_extent_along(p, axis) -
+                         half_extent_along(q, axis);
       if (gap > reach_m) return false;
     }
   }
@@ -99,7 +100,7 @@ struct Heading {
 /// The pieces of a body's outlines that lie within reach of a rectangle, by rising band.
 std::vector<FixedSegment> segments_near(const Body& body, const Rectangle& box,
                                         const Vector2d& origin, double reach_m) {
-  const Heading heading(body.standing);
+  const Heading heading(body.fixed_pose);
   std::vector<FixedSegment> near;
   for (const OutlinePiece& piece : body.vehicle.profile->pieces) {
     const Vector2d middle = heading.to_world(piece.x, piece.y);
@@ -125,14 +126,14 @@ public:
     std::sort(cells_.begin(), cells_.end());
   }
 
-  /// Whether one of those around a segment is meant, by its index.
-  template <class Meant> bool any_around(const FixedSegment& s, Meant&& meant) const {
+  /// Whether one of those around a segment is predicate, by its index.
+  template <class Predicate> bool any_near(const FixedSegment& s, Predicate&& predicate) const {
     const Cell own = cell_of(s);
     for (std::int64_t column = own.first - 1; column <= own.first + 1; ++column) {
       auto at = std::lower_bound(cells_.begin(), cells_.end(),
                                  std::pair{Cell{column, own.second - 1}, std::uint32_t{0}});
       for (; at != cells_.end() && at->first <= Cell{column, own.second + 1}; ++at) {
-        if (meant(at->second)) return true;
+        if (predicate(at->second)) return true;
       }
     }
     return false;
@@ -155,11 +156,11 @@ double longest_half_m(const std::vector<FixedSegment>& segments) {
   return longest;
 }
 
-bool outlines_near(const std::vector<FixedSegment>& p, const std::vector<FixedSegment>& q,
-                   double reach_m) {
+bool outlines_within(const std::vector<FixedSegment>& p, const std::vector<FixedSegment>& q,
+                     double reach_m) {
   const Grid grid(q, std::max(longest_half_m(p), longest_half_m(q)));
   return std::any_of(p.begin(), p.end(), [&](const FixedSegment& s) {
-    return grid.any_around(s, [&](std::uint32_t i) { return are_near(s, q[i], reach_m); });
+    return grid.any_near(s, [&](std::uint32_t i) { return are_near(s, q[i], reach_m); });
   });
 }
 
@@ -183,7 +184,7 @@ bool faces(const FixedSegment& s, const FixedSegment& other) {
 /// Whether one of the pieces, none of which is near the body's outlines, lies inside them.
 bool lies_inside(const std::vector<FixedSegment>& pieces, const Body& body,
                  const Vector2d& origin) {
-  const Heading heading(body.standing);
+  const Heading heading(body.fixed_pose);
   const FixedSegment* before = nullptr;
   for (const FixedSegment& s : pieces) {
     // Of a loop that no outline crosses all pieces lie on one side.
@@ -206,7 +207,7 @@ bool lies_inside(const std::vector<FixedSegment>& pieces, const Body& body,
 
 Rectangle rectangle_of(const Body& fixed) {
   const Box box = fixed.model->mesh.bounds();
-  const Pose pose = fixed.standing;
+  const Pose pose = fixed.fixed_pose;
   const Eigen::Vector3d center = pose.rotation * box.center().cast<double>() + pose.translation;
   const Eigen::Vector3d size = box.extent().cast<double>();
   return {
@@ -223,12 +224,12 @@ double distance_m(const Rectangle& rectangle, const Vector2d& point) {
 }
 
 bool adjoin(const Body& p, const Rectangle& box_p, const Body& q, const Rectangle& box_q) {
-  const double reach_m = reach_of(box_p, box_q);
-  if (!boxes_near(box_p, box_q, reach_m)) return false;
+  const double reach_m = max_gap_m(box_p, box_q);
+  if (!boxes_within(box_p, box_q, reach_m)) return false;
   const Vector2d origin = box_p.center;
   const std::vector<FixedSegment> of_p = segments_near(p, box_q, origin, reach_m);
   const std::vector<FixedSegment> of_q = segments_near(q, box_p, origin, reach_m);
-  return outlines_near(of_p, of_q, reach_m) || lies_inside(of_p, q, origin) ||
+  return outlines_within(of_p, of_q, reach_m) || lies_inside(of_p, q, origin) ||
          lies_inside(of_q, p, origin);
 }
 
@@ -246,7 +247,7 @@ std::vector<std::uint8_t> pieces_in_joints(const Profile& profile) {
     }
     const Grid grid(segments, longest_half_m(segments));
     for (std::size_t i = 0; i < segments.size(); ++i) {
-      in_joint[profile.first[band] + i] = static_cast<std::uint8_t>(grid.any_around(
+      in_joint[profile.first[band] + i] = static_cast<std::uint8_t>(grid.any_near(
           segments[i], [&](std::uint32_t k) { return faces(segments[i], segments[k]); }));
     }
   }

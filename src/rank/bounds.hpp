@@ -12,24 +12,24 @@ namespace crashrank::detail {
 /// simulation promises: energy is never gained, momentum conserved.
 class ScoreBounds {
 public:
-  /// Makes room for a scene's actors and reads what does not change with their motions.
+  /// Makes displaced for a scene's actors and reads what does not change with their motions.
   void prepare(const Scene& scene);
   /// Reads the actors' motions. Allocates nothing.
   void update(const Scene& scene);
 
   /// No crash of a candidate that moves so can score more, whatever it meets.
-  double most(const Scene& scene, const Motion& ego) const;
-  /// The same in all futures, whatever the ego is displaced by. `room` is for a motion; allocates
-  /// only for timed motions.
-  double most_displaced(const Scene& scene, const Motion& ego, Motion& room) const;
+  double upper_bound(const Scene& scene, const Motion& ego) const;
+  /// The same in all futures, whatever the ego is displaced by. `displaced` is for a motion;
+  /// allocates only for timed motions.
+  double upper_bound_displaced(const Scene& scene, const Motion& ego, Motion& displaced) const;
 
 private:
   void add(const Scene& scene, std::size_t index);
 
-  Utmost utmost_;                 ///< but for energies, which change with motions
-  double most_ratio_ = 1.0;       ///< of a body's energy about any of its points to that it has
-  double energy_sum_j_ = 0.0;     ///< of all actors' motions
-  std::vector<double> energy_j_;  ///< by actor, the most on any of its plans
+  CrashLimits limits_;             ///< but for energies, which change with motions
+  double max_energy_ratio_ = 1.0;  ///< of a body's energy about any of its points to that it has
+  double energy_sum_j_ = 0.0;      ///< of all actors' motions
+  std::vector<double> actor_energy_j_;  ///< by actor, the most on any of its plans
 };
 
 }  // namespace crashrank::detail

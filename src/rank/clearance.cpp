@@ -14,13 +14,13 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// At 30 m/s a car moves a third of its length in a step.
 constexpr double longest_step_s = 0.05;
-constexpr double most_steps = 400.0;
+constexpr double max_steps = 400.0;
 
-/// A body and its way.
-struct Moving {
+/// A body and its ego_poses.
+struct MovingBody {
   const BodyOutline& outline;
   const Motion& motion;
-  View<const PlanarPose> way;
+  View<const PlanarPose> poses;
   double fastest_mps = 0.0;
 
   PlanarPose at(double time_s) const { return planar_pose(motion.pose_at(time_s)); }
@@ -44,17 +44,17 @@ bool passes_over(const Body& a, const Motion& of_a, const Body& b, const Motion&
   return low_a > high_b || low_b > high_a;
 }
 
-/// Least outline distance of two bodies on their ways.
-class LeastDistance {
+/// Least outline distance of two bodies on their trajectories.
+class MinimumDistance {
 public:
-  LeastDistance(const Moving& a, const Moving& b, double step_s, const StopCheck& stop)
+  MinimumDistance(const MovingBody& a, const MovingBody& b, double step_s, const StopCheck& stop)
       : a_(a),
         b_(b),
         stop_(stop),
         step_s_(step_s),
         travel_m_((a.fastest_mps + b.fastest_mps) * step_s) {
-    for (std::size_t i = 0; i < a.way.size(); ++i) {
-      const double apart = rectangle_distance_m(a.outline, a.way[i], b.outline, b.way[i]);
+    for (std::size_t i = 0; i < a.poses.size(); ++i) {
+      const double apart = rectangle_distance_m(a.outline, a.poses[i], b.outline, b.poses[i]);
       if (apart < coarse_m_) {
         coarse_m_ = apart;
         nearest_ = i;
@@ -63,15 +63,15 @@ public:
   }
 
   /// No distance is less. Between two times a distance falls by half of the travel at most.
-  double bound_m() const noexcept { return coarse_m_ - 0.5 * travel_m_; }
+  double lower_bound_m() const noexcept { return coarse_m_ - 0.5 * travel_m_; }
 
   /// Looks closely only at the times at which the rectangles come near enough.
   double find() {
     double best = at(nearest_, unbounded);
     double before = unbounded;
     double here = near(0, best);
-    for (std::size_t i = 0; i < a_.way.size() && !stop_(); ++i) {
-      const double behind = i + 1 < a_.way.size() ? near(i + 1, best) : unbounded;
+    for (std::size_t i = 0; i < a_.poses.size() && !stop_(); ++i) {
+      const double behind = i + 1 < a_.poses.size() ? near(i + 1, best) : unbounded;
       best = std::min(best, here);
       if (here < unbounded && here <= before && here <= behind && here - travel_m_ < best) {
         best = std::min(best, refine(i, here));
@@ -84,12 +84,12 @@ public:
 
 private:
   double at(std::size_t i, double cutoff_m) {
-    return outline_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i], cutoff_m, chains_);
+    return outline_distance_m(a_.outline, a_.poses[i], b_.outline, b_.poses[i], cutoff_m, chains_);
   }
   /// Infinity where nothing below `best` is near.
   double near(std::size_t i, double best) {
     const double reach = best + travel_m_;
-    if (rectangle_distance_m(a_.outline, a_.way[i], b_.outline, b_.way[i]) >= reach) {
+    if (rectangle_distance_m(a_.outline, a_.poses[i], b_.outline, b_.poses[i]) >= reach) {
       return unbounded;
     }
     const double apart = at(i, reach);
@@ -103,11 +103,11 @@ private:
   double refine(std::size_t i, double here) {
     constexpr double golden = 0.6180339887498949;
     constexpr int rounds = 10;  // 0.1 s · 0.618^10 is less than a millisecond
-    const double end_s = step_s_ * static_cast<double>(a_.way.size() - 1);
+    const double end_s = step_s_ * static_cast<double>(a_.poses.size() - 1);
     const double middle = step_s_ * static_cast<double>(i);
     const double cutoff = here + travel_m_;
     // Most often the least is at one of the ends, and the distance falls until there.
-    const bool at_end = i == 0 || i + 1 == a_.way.size();
+    const bool at_end = i == 0 || i + 1 == a_.poses.size();
     const double inside = middle + (i == 0 ? 0.05 : -0.05) * step_s_;
     if (at_end && at_time(inside, cutoff) >= here) return here;
     double low = std::max(middle - step_s_, 0.0);
@@ -134,8 +134,8 @@ private:
     return best;
   }
 
-  const Moving& a_;
-  const Moving& b_;
+  const MovingBody& a_;
+  const MovingBody& b_;
   const StopCheck& stop_;
   double step_s_;
   double travel_m_;
@@ -144,7 +144,8 @@ private:
   NearestChains chains_;
 };
 
-bool overlap(const Moving& a, const PlanarPose& pose_a, const Moving& b, const PlanarPose& pose_b) {
+bool overlap(const MovingBody& a, const PlanarPose& pose_a, const MovingBody& b,
+             const PlanarPose& pose_b) {
   const double reach = a.outline.radius_m() + b.outline.radius_m();
   const double dx = pose_b.x - pose_a.x;
   const double dy = pose_b.y - pose_a.y;
@@ -153,9 +154,10 @@ bool overlap(const Moving& a, const PlanarPose& pose_a, const Moving& b, const P
 }
 
 /// Whether b is, `lag_s` later than a, where a was around step i.
-bool overlaps_near(const Moving& a, const Moving& b, double step_s, std::size_t i, double lag_s) {
+bool overlaps_near(const MovingBody& a, const MovingBody& b, double step_s, std::size_t i,
+                   double lag_s) {
   constexpr int parts = 8;
-  const double end_s = step_s * static_cast<double>(a.way.size() - 1);
+  const double end_s = step_s * static_cast<double>(a.poses.size() - 1);
   const double middle = step_s * static_cast<double>(i);
   for (int part = -parts; part <= parts; ++part) {
     const double time_s = middle + step_s * part / parts;
@@ -167,10 +169,10 @@ bool overlaps_near(const Moving& a, const Moving& b, double step_s, std::size_t 
 }
 
 /// Least time between a and b at one place, where it is not above `most_s`.
-double least_time_gap_s(const Moving& a, const Moving& b, double step_s, double most_s,
+double least_time_gap_s(const MovingBody& a, const MovingBody& b, double step_s, double most_s,
                         const StopCheck& stop) {
   constexpr std::size_t parts = 16;
-  const std::size_t count = a.way.size();
+  const std::size_t count = a.poses.size();
   const auto lag_s = [step_s](std::size_t part) {
     return step_s / static_cast<double>(parts) * static_cast<double>(part);
   };
@@ -178,56 +180,56 @@ double least_time_gap_s(const Moving& a, const Moving& b, double step_s, double 
     // What is found at one lag of whole steps may begin up to two steps before it.
     if (lag > 2 && lag_s((lag - 2) * parts) > most_s) break;
     std::size_t least = lag * parts;
-    bool met = false;
+    bool overlaps = false;
     for (std::size_t i = 0; i + lag < count; ++i) {
       for (const bool b_later : {true, false}) {
         const std::size_t in_a = b_later ? i : i + lag;
         const std::size_t in_b = b_later ? i + lag : i;
-        if (!overlap(a, a.way[in_a], b, b.way[in_b])) continue;
-        met = true;
+        if (!overlap(a, a.poses[in_a], b, b.poses[in_b])) continue;
+        overlaps = true;
         while (least > 0 &&
                overlaps_near(a, b, step_s, in_a, b_later ? lag_s(least - 1) : -lag_s(least - 1))) {
           --least;
         }
       }
     }
-    if (met) return lag_s(least);
+    if (overlaps) return lag_s(least);
   }
   return unbounded;
 }
 
 }  // namespace
 
-void place_ways(const Scene& scene, PlanWays& ways) {
+void sample_trajectories(const Scene& scene, PlanTrajectories& trajectories) {
   const double horizon_s = scene.slice_s.back();
-  ways.steps =
-      static_cast<std::size_t>(std::clamp(std::ceil(horizon_s / longest_step_s), 1.0, most_steps));
-  ways.step_s = horizon_s / static_cast<double>(ways.steps);
+  trajectories.steps =
+      static_cast<std::size_t>(std::clamp(std::ceil(horizon_s / longest_step_s), 1.0, max_steps));
+  trajectories.step_s = horizon_s / static_cast<double>(trajectories.steps);
   const std::vector<Plan>& plans = scene.futures.plans;
   const std::size_t count = scene.futures.own_plans();
-  ways.poses.resize(count * (ways.steps + 1));
-  ways.fastest_mps.resize(count);
+  trajectories.poses.resize(count * (trajectories.steps + 1));
+  trajectories.fastest_mps.resize(count);
   for (std::size_t p = 0; p < count; ++p) {
     const BodyOutline& outline = *scene.actors[plans[p].actor].outline;
-    ways.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
-    for (std::size_t i = 0; i <= ways.steps; ++i) {
-      ways.poses[p * (ways.steps + 1) + i] =
-          planar_pose(plans[p].motion.pose_at(ways.step_s * static_cast<double>(i)));
+    trajectories.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
+    for (std::size_t i = 0; i <= trajectories.steps; ++i) {
+      trajectories.poses[p * (trajectories.steps + 1) + i] =
+          planar_pose(plans[p].motion.pose_at(trajectories.step_s * static_cast<double>(i)));
     }
   }
 }
 
-Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& way,
+Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& ego_poses,
                        const StopCheck& stop) {
-  const PlanWays& ways = scene.ways;
-  way.resize(ways.steps + 1);
-  for (std::size_t i = 0; i <= ways.steps; ++i) {
-    way[i] = planar_pose(ego.pose_at(ways.step_s * static_cast<double>(i)));
+  const PlanTrajectories& trajectories = scene.trajectories;
+  ego_poses.resize(trajectories.steps + 1);
+  for (std::size_t i = 0; i <= trajectories.steps; ++i) {
+    ego_poses[i] = planar_pose(ego.pose_at(trajectories.step_s * static_cast<double>(i)));
   }
-  const Moving own{*scene.ego.outline,
-                   ego,
-                   {way.data(), way.size()},
-                   fastest_point_mps(ego, *scene.ego.outline, scene.slice_s.back())};
+  const MovingBody own{*scene.ego.outline,
+                       ego,
+                       {ego_poses.data(), ego_poses.size()},
+                       fastest_point_mps(ego, *scene.ego.outline, scene.slice_s.back())};
   Clearance least;
   // A pair is left out where it is known to be further apart than another: by no bit does that
   // decide the least.
@@ -238,16 +240,18 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
     if (!scene.futures.is_followed(p)) continue;
     const Body& actor = scene.actors[plans[p].actor];
     if (passes_over(scene.ego, ego, actor, plans[p].motion)) continue;
-    const Moving other{*actor.outline, plans[p].motion, ways.of(p), ways.fastest_mps[p]};
-    LeastDistance distance(own, other, ways.step_s, stop);
-    if (distance.bound_m() < nearest) {
+    const MovingBody other{*actor.outline, plans[p].motion, trajectories.of(p),
+                           trajectories.fastest_mps[p]};
+    MinimumDistance distance(own, other, trajectories.step_s, stop);
+    if (distance.lower_bound_m() < nearest) {
       if (const double apart_m = distance.find(); apart_m < nearest) {
         nearest = apart_m;
         least.nearest = plans[p].actor;
       }
     }
     if (other.fastest_mps > 0.0) {
-      const double gap_s = least_time_gap_s(own, other, ways.step_s, least.time_gap_s, stop);
+      const double gap_s =
+          least_time_gap_s(own, other, trajectories.step_s, least.time_gap_s, stop);
       if (gap_s < least.time_gap_s) {
         least.time_gap_s = gap_s;
         least.soonest = plans[p].actor;

@@ -19,13 +19,13 @@ struct Clearance {
   double distance_m = std::numeric_limits<double>::infinity();
   std::size_t nearest = 0;  ///< the actor whose that is, where it is finite
   /// Least time between the ego and another at one place: see CandidateResult::least_time_gap_s.
-  /// Infinity where no two ways cross.
+  /// Infinity where no two trajectories cross.
   double time_gap_s = std::numeric_limits<double>::infinity();
   std::size_t soonest = 0;  ///< the actor whose that is, where it is finite
 };
 
 /// Ways of the scenario's own plans seen from above, at even times from 0 to the horizon.
-struct PlanWays {
+struct PlanTrajectories {
   double step_s = 0.0;
   std::size_t steps = 0;            ///< one more pose each
   std::vector<PlanarPose> poses;    ///< by plan, then by time
@@ -35,15 +35,15 @@ struct PlanWays {
   }
 };
 
-/// Reads the ways of a scene's plans. Allocates only to grow.
-void place_ways(const Scene& scene, PlanWays& ways);
+/// Reads the trajectories of a scene's plans. Allocates only to grow.
+void sample_trajectories(const Scene& scene, PlanTrajectories& trajectories);
 
 /// Of the ego's motion to all plans that are followed in a future, up to the horizon; displaced
 /// plans are taken as those that they are derived from. The answer
 /// does not depend on the order of the actors. `way` is room for the ego's poses; nothing else is
-/// allocated. Distances to about a centimetre, time gaps to `PlanWays::step_s` / 16. Some 0.1 ms
-/// for each actor that comes near; asks `stop` every few µs.
-Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& way,
+/// allocated. Distances to about a centimetre, time gaps to `PlanTrajectories::step_s` / 16. Some
+/// 0.1 ms for each actor that comes near; asks `stop` every few µs.
+Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<PlanarPose>& ego_poses,
                        const StopCheck& stop);
 
 }  // namespace crashrank::detail

@@ -30,11 +30,11 @@ std::size_t rank_of_body(std::size_t body) { return body + 1; }
 
 /// Mean over the futures.
 std::vector<PersonRisk> mean_risks(const std::vector<CandidateResult>& results,
-                                   const std::vector<Approach>& outcomes) {
+                                   const std::vector<SimulatedOutcome>& outcomes) {
   std::vector<PersonRisk> people;
   for (std::size_t k = 0; k < results.size(); ++k) {
     for (PersonRisk risk : results[k].people) {
-      risk.probability *= outcomes[k].outcome.probability;
+      risk.probability *= outcomes[k].summary.probability;
       const auto same = std::find_if(people.begin(), people.end(), [&](const PersonRisk& each) {
         return each.body == risk.body;
       });
@@ -64,7 +64,7 @@ double risk_of_futures(const Scene& scene, View<const double> scores,
 }
 
 CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>&& results,
-                                const std::vector<Approach>& outcomes, Scratch& scratch) {
+                                const std::vector<SimulatedOutcome>& outcomes, Scratch& scratch) {
   const FutureSummary& summary = scene.futures.summary;
   std::vector<double> scores(scene.futures.size());
   const auto risk_over = [&](const auto& score_of) {
@@ -78,13 +78,13 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
     samples.push_back(
         risk_over([i](const CandidateResult& result) { return result.sample_scores[i]; }));
   }
-  std::vector<FutureOutcome> told;
+  std::vector<FutureOutcome> summaries;
   for (std::size_t k = 0; k < results.size(); ++k) {
-    told.push_back(outcomes[k].outcome);
-    told.back().score = *results[k].score;
+    summaries.push_back(outcomes[k].summary);
+    summaries.back().score = *results[k].score;
   }
   std::stable_sort(
-      told.begin() + 1, told.end(),
+      summaries.begin() + 1, summaries.end(),
       [](const FutureOutcome& p, const FutureOutcome& q) { return p.probability > q.probability; });
   const double score = risk_over([](const CandidateResult& result) { return *result.score; });
   std::vector<PersonRisk> people = mean_risks(results, outcomes);
@@ -95,7 +95,7 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
     combined.sampling_error = sampling_error(summary.risk, scratch.weighted, summary.sampled);
   }
   combined.sample_scores = std::move(samples);
-  combined.futures = std::move(told);
+  combined.futures = std::move(summaries);
   for (std::size_t k = 1; k < results.size(); ++k) {
     combined.crowded = combined.crowded || results[k].crowded;
   }

@@ -10,7 +10,7 @@ namespace crashrank::detail {
 /// the likeliest future's, scores and samples of all by the scene's risk measure. `outcomes` tell
 /// which futures each result is of.
 CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>&& results,
-                                const std::vector<Approach>& outcomes, Scratch& scratch);
+                                const std::vector<SimulatedOutcome>& outcomes, Scratch& scratch);
 
 /// The scene's risk measure of scores by future. Sums run in the order of the futures, whichever
 /// share an outcome.

@@ -67,7 +67,7 @@ ContactVariant variant_of(const HarmSample& sample) {
 void CrashChain::prepare(const Scene& scene) {
   bodies_.reserve(scene.actors.size() + 1);
   actors_.reserve(scene.actors.size() + 1);
-  placed_.reserve(scene.actors.size() + 1);
+  sorted_.reserve(scene.actors.size() + 1);
   std::size_t pieces = scene.ego.vehicle.profile->pieces.size();
   for (const Body& actor : scene.actors) {
     pieces = std::max(pieces, actor.vehicle.profile->pieces.size());
@@ -112,7 +112,7 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
     if (followed == Futures::absent) continue;
     const Motion& motion = scene.futures.plans[followed].motion;
     const std::size_t joined = scene.joined_of[i];
-    if (joined == Scene::alone) {
+    if (joined == Scene::not_joined) {
       add(i, i, scene.actors[i].vehicle, motion);
     } else if (scene.joined[joined].members.front() == i) {
       const bool hit = scene.joined_of[first.actor] == joined;
@@ -127,31 +127,31 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
 
 /// By what they are and where, so that no answer depends on the order of the actors.
 void CrashChain::sort_actors(double time_s) {
-  placed_.clear();
+  sorted_.clear();
   for (const SceneBody& body : bodies_) {
-    ContactBody placed;
-    placed.vehicle = body.vehicle;
-    body.plan->state_at(time_s, placed.pose, placed.velocity);
-    placed_.push_back({placed, body, actors_[placed_.size()]});
+    ContactBody state;
+    state.vehicle = body.vehicle;
+    body.plan->state_at(time_s, state.pose, state.velocity);
+    sorted_.push_back({state, body, actors_[sorted_.size()]});
   }
-  std::sort(placed_.begin() + 1, placed_.end(), [](const Placed& p, const Placed& q) {
+  std::sort(sorted_.begin() + 1, sorted_.end(), [](const SortedBody& p, const SortedBody& q) {
     if (goes_second(q.at, p.at)) return true;
     return !goes_second(p.at, q.at) && p.actor < q.actor;
   });
-  for (std::size_t i = 1; i < placed_.size(); ++i) {
-    bodies_[i] = placed_[i].body;
-    actors_[i] = placed_[i].actor;
+  for (std::size_t i = 1; i < sorted_.size(); ++i) {
+    bodies_[i] = sorted_[i].body;
+    actors_[i] = sorted_[i].actor;
   }
 }
 
-void CrashChain::feel(const Scene& scene, std::vector<char>& felt) const {
+void CrashChain::mark_relevant_plans(const Scene& scene, std::vector<char>& relevant) const {
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t p = 0; p < plans.size(); ++p) {
-    if (felt[p] != 0 || scene.futures.is_certain(plans[p].actor)) continue;
+    if (relevant[p] != 0 || scene.futures.is_certain(plans[p].actor)) continue;
     SceneBody body;
     body.vehicle = &scene.actors[plans[p].actor].vehicle;
     body.plan = &plans[p].motion;
-    if (run_.would_act(body, scene.actors.size() + 1)) felt[p] = 1;
+    if (run_.would_act(body, scene.actors.size() + 1)) relevant[p] = 1;
   }
 }
 
@@ -216,10 +216,11 @@ void CrashChain::effects(std::vector<ContactEffect>& effects,
     touch.closing_mps = first_->closing_speed_mps;
     touch.sides[1].body = first_->actor;
     // Where the two meet with a force later, their energy is counted there.
-    const bool meet = std::any_of(all.begin(), all.end(), [&](const SceneContact& contact) {
-      return body(contact.a) == ego_body && body(contact.b) == first_->actor;
-    });
-    if (!meet) touch.closing_energy_j = first_->closing_energy_j;
+    const bool has_later_force =
+        std::any_of(all.begin(), all.end(), [&](const SceneContact& contact) {
+          return body(contact.a) == ego_body && body(contact.b) == first_->actor;
+        });
+    if (!has_later_force) touch.closing_energy_j = first_->closing_energy_j;
     effects.push_back(touch);
   }
   for (const std::size_t k : order) {

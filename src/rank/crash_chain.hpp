@@ -41,10 +41,10 @@ public:
   void effects(std::vector<ContactEffect>& effects, std::vector<std::size_t>& order) const;
   const SceneRun& run() const noexcept { return run_; }
   /// Marks the plans that came near the chain while it was simulated, or would have.
-  void feel(const Scene& scene, std::vector<char>& felt) const;
+  void mark_relevant_plans(const Scene& scene, std::vector<char>& relevant) const;
 
 private:
-  struct Placed {
+  struct SortedBody {
     ContactBody at;
     SceneBody body;
     std::size_t actor = 0;
@@ -55,7 +55,7 @@ private:
   SceneRun run_;
   std::vector<SceneBody> bodies_;
   std::vector<std::size_t> actors_;  ///< by body of the run
-  std::vector<Placed> placed_;
+  std::vector<SortedBody> sorted_;
 };
 
 /// Velocity of the lower body's material against the other's as a contact begins, where its force

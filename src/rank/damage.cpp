@@ -20,7 +20,7 @@ Box bounds_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triang
   return box;
 }
 
-Box carried(const Pose& pose, const Box& box) {
+Box transform_box(const Pose& pose, const Box& box) {
   Box result;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3f point((corner & 1) != 0 ? box.max.x() : box.min.x(),
@@ -31,14 +31,14 @@ Box carried(const Pose& pose, const Box& box) {
   return result;
 }
 
-Box common(const Box& a, const Box& b) {
+Box intersection(const Box& a, const Box& b) {
   Box box;
   box.min = a.min.cwiseMax(b.min);
   box.max = a.max.cwiseMin(b.max);
   return box.empty() ? Box{} : box;
 }
 
-Box wider(const Box& box, float by) {
+Box expanded(const Box& box, float by) {
   Box result = box;
   result.min.array() -= by;
   result.max.array() += by;
@@ -46,8 +46,8 @@ Box wider(const Box& box, float by) {
 }
 
 // How far a point in a's coordinates moves in the frame of b.
-double way_of_point(const ContactPoses& from, const ContactPoses& to,
-                    const Eigen::Vector3d& in_a_m) {
+double displacement_of_point_m(const ContactPoses& from, const ContactPoses& to,
+                               const Eigen::Vector3d& in_a_m) {
   const Pose before = relative(from.b, from.a);
   const Pose after = relative(to.b, to.a);
   return (after.rotation * in_a_m + after.translation -
@@ -56,25 +56,25 @@ double way_of_point(const ContactPoses& from, const ContactPoses& to,
 }
 
 // How far the corner of a's box that moves most gets in b's frame.
-double way_of_box(const Body& a, const ContactPoses& from, const ContactPoses& to) {
-  double way_m = 0.0;
+double displacement_of_box_m(const Body& a, const ContactPoses& from, const ContactPoses& to) {
+  double moved_m = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d sign((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
                                (corner & 4) != 0 ? 1.0 : -1.0);
     const Eigen::Vector3d point = a.center_m + a.half_axes_m * sign;
-    way_m = std::max(way_m, way_of_point(from, to, point));
+    moved_m = std::max(moved_m, displacement_of_point_m(from, to, point));
   }
-  return way_m;
+  return moved_m;
 }
 
 // Entries of a record that stand for all: the first, the one at which the contact point has got
 // furthest, the last, and as many between them as keep neighbours close.
-std::vector<std::size_t> choose_entries(const Body& a, View<const ContactPoses> record,
-                                        std::size_t furthest) {
+std::vector<std::size_t> select_poses(const Body& a, View<const ContactPoses> record,
+                                      std::size_t furthest) {
   std::vector<std::size_t> chosen{0};
   for (std::size_t i = 1; i < record.size(); ++i) {
     if (i == furthest || i + 1 == record.size() ||
-        way_of_box(a, record[chosen.back()], record[i + 1]) > pose_spacing_m) {
+        displacement_of_box_m(a, record[chosen.back()], record[i + 1]) > pose_spacing_m) {
       chosen.push_back(i);
     }
   }
@@ -92,15 +92,16 @@ void add_all(const TriangleMesh& mesh, TriangleSet& set) {
   for (std::size_t i = 0; i < mesh.size(); ++i) set.add(static_cast<std::uint32_t>(i));
 }
 
-void finish(const TriangleMesh& mesh, TriangleSet& set, const Pose& pose, BodyDamage& damage) {
+void store_damage(const TriangleMesh& mesh, TriangleSet& set, const Pose& pose,
+                  BodyDamage& damage) {
   damage.triangles = set.sorted();
   damage.pose = pose;
-  sum_up(mesh, damage);
+  fill_area_and_parts(mesh, damage);
 }
 
 }  // namespace
 
-void sum_up(const TriangleMesh& mesh, BodyDamage& damage) {
+void fill_area_and_parts(const TriangleMesh& mesh, BodyDamage& damage) {
   damage.area_m2 = 0.0;
   damage.parts.clear();
   std::size_t part = 0;
@@ -134,21 +135,21 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
       plan.pose_a.rotation.transpose() * (query.point_m - plan.pose_a.translation);
   std::size_t furthest = 0;
   for (std::size_t i = 1; i < record.size(); ++i) {
-    const double way_m = way_of_point(record[0], record[i], point_m);
-    if (!(way_m > plan.crush_m)) continue;
-    plan.crush_m = way_m;
+    const double moved_m = displacement_of_point_m(record[0], record[i], point_m);
+    if (!(moved_m > plan.crush_m)) continue;
+    plan.crush_m = moved_m;
     furthest = i;
   }
-  const std::vector<std::size_t> chosen = choose_entries(a, record, furthest);
+  const std::vector<std::size_t> chosen = select_poses(a, record, furthest);
   const auto add_path = [&](std::size_t actor) {
     const Body& body = scene.actors[actor];
     // Of joined bodies the record has the common pose.
-    const bool stands = !body.vehicle.movable();
-    const Pose standing = body.standing;
+    const bool is_fixed = !body.vehicle.movable();
+    const Pose fixed_pose = body.fixed_pose;
     DamagePath path;
     path.actor = actor;
     for (const std::size_t i : chosen) {
-      path.poses.push_back(relative(record[i].a, stands ? standing : record[i].b));
+      path.poses.push_back(relative(record[i].a, is_fixed ? fixed_pose : record[i].b));
     }
     if (actor == query.b || comes_near(a, body, path.poses)) plan.paths.push_back(std::move(path));
   };
@@ -157,32 +158,32 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
     if (actor != query.b) add_path(actor);
   }
   const Body& b = scene.actors[query.b];
-  plan.pose_b = b.vehicle.movable() ? record[0].b : b.standing;
+  plan.pose_b = b.vehicle.movable() ? record[0].b : b.fixed_pose;
   return plan;
 }
 
-void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& found,
+void find_damage(const Scene& scene, const DamagePlan& plan, const PrecomputedPairs& found,
                  BodyDamage& damage_a, BodyDamage& damage_b, DamageScratch& scratch,
                  RankWork& work) {
-  const DamageQuery& asked = plan.query;
-  const Body& a = body_of(scene, asked.a);
-  const Body& b = scene.actors[asked.b];
+  const DamageQuery& contact = plan.query;
+  const Body& a = body_of(scene, contact.a);
+  const Body& b = scene.actors[contact.b];
   scratch.a.clear(a.model->mesh.size(), a.model->tree.nodes.size());
   scratch.b.clear(b.model->mesh.size(), b.model->tree.nodes.size());
   scratch.overlaps.clear();
 
-  if (asked.triangle_a >= 0 && asked.triangle_b >= 0) {
-    scratch.a.add(static_cast<std::uint32_t>(asked.triangle_a));
-    scratch.b.add(static_cast<std::uint32_t>(asked.triangle_b));
+  if (contact.triangle_a >= 0 && contact.triangle_b >= 0) {
+    scratch.a.add(static_cast<std::uint32_t>(contact.triangle_a));
+    scratch.b.add(static_cast<std::uint32_t>(contact.triangle_b));
     scratch.overlaps.push_back({relative(plan.pose_a, plan.pose_b), {}});
   }
-  if (asked.state == ImpactState::contained) {
+  if (contact.state == ImpactState::contained) {
     const bool a_is_inside = a.radius_m < b.radius_m;
     add_all(a_is_inside ? a.model->mesh : b.model->mesh, a_is_inside ? scratch.a : scratch.b);
   }
   std::size_t query = found.first;
   for (const DamagePath& path : plan.paths) {
-    const bool own = path.actor == asked.b;
+    const bool own = path.actor == contact.b;
     const Body& body = scene.actors[path.actor];
     const auto add = [&scratch, own](View<const Pair> pairs) {
       for (const Pair& pair : pairs) {
@@ -210,24 +211,26 @@ void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& 
     for (std::size_t i = 1; i < path.poses.size(); ++i) {
       const Pose& from = path.poses[i - 1];
       const Pose& to = path.poses[i];
-      work.paths += add_passed(a, inverse(from), inverse(to), body, scratch.a, scratch.passed);
-      if (path.actor != asked.b) continue;
-      work.paths += add_passed(body, from, to, a, scratch.b, scratch.passed);
+      work.paths +=
+          add_swept_triangles(a, inverse(from), inverse(to), body, scratch.a, scratch.passed);
+      if (path.actor != contact.b) continue;
+      work.paths += add_swept_triangles(body, from, to, a, scratch.b, scratch.passed);
     }
   }
-  finish(a.model->mesh, scratch.a, plan.pose_a, damage_a);
-  finish(b.model->mesh, scratch.b, plan.pose_b, damage_b);
+  store_damage(a.model->mesh, scratch.a, plan.pose_a, damage_a);
+  store_damage(b.model->mesh, scratch.b, plan.pose_b, damage_b);
 
   const Box box_a = bounds_of(a.model->mesh, damage_a.triangles);
   const Box box_b = bounds_of(b.model->mesh, damage_b.triangles);
   if (box_a.empty() || box_b.empty()) return;
-  const auto reach = static_cast<float>(asked.gap_m) + 1e-5F;
+  const auto reach = static_cast<float>(contact.gap_m) + 1e-5F;
   for (const DamageScratch::Overlap& overlap : scratch.overlaps) {
     const bool own = overlap.other.empty();
-    damage_a.region.grow(
-        common(box_a, wider(carried(overlap.b_in_a, own ? box_b : overlap.other), reach)));
+    damage_a.region.grow(intersection(
+        box_a, expanded(transform_box(overlap.b_in_a, own ? box_b : overlap.other), reach)));
     if (!own) continue;
-    damage_b.region.grow(common(box_b, wider(carried(inverse(overlap.b_in_a), box_a), reach)));
+    damage_b.region.grow(
+        intersection(box_b, expanded(transform_box(inverse(overlap.b_in_a), box_a), reach)));
   }
 }
 

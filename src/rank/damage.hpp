@@ -3,8 +3,8 @@
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/dispatch/dispatcher.hpp"
-#include "rank/passed.hpp"
 #include "rank/scene.hpp"
+#include "rank/swept_damage.hpp"
 #include "rank/triangle_set.hpp"
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct DamageScratch {
   ModelWorkspace collide;
   TriangleSet a;
   TriangleSet b;
-  PassedScratch passed;
+  SweptScratch passed;
   /// Poses at which surfaces intersect, and the bounds of what a intersects there.
   struct Overlap {
     Pose b_in_a;
@@ -66,23 +66,23 @@ struct DamagePlan {
   }
 };
 
-/// Says where to look for the damage of a contact. `motion` is that of the plain variant; `pressed`
-/// are the actors that a pressed on in it, b may be among them.
+/// Says where to look for the damage of a contact. `motion` is that of the nominal variant;
+/// `pressed` are the actors that a pressed on in it, b may be among them.
 DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const ContactMotion& motion,
                        View<const std::size_t> pressed);
 
 /// Pairs found before, `queries[first + i]` at the plan's i-th pose; without lists each pose is
 /// asked when it is needed.
-struct FoundDamage {
+struct PrecomputedPairs {
   const PairLists* lists = nullptr;
   std::size_t first = 0;
 };
 
 /// What a contact does to both bodies.
-void read_damage(const Scene& scene, const DamagePlan& plan, const FoundDamage& found,
+void find_damage(const Scene& scene, const DamagePlan& plan, const PrecomputedPairs& found,
                  BodyDamage& a, BodyDamage& b, DamageScratch& scratch, RankWork& work);
 
 /// Fills in area and parts from the triangles.
-void sum_up(const TriangleMesh& mesh, BodyDamage& damage);
+void fill_area_and_parts(const TriangleMesh& mesh, BodyDamage& damage);
 
 }  // namespace crashrank::detail

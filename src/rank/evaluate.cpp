@@ -24,7 +24,7 @@ void add_grazes(const Scene& scene, const Scratch& scratch, std::size_t future,
                                        : std::numeric_limits<double>::infinity();
   for (const Scratch::Hit& hit : scratch.hits) {
     const bool grazing = hit.impact.state == ImpactState::grazing;
-    if (!scene.futures.has(future, hit.plan) || (!grazing && !hit.impact.grazed)) continue;
+    if (!scene.futures.follows(future, hit.plan) || (!grazing && !hit.impact.grazed)) continue;
     const double time = grazing ? hit.impact.time_s : hit.impact.graze_time_s;
     if (time <= until) result.grazes.push_back({hit.actor, time});
   }
@@ -43,7 +43,7 @@ void merge(const BodyDamage& more, BodyDamage& whole) {
 }
 
 /// By body: the damage of all contacts together.
-std::map<std::size_t, BodyDamage> whole_damage(const Scene& scene, const CandidateResult& result) {
+std::map<std::size_t, BodyDamage> total_damage(const Scene& scene, const CandidateResult& result) {
   std::map<std::size_t, BodyDamage> whole;
   const auto add = [&whole](std::size_t body, const BodyDamage& damage) {
     const auto [place, is_new] = whole.try_emplace(body, damage);
@@ -57,7 +57,7 @@ std::map<std::size_t, BodyDamage> whole_damage(const Scene& scene, const Candida
     add(contact.a, contact.damage_a);
     add(contact.b, contact.damage_b);
   }
-  for (auto& [body, damage] : whole) sum_up(body_of(scene, body).model->mesh, damage);
+  for (auto& [body, damage] : whole) fill_area_and_parts(body_of(scene, body).model->mesh, damage);
   return whole;
 }
 
@@ -69,7 +69,7 @@ double damage_score(const std::map<std::size_t, BodyDamage>& damage, const Measu
 
 /// The place among a candidate's effects of each sample's: samples that differ in risk alone share
 /// their simulation.
-std::vector<std::size_t> effect_of_sample(const Scene& scene) {
+std::vector<std::size_t> simulation_of_sample(const Scene& scene) {
   const auto same = [](const HarmSample& p, const HarmSample& q) {
     return p.friction == q.friction && p.strength == q.strength && p.step == q.step &&
            p.shift_m == q.shift_m;
@@ -84,13 +84,13 @@ std::vector<std::size_t> effect_of_sample(const Scene& scene) {
 }
 
 /// Simulates the chain of a first contact in a future and a sample.
-void simulate(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
-              const HarmSample& sample, Scratch& scratch, RankWork& work,
-              std::vector<ContactEffect>& effects) {
+void simulate_chain(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
+                    const HarmSample& sample, Scratch& scratch, RankWork& work,
+                    std::vector<ContactEffect>& effects) {
   scratch.chain.begin(scene, ego, future, first, sample);
   scratch.chain.finish();
-  scratch.chain.feel(scene, scratch.felt);
-  scratch.felt_left_out = scratch.felt_left_out || scene.futures.feels_left_out(scratch.felt);
+  scratch.chain.mark_relevant_plans(scene, scratch.relevant);
+  scratch.needs_left_out = scratch.needs_left_out || scene.futures.needs_left_out(scratch.relevant);
   scratch.chain.effects(effects, scratch.order);
   work.crash_steps += scratch.chain.run().steps();
   work.crash_pieces += scratch.chain.run().work();
@@ -103,8 +103,9 @@ struct EventTotals {
   void note(std::size_t body, const BodyEvent& event) { last[{body, event.number}] = event; }
 };
 
-/// The score of the plain variant; each contact learns its event and what it adds to the harm.
-double tally_up(const Scene& scene, const Approach& from, Tally& tally, CandidateResult& result) {
+/// The score of the nominal variant; each contact learns its event and what it adds to the harm.
+double score_nominal(const Scene& scene, const SimulatedOutcome& from, Tally& tally,
+                     CandidateResult& result) {
   const MeasureRow& row = measure_row(scene.measure);
   tally.begin();
   EventTotals events;
@@ -116,7 +117,7 @@ double tally_up(const Scene& scene, const Approach& from, Tally& tally, Candidat
     for (std::size_t side = 0; side < 2; ++side) {
       harm[side] = -tally.people_score(scene, effect.sides[side].body);
     }
-    tally.add(scene, effect, scene.plain);
+    tally.add(scene, effect, scene.nominal);
     numbers.emplace_back();
     for (std::size_t side = 0; side < 2; ++side) {
       const SideEffect& own = effect.sides[side];
@@ -125,32 +126,32 @@ double tally_up(const Scene& scene, const Approach& from, Tally& tally, Candidat
       numbers.back()[side] = event.number;
       harm[side] += tally.people_score(scene, own.body) + row.of_side(own, scene.harm.weights);
     }
-    const ToldContact& told = from.told[k];
-    if (!told.is_further) result.contacts[told.index].event = numbers.back()[0];
+    const ReportedContact& reported = from.reported[k];
+    if (!reported.is_further) result.contacts[reported.index].event = numbers.back()[0];
     if (!row.counts_people) continue;
-    const OutcomePair outcomes = outcomes_of(result, told);
+    const OutcomePair outcomes = outcomes_of(result, reported);
     outcomes.a.harm = harm[0];
     outcomes.b.harm = harm[1];
-    (told.is_further ? result.further[told.index].harm
-                     : result.contacts[told.index].severity.harm) = harm[0] + harm[1];
+    (reported.is_further ? result.further[reported.index].harm
+                         : result.contacts[reported.index].severity.harm) = harm[0] + harm[1];
   }
   for (std::size_t k = 0; k < effects.size(); ++k) {
-    const OutcomePair outcomes = outcomes_of(result, from.told[k]);
-    const auto tell = [&](std::size_t side, BodyOutcome& outcome) {
+    const OutcomePair outcomes = outcomes_of(result, from.reported[k]);
+    const auto fill_event = [&](std::size_t side, BodyOutcome& outcome) {
       const BodyEvent& event = events.last[{effects[k].sides[side].body, numbers[k][side]}];
       outcome.event_delta_v_mps = event.size_mps();
       outcome.event_yaw_rate_change_radps = event.yaw_radps;
     };
-    tell(0, outcomes.a);
-    tell(1, outcomes.b);
+    fill_event(0, outcomes.a);
+    fill_event(1, outcomes.b);
   }
   return tally.score(scene);
 }
 
 /// What the candidate scores in every sample, leaving the road included.
-void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
-                 double leaving, Tally& tally, CandidateResult& result) {
-  const std::vector<std::size_t> place = effect_of_sample(scene);
+void score_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
+                   double leaving, Tally& tally, CandidateResult& result) {
+  const std::vector<std::size_t> place = simulation_of_sample(scene);
   for (std::size_t i = 0; i < scene.samples.size(); ++i) {
     double score = leaving;
     if (!effects.empty()) {
@@ -165,36 +166,37 @@ void add_samples(const Scene& scene, const std::vector<std::vector<ContactEffect
 }
 
 /// Follows one candidate through its crash in a future. False where it was stopped.
-bool approach_future(const Scene& scene, const Motion& ego, std::size_t future, Scratch& scratch,
-                     RankWork& work, Approach& found) {
-  std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
+bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, Scratch& scratch,
+                     RankWork& work, SimulatedOutcome& found) {
+  std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
   const Scratch::Hit* const hit = first_hit(scene, scratch, future);
-  feel_hits(scratch, hit, scratch.felt);
+  mark_relevant_hits(scratch, hit, scratch.relevant);
   CandidateResult& result = found.result;
-  result.collides = found.outcome.collides = hit != nullptr;
+  result.collides = found.summary.collides = hit != nullptr;
   if (result.collides) {
     const Motion& other = scene.futures.plans[hit->plan].motion;
     result.contacts.push_back(first_contact(scene, ego, hit->actor, other, hit->impact));
     const Contact first = result.contacts.front();
     result.contacts.front().severity.simulated = needs_crash(scene.measure);
-    found.outcome.actor = first.actor;
-    found.outcome.time_of_impact_s = first.time_of_impact_s;
-    found.outcome.closing_speed_mps = first.closing_speed_mps;
+    found.summary.actor = first.actor;
+    found.summary.time_of_impact_s = first.time_of_impact_s;
+    found.summary.closing_speed_mps = first.closing_speed_mps;
     found.effects.emplace_back();
-    simulate(scene, ego, future, first, scene.plain, scratch, work, found.effects.back());
+    simulate_chain(scene, ego, future, first, scene.nominal, scratch, work, found.effects.back());
     result.crowded = scratch.chain.run().crowded();
-    found.outcome.contacts = scratch.chain.contacts().size();
-    found.told = tell_contacts(scene, scratch.chain, scratch.order, hit->impact,
-                               ego.pose_at(first.time_of_impact_s),
-                               other.pose_at(first.time_of_impact_s), result, found.plans);
+    found.summary.contacts = scratch.chain.contacts().size();
+    found.reported = report_contacts(scene, scratch.chain, scratch.order, hit->impact,
+                                     ego.pose_at(first.time_of_impact_s),
+                                     other.pose_at(first.time_of_impact_s), result, found.plans);
     std::size_t last = 0;
-    const std::vector<std::size_t> places = effect_of_sample(scene);
+    const std::vector<std::size_t> places = simulation_of_sample(scene);
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (places[i] == last) continue;
       last = places[i];
       if (scratch.stopped()) return false;
       found.effects.emplace_back();
-      simulate(scene, ego, future, first, scene.samples[i], scratch, work, found.effects.back());
+      simulate_chain(scene, ego, future, first, scene.samples[i], scratch, work,
+                     found.effects.back());
     }
   }
   add_grazes(scene, scratch, future, result);
@@ -206,8 +208,8 @@ double first_contact_s(const FutureOutcome& outcome) {
 }
 
 /// How far the plan is followed; nowhere where no future is known.
-Followed followed_in(const Scene& scene, const std::vector<FutureOutcome>& futures) {
-  Followed followed;
+FollowedPlan followed_plan(const Scene& scene, const std::vector<FutureOutcome>& futures) {
+  FollowedPlan followed;
   for (const FutureOutcome& outcome : futures) {
     const double first = first_contact_s(outcome);
     followed.longest_s = std::max(followed.longest_s, std::min(first, scene.slice_s.back()));
@@ -221,16 +223,16 @@ Followed followed_in(const Scene& scene, const std::vector<FutureOutcome>& futur
 void add_manoeuvre(const Scene& scene, const Candidate& candidate,
                    const std::optional<RoadLeaving>& leaving, Scratch& scratch,
                    CandidateResult& result) {
-  const auto told = [](double number) {
+  const auto if_finite = [](double number) {
     return std::isfinite(number) ? std::optional<double>(number) : std::nullopt;
   };
-  const Followed followed = followed_in(scene, result.futures);
-  ManoeuvreFacts facts = describe_manoeuvre(scene, candidate, followed, leaving, scratch);
+  const FollowedPlan followed = followed_plan(scene, result.futures);
+  ManoeuvreFacts facts = evaluate_manoeuvre(scene, candidate, followed, leaving, scratch);
   result.demand = facts.demand;
   result.feasible = facts.feasible;
   result.leaves_road = facts.leaves_road;
-  result.least_distance_m = told(facts.clearance.distance_m);
-  result.least_time_gap_s = told(facts.clearance.time_gap_s);
+  result.least_distance_m = if_finite(facts.clearance.distance_m);
+  result.least_time_gap_s = if_finite(facts.clearance.time_gap_s);
   if (!followed.touches) {
     if (result.least_distance_m) result.nearest = facts.clearance.nearest;
     if (result.least_time_gap_s) result.soonest = facts.clearance.soonest;
@@ -239,45 +241,47 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
 }
 
 /// Reads the damage of one outcome and scores it.
-CandidateResult finish_outcome(const Scene& scene, Approach& approach, FoundDamage& found,
-                               Scratch& scratch, RankWork& work) {
-  CandidateResult result = std::move(approach.result);
-  for (std::size_t i = 0; i < approach.plans.size(); ++i) {
+CandidateResult finish_outcome(const Scene& scene, SimulatedOutcome& outcome,
+                               PrecomputedPairs& found, Scratch& scratch, RankWork& work) {
+  CandidateResult result = std::move(outcome.result);
+  for (std::size_t i = 0; i < outcome.plans.size(); ++i) {
     const std::size_t k = i - std::min(i, result.contacts.size());
     const bool is_further = i >= result.contacts.size();
     BodyDamage& a = is_further ? result.further[k].damage_a : result.contacts[i].ego;
     BodyDamage& b = is_further ? result.further[k].damage_b : result.contacts[i].other;
-    read_damage(scene, approach.plans[i], found, a, b, scratch.damage, work);
-    found.first += approach.plans[i].queries();
+    find_damage(scene, outcome.plans[i], found, a, b, scratch.damage, work);
+    found.first += outcome.plans[i].queries();
   }
-  const std::map<std::size_t, BodyDamage> damage = whole_damage(scene, result);
+  const std::map<std::size_t, BodyDamage> damage = total_damage(scene, result);
   if (result.collides) result.ego = damage.at(ego_body);
   const double simulated =
-      approach.effects.empty() ? 0.0 : tally_up(scene, approach, scratch.tally, result);
-  if (!approach.effects.empty()) result.people = scratch.tally.people(scene);
-  const double left = leaving_score(scene, approach.leaving, first_contact_s(approach.outcome));
+      outcome.effects.empty() ? 0.0 : score_nominal(scene, outcome, scratch.tally, result);
+  if (!outcome.effects.empty()) result.people = scratch.tally.people(scene);
+  const double left = leaving_score(scene, outcome.leaving, first_contact_s(outcome.summary));
   result.score = scored_by_damage(scene.measure) ? damage_score(damage, measure_row(scene.measure))
                                                  : left + simulated;
-  add_samples(scene, approach.effects, left, scratch.tally, result);
+  score_samples(scene, outcome.effects, left, scratch.tally, result);
   return result;
 }
 
 /// An outcome without contact that scores the same: two such outcomes do not differ.
-Approach* same_without_contact(const Scene& scene, const std::optional<RoadLeaving>& leaving,
-                               std::vector<Approach>& outcomes) {
+SimulatedOutcome* same_without_contact(const Scene& scene,
+                                       const std::optional<RoadLeaving>& leaving,
+                                       std::vector<SimulatedOutcome>& outcomes) {
   const auto score = [&](const std::optional<RoadLeaving>& of) {
     return leaving_score(scene, of, std::numeric_limits<double>::infinity());
   };
-  const auto same = std::find_if(outcomes.begin(), outcomes.end(), [&](const Approach& each) {
-    return !each.outcome.collides && score(each.leaving) == score(leaving);
-  });
+  const auto same =
+      std::find_if(outcomes.begin(), outcomes.end(), [&](const SimulatedOutcome& each) {
+        return !each.summary.collides && score(each.leaving) == score(leaving);
+      });
   return same != outcomes.end() ? &*same : nullptr;
 }
 
 /// Follows one candidate through its crashes in the futures of a group, beginning with one of them.
 /// False where it was stopped.
-bool approach_group(const Scene& scene, const Candidate& candidate, std::size_t first,
-                    Scratch& scratch, RankWork& work, Approaches& found) {
+bool simulate_group(const Scene& scene, const Candidate& candidate, std::size_t first,
+                    Scratch& scratch, RankWork& work, SimulatedCandidate& found) {
   const Futures& futures = scene.futures;
   const FutureGroup group = futures.group(first);
   const Motion& ego = ego_motion(scene, candidate, first, scratch.ego);
@@ -288,33 +292,33 @@ bool approach_group(const Scene& scene, const Candidate& candidate, std::size_t 
   const auto leaving = find_leaving(scene.road, scene.ego, ego, scene.slice_s.back(), scratch.stop);
   if (scratch.stopped()) return false;
   if (group.size() < futures.size() && first_hit(scene, scratch, first) == nullptr) {
-    if (Approach* const same = same_without_contact(scene, leaving, found.outcomes)) {
+    if (SimulatedOutcome* const same = same_without_contact(scene, leaving, found.outcomes)) {
       same->futures.push_back(static_cast<std::uint32_t>(first));
-      ++same->outcome.futures;
-      same->outcome.probability += futures.probability(first);
+      ++same->summary.futures;
+      same->summary.probability += futures.probability(first);
       return true;
     }
   }
-  scratch.open.clear();
+  scratch.remaining.clear();
   for (std::size_t f = group.begin; f < group.end; ++f) {
-    scratch.open.push_back(static_cast<std::uint32_t>(f));
+    scratch.remaining.push_back(static_cast<std::uint32_t>(f));
   }
-  while (!scratch.open.empty()) {
-    const bool is_first = scratch.open.size() == group.size();
-    const std::size_t future = is_first ? first : scratch.open.front();
+  while (!scratch.remaining.empty()) {
+    const bool is_first = scratch.remaining.size() == group.size();
+    const std::size_t future = is_first ? first : scratch.remaining.front();
     found.outcomes.emplace_back();
-    Approach& each = found.outcomes.back();
-    if (!approach_future(scene, ego, future, scratch, work, each)) return false;
-    scratch.same.swap(scratch.open);
-    scratch.open.clear();
-    futures.split(future, scratch.felt, scratch.same, scratch.open);
+    SimulatedOutcome& each = found.outcomes.back();
+    if (!simulate_future(scene, ego, future, scratch, work, each)) return false;
+    scratch.same.swap(scratch.remaining);
+    scratch.remaining.clear();
+    futures.split(future, scratch.relevant, scratch.same, scratch.remaining);
     each.leaving = leaving;
     each.futures.assign(scratch.same.begin(), scratch.same.end());
-    each.outcome.futures = each.futures.size();
-    each.outcome.is_likeliest = future == futures.likeliest();
-    // Damage is told of the likeliest future alone; elsewhere it counts where it is the score.
-    if (!each.outcome.is_likeliest && !scored_by_damage(scene.measure)) each.plans.clear();
-    for (const std::uint32_t f : scratch.same) each.outcome.probability += futures.probability(f);
+    each.summary.futures = each.futures.size();
+    each.summary.is_likeliest = future == futures.likeliest();
+    // Damage is reported of the likeliest future alone; elsewhere it counts where it is the score.
+    if (!each.summary.is_likeliest && !scored_by_damage(scene.measure)) each.plans.clear();
+    for (const std::uint32_t f : scratch.same) each.summary.probability += futures.probability(f);
   }
   return true;
 }
@@ -329,31 +333,31 @@ void Scratch::prepare(const Scene& scene) {
   place.reserve(futures.plans.size());
   near.reserve(futures.plans.size());
   hits.reserve(futures.plans.size());
-  felt.resize(futures.plans.size());
-  way.reserve(scene.ways.steps + 1);
-  first_s.reserve(futures.most_futures());
-  until_s.reserve(futures.most_futures());
-  weighted.reserve(futures.most_futures());
-  for (auto* const each : {&same, &open, &others}) each->reserve(futures.most_futures());
-  way.reserve(scene.ways.steps + 1);
+  relevant.resize(futures.plans.size());
+  ego_poses.reserve(scene.trajectories.steps + 1);
+  first_s.reserve(futures.max_future_count());
+  until_s.reserve(futures.max_future_count());
+  weighted.reserve(futures.max_future_count());
+  for (auto* const each : {&same, &remaining, &others}) each->reserve(futures.max_future_count());
+  ego_poses.reserve(scene.trajectories.steps + 1);
   chain.prepare(scene);
   effects.reserve(SceneRun::most_contacts + 1);
   order.reserve(SceneRun::most_contacts + 1);
   tally.prepare(scene.actors.size() + 1);
 }
 
-Approaches approach(const Scene& scene, const Candidate& candidate, Scratch& scratch,
-                    RankWork& work) {
-  Approaches stopped;
+SimulatedCandidate simulate_candidate(const Scene& scene, const Candidate& candidate,
+                                      Scratch& scratch, RankWork& work) {
+  SimulatedCandidate stopped;
   stopped.decided = false;
-  Approaches found;
+  SimulatedCandidate found;
   const Futures& futures = scene.futures;
-  scratch.felt.resize(futures.plans.size());
+  scratch.relevant.resize(futures.plans.size());
   const std::size_t likeliest = futures.likeliest();
-  if (!approach_group(scene, candidate, likeliest, scratch, work, found)) return stopped;
+  if (!simulate_group(scene, candidate, likeliest, scratch, work, found)) return stopped;
   for (std::size_t f = 0; futures.displaces_ego() && f < futures.size(); ++f) {
     if (f == likeliest) continue;
-    if (!approach_group(scene, candidate, f, scratch, work, found)) return stopped;
+    if (!simulate_group(scene, candidate, f, scratch, work, found)) return stopped;
   }
   found.outcomes.front().result.collision_probability = found.collision_probability;
   return found;
@@ -362,20 +366,20 @@ Approaches approach(const Scene& scene, const Candidate& candidate, Scratch& scr
 namespace {
 
 CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
-                                 Approaches&& approaches, FoundDamage found, Scratch& scratch,
-                                 RankWork& work) {
+                                 SimulatedCandidate&& simulated, PrecomputedPairs found,
+                                 Scratch& scratch, RankWork& work) {
   // The likeliest future's, in which the ego is not displaced.
   const std::optional<RoadLeaving> leaving =
-      approaches.outcomes.empty()
+      simulated.outcomes.empty()
           ? find_leaving(scene.road, scene.ego, candidate.motion, scene.slice_s.back())
-          : approaches.outcomes.front().leaving;
+          : simulated.outcomes.front().leaving;
   std::vector<CandidateResult> results;
-  for (Approach& each : approaches.outcomes) {
+  for (SimulatedOutcome& each : simulated.outcomes) {
     results.push_back(finish_outcome(scene, each, found, scratch, work));
   }
-  if (approaches.decided) {
+  if (simulated.decided) {
     CandidateResult result =
-        combine_futures(scene, std::move(results), approaches.outcomes, scratch);
+        combine_futures(scene, std::move(results), simulated.outcomes, scratch);
     add_manoeuvre(scene, candidate, leaving, scratch, result);
     result.searched = true;
     return result;
@@ -386,8 +390,8 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
   result.sample_scores.clear();
   ScoreBounds bounds;
   bounds.prepare(scene);
-  result.score_interval = {0.0, bounds.most_displaced(scene, candidate.motion, scratch.ego) +
-                                    most_leaving_score(scene, leaving)};
+  result.score_interval = {0.0, bounds.upper_bound_displaced(scene, candidate.motion, scratch.ego) +
+                                    max_leaving_score(scene, leaving)};
   result.numerical_interval = result.score_interval;
   // What it asks for at its begin is all that is known of it.
   result.demand = demand_until(scene, candidate, 0.0, leaving);
@@ -397,19 +401,21 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
 
 }  // namespace
 
-CandidateResult finish(const Scene& scene, const Candidate& candidate, Approaches&& approaches,
-                       FoundDamage found, Scratch& scratch, RankWork& work) {
-  // What is evaluated is told in full, also after the ranking was cancelled.
+CandidateResult finish(const Scene& scene, const Candidate& candidate,
+                       SimulatedCandidate&& simulated, PrecomputedPairs found, Scratch& scratch,
+                       RankWork& work) {
+  // What is evaluated is reported in full, also after the ranking was cancelled.
   const StopCheck kept = std::exchange(scratch.stop, {});
   CandidateResult result =
-      finish_unstopped(scene, candidate, std::move(approaches), found, scratch, work);
+      finish_unstopped(scene, candidate, std::move(simulated), found, scratch, work);
   scratch.stop = kept;
   return result;
 }
 
 CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
                          RankWork& work) {
-  return finish(scene, candidate, approach(scene, candidate, scratch, work), {}, scratch, work);
+  return finish(scene, candidate, simulate_candidate(scene, candidate, scratch, work), {}, scratch,
+                work);
 }
 
 }  // namespace crashrank::detail

@@ -16,12 +16,12 @@ namespace {
 /// Candidates whose pairs are held at a time, for each thread: enough that all stay busy, few
 /// enough that memory does not grow with the scenario and that what is known when the caller ends
 /// the ranking is soon told.
-constexpr std::size_t candidates_each = 16;
+constexpr std::size_t candidates_per_worker = 16;
 
 /// Where depth is left to the dispatcher it cuts a batch no finer than this.
 constexpr std::uint32_t auto_deepest = 12;
 
-Result<Dispatcher> start(unsigned workers) {
+Result<Dispatcher> start_dispatcher(unsigned workers) {
   PoolOptions pool;
   pool.workers = std::min(workers, max_workers);
   Result<Dispatcher> started = Dispatcher::start(pool);
@@ -31,9 +31,9 @@ Result<Dispatcher> start(unsigned workers) {
 }
 
 /// The part indices of the models in use, each made once.
-class Indices {
+class PartIndices {
 public:
-  explicit Indices(std::uint32_t deepest) : deepest_(deepest) {}
+  explicit PartIndices(std::uint32_t deepest) : deepest_(deepest) {}
 
   Result<const PartIndex*> of(const Model& model) {
     for (const PartIndex& index : indices_) {
@@ -53,16 +53,16 @@ private:
 }  // namespace
 
 Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result,
-                           bool& felt_left_out) {
+                           bool& needs_left_out) {
   if (options.depth > max_distribution_depth) {
     return make_error(ErrorCode::usage, "the distribution depth is 16 at most");
   }
-  Result<Dispatcher> dispatcher = start(options.workers);
+  Result<Dispatcher> dispatcher = start_dispatcher(options.workers);
   if (!dispatcher) return dispatcher.error();
   WorkerPool& pool = dispatcher->pool();
   const std::uint32_t deepest = options.depth == auto_depth ? auto_deepest : options.depth;
-  Indices indices_a(deepest);
-  Indices indices_b(deepest);  // one model may stand on both sides
+  PartIndices indices_a(deepest);
+  PartIndices indices_b(deepest);  // one model may stand on both sides
   DispatchOptions how;
   how.policy = options.policy;
   how.depth = options.depth;
@@ -70,20 +70,21 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
 
   RankProgress progress(options, result.candidates.size());
   std::vector<Scratch> scratch(std::max(1U, pool.size()));
-  for (Scratch& own : scratch) progress.watch(own);
+  for (Scratch& own : scratch) progress.attach_to(own);
   std::vector<RankWork> work(scratch.size());
-  const std::size_t batch_candidates = candidates_each * scratch.size();
-  std::vector<Approaches> approaches;
+  const std::size_t batch_candidates = candidates_per_worker * scratch.size();
+  std::vector<SimulatedCandidate> simulated;
   std::vector<std::size_t> first_query;
   std::vector<DispatchQuery> queries;
   PairLists lists;
   for (std::size_t begin = 0; begin < result.candidates.size(); begin += batch_candidates) {
     const std::size_t count = std::min(batch_candidates, result.candidates.size() - begin);
-    approaches.clear();
-    approaches.resize(count);
+    simulated.clear();
+    simulated.resize(count);
     Status done = pool.for_each(count, [&](std::size_t i, std::uint32_t worker) {
-      approaches[i] = approach(scene, result.candidates[begin + i], scratch[worker], work[worker]);
-      if (approaches[i].decided) progress.advance();
+      simulated[i] =
+          simulate_candidate(scene, result.candidates[begin + i], scratch[worker], work[worker]);
+      if (simulated[i].decided) progress.advance();
     });
     if (!done) return done;
 
@@ -101,9 +102,9 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
       }
       return Success{};
     };
-    for (const Approaches& found : approaches) {
+    for (const SimulatedCandidate& found : simulated) {
       first_query.push_back(queries.size());
-      for (const Approach& outcome : found.outcomes) {
+      for (const SimulatedOutcome& outcome : found.outcomes) {
         for (const DamagePlan& plan : outcome.plans) {
           if (Status added = add_queries(plan); !added) return added;
         }
@@ -115,13 +116,13 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
 
     done = pool.for_each(count, [&](std::size_t i, std::uint32_t worker) {
       result.ranking[begin + i] =
-          finish(scene, result.candidates[begin + i], std::move(approaches[i]),
+          finish(scene, result.candidates[begin + i], std::move(simulated[i]),
                  {&lists, first_query[i]}, scratch[worker], work[worker]);
     });
     if (!done) return done;
   }
   for (const RankWork& spent : work) result.work += spent;
-  for (const Scratch& own : scratch) felt_left_out = felt_left_out || own.felt_left_out;
+  for (const Scratch& own : scratch) needs_left_out = needs_left_out || own.needs_left_out;
   return Success{};
 }
 

@@ -10,9 +10,9 @@ namespace crashrank::detail {
 /// `options.workers` threads. Contacts are looked for candidate by candidate; the damage
 /// queries of every 16 candidates a thread are one dispatch, in which parts of the ego serve all of
 /// them. Where the system
-/// refuses threads the calling one does all. `felt_left_out` becomes true as Scratch's does.
+/// refuses threads the calling one does all. `needs_left_out` becomes true as Scratch's does.
 /// Errors: usage for a depth out of range; internal when a worker failed.
 Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result,
-                           bool& felt_left_out);
+                           bool& needs_left_out);
 
 }  // namespace crashrank::detail

@@ -68,8 +68,8 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
       add(i, actor, 1.0, place);
     }
     // However seldom: it is not certain.
-    constexpr double nearly = 1.0 - 1e-15;
-    if (absences > 0) made.existence_.back() = std::clamp(present, 0.0, nearly);
+    constexpr double just_below_one = 1.0 - 1e-15;
+    if (absences > 0) made.existence_.back() = std::clamp(present, 0.0, just_below_one);
   }
   if (!sound) return sound.error();
   made.own_plans_ = made.plans.size();
@@ -88,8 +88,8 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   made.strata_.prepare(summary.sampled);
   if (summary.has_state_errors) made.read_errors(scenario);
   if (made.can_leave_out()) {
-    made.probability_.reserve(most_combinations);
-    made.plan_of_.reserve(most_combinations * made.actors_);
+    made.probability_.reserve(max_combinations);
+    made.plan_of_.reserve(max_combinations * made.actors_);
   }
   made.list_futures();
   return made;
@@ -98,7 +98,7 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
 /// Lists all futures, or draws a sample where they are too many.
 void Futures::list_futures() {
   const double combined = is_joint() ? summary.combinations : count_combinations();
-  const bool lists = is_joint() || combined <= double{most_combinations};
+  const bool lists = is_joint() || combined <= double{max_combinations};
   summary.sampled = 0;
   if (summary.has_state_errors || !lists) {
     summary.method = FutureMethod::sampled;
@@ -127,7 +127,7 @@ bool Futures::can_leave_out() const noexcept {
   return !is_joint() && !summary.has_state_errors && summary.combinations > 1.0;
 }
 
-bool Futures::combine_reached(const std::vector<char>& reached) {
+bool Futures::leave_out_unreached(const std::vector<char>& reached) {
   const std::size_t before = summary.left_out;
   bool same = true;
   summary.left_out = 0;
@@ -138,7 +138,7 @@ bool Futures::combine_reached(const std::vector<char>& reached) {
     summary.left_out += static_cast<std::size_t>(out);
   }
   // Draws do not depend on each other: in a sample an actor that is left out changes nothing.
-  if (summary.left_out > 0 && count_combinations() > double{most_combinations}) {
+  if (summary.left_out > 0 && count_combinations() > double{max_combinations}) {
     std::fill(left_out_.begin(), left_out_.end(), char{0});
     summary.left_out = 0;
     same = before == 0;
@@ -148,15 +148,15 @@ bool Futures::combine_reached(const std::vector<char>& reached) {
   return true;
 }
 
-bool Futures::feels_left_out(const std::vector<char>& felt) const {
+bool Futures::needs_left_out(const std::vector<char>& relevant) const {
   if (!leaves_out()) return false;
   for (std::size_t p = 0; p < own_plans_; ++p) {
-    if (felt[p] != 0 && left_out_[plans[p].actor] != 0) return true;
+    if (relevant[p] != 0 && left_out_[plans[p].actor] != 0) return true;
   }
   return false;
 }
 
-void Futures::note_followed() {
+void Futures::mark_followed_plans() {
   followed_.assign(plans.size(), 0);
   for (std::size_t f = 0; f < size(); ++f) {
     if (!(probability_[f] > 0.0)) continue;
@@ -196,7 +196,7 @@ std::size_t Futures::likeliest_choice(std::size_t actor) const {
 
 bool Futures::is_certain(std::size_t actor) const {
   return existence_[actor] == 1.0 && first_plan_[actor + 1] - first_plan_[actor] == 1 &&
-         (displaced_.empty() || displaced_[actor] == exact);
+         (displaced_.empty() || displaced_[actor] == not_displaced);
 }
 
 void Futures::read_joint(const Scenario& scenario) {
@@ -219,7 +219,7 @@ void Futures::add_joint() {
   plan_of_ = joint_plans_;
   likeliest_ =
       static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin());
-  note_followed();
+  mark_followed_plans();
 }
 
 void Futures::add_combinations() {
@@ -242,7 +242,7 @@ void Futures::add_combinations() {
     probability_.push_back(probability);
     if (is_likeliest) likeliest_ = f;
   }
-  note_followed();
+  mark_followed_plans();
 }
 
 /// Makes room for the errors that are drawn.
@@ -257,7 +257,7 @@ void Futures::read_errors(const Scenario& scenario) {
       ego_speed_errors_[1] = std::max(ego_speed_errors_[1], error.speed_mps);
     }
   }
-  displaced_.assign(actors_, exact);
+  displaced_.assign(actors_, not_displaced);
   for (std::size_t i = 0; i < actors_; ++i) {
     if (!scenario.actors[i].perception.any()) continue;
     displaced_[i] = static_cast<std::uint32_t>(plans.size());
@@ -267,7 +267,7 @@ void Futures::read_errors(const Scenario& scenario) {
     const Plan own = plans[first_plan_[i]];
     plans.resize(plans.size() + count, own);
   }
-  bases_.assign(errors_.size(), absent);
+  base_plans_.assign(errors_.size(), absent);
 }
 
 void Futures::add_sample() {
@@ -284,15 +284,15 @@ void Futures::add_sample() {
       plan_of_[count * actors_ + i] = plan_of_choice(i, likeliest_choice(i));
     }
   }
-  note_followed();
-  std::fill(bases_.begin(), bases_.end(), absent);
+  mark_followed_plans();
+  std::fill(base_plans_.begin(), base_plans_.end(), absent);
   for (std::size_t i = 0; i < displaced_.size(); ++i) {
-    if (displaced_[i] == exact) continue;
+    if (displaced_[i] == not_displaced) continue;
     for (std::size_t f = 0; f < count; ++f) {
       std::uint32_t& plan = plan_of_[f * actors_ + i];
       if (plan == absent) continue;
       const std::uint32_t moved = displaced_[i] + static_cast<std::uint32_t>(f);
-      bases_[moved - own_plans_] = plan;
+      base_plans_[moved - own_plans_] = plan;
       followed_[moved] = 1;
       plan = moved;
     }
@@ -301,10 +301,11 @@ void Futures::add_sample() {
 }
 
 void Futures::displace_plans() {
-  for (std::size_t k = 0; k < bases_.size(); ++k) {
+  for (std::size_t k = 0; k < base_plans_.size(); ++k) {
     Plan& moved = plans[own_plans_ + k];
     // Where the actor does not exist, the plan that nobody follows has to be somewhere.
-    moved.motion = plans[bases_[k] != absent ? bases_[k] : first_plan_[moved.actor]].motion;
+    moved.motion =
+        plans[base_plans_[k] != absent ? base_plans_[k] : first_plan_[moved.actor]].motion;
     moved.motion.displace(errors_[k]);
   }
 }
@@ -312,11 +313,11 @@ void Futures::displace_plans() {
 void Futures::draw(std::size_t actor) {
   const std::vector<double>& shares = strata_.draw(seed_[actor]);
   for (std::size_t f = 0; f < shares.size(); ++f) {
-    double reached = 0.0;
+    double cumulative = 0.0;
     std::size_t choice = 0;
     for (; choice + 1 < choices(actor); ++choice) {
-      reached += choice_probability(actor, choice);
-      if (shares[f] < reached) break;
+      cumulative += choice_probability(actor, choice);
+      if (shares[f] < cumulative) break;
     }
     plan_of_[f * actors_ + actor] = plan_of_choice(actor, choice);
   }
@@ -329,11 +330,11 @@ void Futures::draw_joint() {
   };
   const std::vector<double>& shares = strata_.draw(reserved_seed("futures"));
   for (std::size_t f = 0; f < shares.size(); ++f) {
-    double reached = 0.0;
+    double cumulative = 0.0;
     std::size_t joint = 0;
     for (; joint + 1 < joint_.size(); ++joint) {
-      reached += joint_[joint];
-      if (shares[f] < reached) break;
+      cumulative += joint_[joint];
+      if (shares[f] < cumulative) break;
     }
     follow(f, joint);
   }
@@ -341,17 +342,17 @@ void Futures::draw_joint() {
          static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin()));
 }
 
-void Futures::split(std::size_t future, const std::vector<char>& felt,
+void Futures::split(std::size_t future, const std::vector<char>& relevant,
                     std::vector<std::uint32_t>& futures, std::vector<std::uint32_t>& others) const {
-  const auto felt_plan = [&](std::size_t of, std::size_t actor) {
+  const auto relevant_plan = [&](std::size_t of, std::size_t actor) {
     const std::uint32_t p = plan(of, actor);
-    return p != absent && felt[p] != 0 ? p : absent;
+    return p != absent && relevant[p] != 0 ? p : absent;
   };
   std::size_t kept = 0;
   for (const std::uint32_t other : futures) {
     bool same = true;
     for (std::size_t i = 0; i < actors_ && same; ++i) {
-      same = felt_plan(future, i) == felt_plan(other, i);
+      same = relevant_plan(future, i) == relevant_plan(other, i);
     }
     if (same) {
       futures[kept++] = other;
@@ -362,7 +363,7 @@ void Futures::split(std::size_t future, const std::vector<char>& felt,
   futures.resize(kept);
 }
 
-void Futures::weigh(View<const double> probabilities) {
+void Futures::set_probabilities(View<const double> probabilities) {
   for (std::size_t p = 0; p < own_plans_; ++p) plans[p].probability = probabilities[p];
   list_futures();
 }

@@ -40,7 +40,7 @@ class Futures {
 public:
   static constexpr std::uint32_t absent = static_cast<std::uint32_t>(-1);
   /// All combinations of independent predictions are evaluated up to so many, else a sample.
-  static constexpr std::size_t most_combinations = 1024;
+  static constexpr std::size_t max_combinations = 1024;
 
   /// Reads the motions of a scenario that is checked. Errors: bad_input for poses out of order and
   /// motions beyond `scenario_limits`.
@@ -53,7 +53,7 @@ public:
   std::uint32_t plan(std::size_t future, std::size_t actor) const {
     return plan_of_[future * actors_ + actor];
   }
-  bool has(std::size_t future, std::size_t plan) const {
+  bool follows(std::size_t future, std::size_t plan) const {
     return this->plan(future, plans[plan].actor) == plan;
   }
   /// Whether the plan's actor follows it in a future whose probability is above 0.
@@ -82,25 +82,25 @@ public:
   /// Combines the choices of those actors alone that may be reached: all others do what is
   /// likeliest of them, in every future. Nothing changes where even so there are too many
   /// combinations. Allocates nothing. False where the futures are the ones that they were.
-  bool combine_reached(const std::vector<char>& reached);
+  bool leave_out_unreached(const std::vector<char>& reached);
   /// Whether some actor does what is likeliest of it in every future, since none reaches it.
   bool leaves_out() const noexcept { return summary.left_out > 0; }
-  /// Whether one of the plans that are felt is of an actor that was left out: what was found so far
-  /// holds for its likeliest choice alone.
-  bool feels_left_out(const std::vector<char>& felt) const;
+  /// Whether one of the plans that are relevant is of an actor that was left out: what was found so
+  /// far holds for its likeliest choice alone.
+  bool needs_left_out(const std::vector<char>& relevant) const;
   /// How many futures there may be at most, whichever actors are left out.
-  std::size_t most_futures() const noexcept {
-    return can_leave_out() ? std::max(size(), most_combinations) : size();
+  std::size_t max_future_count() const noexcept {
+    return can_leave_out() ? std::max(size(), max_combinations) : size();
   }
 
   /// Removes from `futures`, sorted, those that differ from `future`, which stays, in a plan that
-  /// is felt, and appends them to `others`: `felt` by plan.
-  void split(std::size_t future, const std::vector<char>& felt, std::vector<std::uint32_t>& futures,
-             std::vector<std::uint32_t>& others) const;
+  /// is relevant, and appends them to `others`: `relevant` by plan.
+  void split(std::size_t future, const std::vector<char>& relevant,
+             std::vector<std::uint32_t>& futures, std::vector<std::uint32_t>& others) const;
 
   /// Takes other probabilities of the plans, which sum to 1 for each actor, and draws samples anew.
   /// Not of joint futures. Allocates nothing.
-  void weigh(View<const double> probabilities);
+  void set_probabilities(View<const double> probabilities);
 
   /// Derives the displaced plans from the scenario's own. Allocates only for timed motions.
   void displace_plans();
@@ -109,12 +109,12 @@ public:
   FutureSummary summary;
 
 private:
-  static constexpr std::uint32_t exact = static_cast<std::uint32_t>(-1);
+  static constexpr std::uint32_t not_displaced = static_cast<std::uint32_t>(-1);
 
   void read_joint(const Scenario& scenario);
   void add_joint();
   void read_errors(const Scenario& scenario);
-  void note_followed();
+  void mark_followed_plans();
   void list_futures();
   void add_combinations();
   void add_sample();
@@ -147,9 +147,10 @@ private:
   StateUncertainty ego_uncertainty_;
   std::vector<StateError> ego_errors_;  ///< by future
   std::array<double, 2> ego_speed_errors_{};
-  std::vector<std::uint32_t> displaced_;  ///< by actor: its first displaced plan, or `exact`
-  std::vector<StateError> errors_;        ///< by displaced plan
-  std::vector<std::uint32_t> bases_;      ///< by displaced plan: the scenario's own, or `absent`
+  std::vector<std::uint32_t>
+      displaced_;                   ///< by actor: its first displaced plan, or `not_displaced`
+  std::vector<StateError> errors_;  ///< by displaced plan
+  std::vector<std::uint32_t> base_plans_;  ///< by displaced plan: the scenario's own, or `absent`
   std::size_t likeliest_ = 0;
 };
 

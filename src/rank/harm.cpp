@@ -152,10 +152,10 @@ std::vector<HarmSample> harm_samples(const HarmOptions& options) {
     if (r.all_models && model != options.model) models.push_back(model);
   }
   const std::vector<double> speeds = ends(r.least_risk_speed, r.most_risk_speed);
-  HarmSample plain;
-  plain.friction = options.friction;
-  plain.model = options.model;
-  std::vector<HarmSample> samples{plain};
+  HarmSample nominal;
+  nominal.friction = options.friction;
+  nominal.model = options.model;
+  std::vector<HarmSample> samples{nominal};
   for (const double friction : ends(r.least_friction, r.most_friction)) {
     for (const double strength : ends(r.least_strength, r.most_strength)) {
       for (const double restitution : ends(r.least_restitution, r.most_restitution)) {
@@ -171,7 +171,7 @@ std::vector<HarmSample> harm_samples(const HarmOptions& options) {
     }
   }
   constexpr double shift_m = 0.001;
-  samples.resize(samples.size() + numerical_samples, plain);
+  samples.resize(samples.size() + numerical_samples, nominal);
   samples[samples.size() - 3].step = 0.5;
   samples[samples.size() - 2].shift_m = shift_m;
   samples[samples.size() - 1].shift_m = -shift_m;

@@ -1,7 +1,7 @@
 #include "rank/hits.hpp"
 
 #include "crash/pair_order.hpp"
-#include "rank/near.hpp"
+#include "rank/nearby_actors.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -10,7 +10,7 @@
 namespace crashrank::detail {
 namespace {
 
-bool starts_as_the_ego(const Scene& scene, const Motion& motion) {
+bool starts_at_ego_pose(const Scene& scene, const Motion& motion) {
   const Pose pose = motion.pose_at(0.0);
   return pose.rotation == scene.ego_start.rotation &&
          pose.translation == scene.ego_start.translation;
@@ -46,8 +46,8 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
   constexpr double never_s = std::numeric_limits<double>::infinity();
   const Futures& futures = scene.futures;
   scratch.hits.clear();
-  find_near(scene, ego, group, 0.0, scene.slice_s.back(), scratch, work);
-  const bool same_start = starts_as_the_ego(scene, ego);
+  find_nearby_actors(scene, ego, group, 0.0, scene.slice_s.back(), scratch, work);
+  const bool same_start = starts_at_ego_pose(scene, ego);
   bool decided = true;
   // First contacts so far, by future.
   scratch.first_s.assign(futures.size(), never_s);
@@ -63,7 +63,7 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
     // In each of its futures contacts after the first one are not searched.
     double until = 0.0;
     for (std::size_t f = group.begin; f < group.end; ++f) {
-      if (futures.has(f, near.plan)) until = std::max(until, scratch.until_s[f]);
+      if (futures.follows(f, near.plan)) until = std::max(until, scratch.until_s[f]);
     }
     const double from = scene.slice_s[near.first_slice];
     const double end = scene.slice_s[near.last_slice + 1];
@@ -92,7 +92,7 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
     scratch.hits.push_back({near.plan, plan.actor, impact});
     if (!impact.hit()) continue;
     for (std::size_t f = group.begin; f < group.end; ++f) {
-      if (!futures.has(f, near.plan)) continue;
+      if (!futures.follows(f, near.plan)) continue;
       scratch.first_s[f] = std::min(scratch.first_s[f], impact.time_s);
     }
   }
@@ -106,14 +106,15 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
 
 const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::size_t future) {
   const auto hit = std::find_if(scratch.hits.begin(), scratch.hits.end(), [&](const auto& each) {
-    return each.impact.hit() && scene.futures.has(future, each.plan);
+    return each.impact.hit() && scene.futures.follows(future, each.plan);
   });
   return hit != scratch.hits.end() ? &*hit : nullptr;
 }
 
-void feel_hits(const Scratch& scratch, const Scratch::Hit* first, std::vector<char>& felt) {
+void mark_relevant_hits(const Scratch& scratch, const Scratch::Hit* first,
+                        std::vector<char>& relevant) {
   for (const Scratch::Hit& hit : scratch.hits) {
-    if (hit.impact.hit()) felt[hit.plan] = 1;
+    if (hit.impact.hit()) relevant[hit.plan] = 1;
     if (&hit == first) return;
   }
 }
@@ -121,7 +122,7 @@ void feel_hits(const Scratch& scratch, const Scratch::Hit* first, std::vector<ch
 bool grazes_before(const Scene& scene, const Scratch& scratch, std::size_t future, double until_s) {
   return std::any_of(scratch.hits.begin(), scratch.hits.end(), [&](const Scratch::Hit& hit) {
     const bool grazing = hit.impact.state == ImpactState::grazing;
-    return scene.futures.has(future, hit.plan) && (grazing || hit.impact.grazed) &&
+    return scene.futures.follows(future, hit.plan) && (grazing || hit.impact.grazed) &&
            (grazing ? hit.impact.time_s : hit.impact.graze_time_s) <= until_s;
   });
 }

@@ -16,7 +16,8 @@ const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::s
 
 /// Marks the plans whose contact comes before the first contact of a future, and that contact's:
 /// another future with another choice of these begins its crash otherwise.
-void feel_hits(const Scratch& scratch, const Scratch::Hit* first, std::vector<char>& felt);
+void mark_relevant_hits(const Scratch& scratch, const Scratch::Hit* first,
+                        std::vector<char>& relevant);
 
 /// Whether the ego passes an actor within the tolerance before a time in a future.
 bool grazes_before(const Scene& scene, const Scratch& scratch, std::size_t future, double until_s);

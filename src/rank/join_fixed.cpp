@@ -12,10 +12,10 @@ namespace {
 /// All triangles of the members, in the body coordinates of the first.
 TriangleMesh common_mesh(const Scene& scene, const std::vector<std::size_t>& members) {
   TriangleMesh mesh;
-  const Pose first = scene.actors[members.front()].standing;
+  const Pose first = scene.actors[members.front()].fixed_pose;
   for (const std::size_t i : members) {
     const TriangleMesh& part = scene.actors[i].model->mesh;
-    const Pose to = relative(first, scene.actors[i].standing);
+    const Pose to = relative(first, scene.actors[i].fixed_pose);
     const auto begin = static_cast<std::uint32_t>(mesh.vertices.size());
     for (const Eigen::Vector3f& vertex : part.vertices) {
       mesh.vertices.push_back(carry(to, vertex).cast<float>());
@@ -59,7 +59,7 @@ void list_adjoining(Scene& scene, const std::vector<Rectangle>& boxes,
                     const std::vector<std::size_t>& fixed) {
   const auto contact_body = [&scene](std::size_t actor) {
     const std::size_t joined = scene.joined_of[actor];
-    return joined == Scene::alone ? actor : scene.joined[joined].members.front();
+    return joined == Scene::not_joined ? actor : scene.joined[joined].members.front();
   };
   const auto add = [&scene](std::size_t to, std::size_t other) {
     std::vector<std::uint32_t>& list = scene.adjoining[to];
@@ -83,7 +83,7 @@ void list_adjoining(Scene& scene, const std::vector<Rectangle>& boxes,
 Status join_fixed(Scene& scene) {
   const std::size_t count = scene.actors.size();
   scene.joined.clear();
-  scene.joined_of.assign(count, Scene::alone);
+  scene.joined_of.assign(count, Scene::not_joined);
   scene.adjoining.assign(count, {});
   std::vector<std::size_t> fixed;
   std::vector<std::size_t> certain;

@@ -21,14 +21,14 @@ double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leavi
   return counts && leaving->time_s <= first_s ? scene.road.harm_per_leaving : 0.0;
 }
 
-double most_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept {
+double max_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept {
   // Where the ego is displaced, it may leave the road in a future though its plan does not.
   const bool may_leave = leaving || (scene.futures.displaces_ego() && scene.road.ends());
   return may_leave ? leaving_score(scene, RoadLeaving{}, 0.0) : 0.0;
 }
 
-ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate,
-                                  const Followed& followed,
+ManoeuvreFacts evaluate_manoeuvre(const Scene& scene, const Candidate& candidate,
+                                  const FollowedPlan& followed,
                                   const std::optional<RoadLeaving>& leaving, Scratch& scratch) {
   ManoeuvreFacts facts;
   facts.demand = demand_until(scene, candidate, followed.longest_s, leaving);
@@ -36,7 +36,7 @@ ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate
   if (leaving && leaving->time_s <= followed.first_s) facts.leaves_road = leaving;
   facts.clearance = followed.touches
                         ? Clearance{.distance_m = 0.0, .time_gap_s = 0.0}
-                        : clearance_of(scene, candidate.motion, scratch.way, scratch.stop);
+                        : clearance_of(scene, candidate.motion, scratch.ego_poses, scratch.stop);
   Pose pose;
   Velocity velocity;
   // Timed poses that end with the horizon stand from then on: their speed is that before it.

@@ -9,7 +9,7 @@
 namespace crashrank::detail {
 
 /// How far a candidate's plan is followed.
-struct Followed {
+struct FollowedPlan {
   double longest_s = 0.0;  ///< to its first contact, in the future that has it last
   /// To its first contact in the likeliest future; infinity: none.
   double first_s = std::numeric_limits<double>::infinity();
@@ -27,8 +27,8 @@ struct ManoeuvreFacts {
 
 /// `leaving`: of its plan until the horizon. Depends on the scene and the candidate alone, unless
 /// it is stopped where nobody is touched.
-ManoeuvreFacts describe_manoeuvre(const Scene& scene, const Candidate& candidate,
-                                  const Followed& followed,
+ManoeuvreFacts evaluate_manoeuvre(const Scene& scene, const Candidate& candidate,
+                                  const FollowedPlan& followed,
                                   const std::optional<RoadLeaving>& leaving, Scratch& scratch);
 
 /// Demand of a plan as far as `until_s`.
@@ -41,6 +41,6 @@ double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leavi
                      double first_s) noexcept;
 
 /// What leaving the road adds to the score of any future at most; `leaving` is that of the plan.
-double most_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept;
+double max_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept;
 
 }  // namespace crashrank::detail

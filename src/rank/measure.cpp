@@ -19,11 +19,13 @@ constexpr MeasureRow polygons{
     no_contact,
     no_side,
     no_body,
-    [](const Utmost& u, const HarmWeights&) { return u.triangles; }};
+    [](const CrashLimits& u, const HarmWeights&) { return u.triangles; }};
 
 constexpr MeasureRow area{
-    Measure::area, false,   false,   [](const BodyDamage& whole) { return whole.area_m2; },
-    no_contact,    no_side, no_body, [](const Utmost& u, const HarmWeights&) { return u.area_m2; }};
+    Measure::area, false,
+    false,         [](const BodyDamage& whole) { return whole.area_m2; },
+    no_contact,    no_side,
+    no_body,       [](const CrashLimits& u, const HarmWeights&) { return u.area_m2; }};
 
 constexpr MeasureRow closing_energy{
     Measure::closing_energy,
@@ -33,7 +35,7 @@ constexpr MeasureRow closing_energy{
     [](const ContactEffect& effect) { return effect.closing_energy_j; },
     no_side,
     no_body,
-    [](const Utmost& u, const HarmWeights&) { return u.contacts * u.closing_energy_j; }};
+    [](const CrashLimits& u, const HarmWeights&) { return u.contacts * u.closing_energy_j; }};
 
 constexpr MeasureRow delta_v{
     Measure::delta_v, true, false, nullptr, no_contact, no_side,
@@ -41,7 +43,7 @@ constexpr MeasureRow delta_v{
       return is_ego ? before + last.size_mps() : before;
     },
     // A body that has all of the energy is no faster than its root says, and turns round at most.
-    [](const Utmost& u, const HarmWeights&) {
+    [](const CrashLimits& u, const HarmWeights&) {
       return u.contacts * 2.0 * std::sqrt(2.0 * u.energy_j / u.ego_mass_kg);
     }};
 
@@ -52,7 +54,7 @@ constexpr MeasureRow energy{Measure::energy,
                             [](const ContactEffect& effect) { return effect.dissipated_j; },
                             no_side,
                             no_body,
-                            [](const Utmost& u, const HarmWeights&) { return u.energy_j; }};
+                            [](const CrashLimits& u, const HarmWeights&) { return u.energy_j; }};
 
 constexpr MeasureRow intrusion{
     Measure::intrusion,
@@ -62,7 +64,7 @@ constexpr MeasureRow intrusion{
     no_contact,
     [](const SideEffect& side, const HarmWeights&) { return side.intrusion_m; },
     no_body,
-    [](const Utmost& u, const HarmWeights&) { return u.contacts * 2.0 * u.intrusion_m; }};
+    [](const CrashLimits& u, const HarmWeights&) { return u.contacts * 2.0 * u.intrusion_m; }};
 
 constexpr MeasureRow harm{
     Measure::harm,
@@ -76,20 +78,20 @@ constexpr MeasureRow harm{
       return property_harm(crushed, weights);
     },
     [](double before, const BodyEvent& last, bool) { return combined_risk(before, last.risk); },
-    [](const Utmost& u, const HarmWeights& weights) {
+    [](const CrashLimits& u, const HarmWeights& weights) {
       return u.people + weights.property_per_mj * 1e-6 * u.energy_j;
     }};
 
 constexpr std::array<MeasureRow, 7> rows{polygons,  area, closing_energy, delta_v, energy,
                                          intrusion, harm};
 
-constexpr bool each_in_its_place() {
+constexpr bool rows_match_enumerators() {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (static_cast<std::size_t>(rows[i].measure) != i) return false;
   }
   return true;
 }
-static_assert(each_in_its_place(), "rows stand in the order of the enumerators");
+static_assert(rows_match_enumerators(), "rows must be in the order of the enumerators");
 
 }  // namespace
 

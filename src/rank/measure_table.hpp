@@ -7,7 +7,7 @@
 namespace crashrank::detail {
 
 /// The most that any crash of a scene can come to.
-struct Utmost {
+struct CrashLimits {
   double people = 0.0;            ///< all, as weighted
   double triangles = 0.0;         ///< of all bodies
   double area_m2 = 0.0;           ///< of these; 0 where the measure does not ask for it
@@ -32,7 +32,7 @@ struct MeasureRow {
   /// A body's term with its last event, from the term of the events before.
   double (*of_body)(double before, const BodyEvent& last, bool is_ego) = nullptr;
   /// No score is higher.
-  double (*most)(const Utmost& utmost, const HarmWeights& weights) = nullptr;
+  double (*upper_bound)(const CrashLimits& limits, const HarmWeights& weights) = nullptr;
 };
 
 /// The row of a measure; constant time.

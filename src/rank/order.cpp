@@ -7,11 +7,11 @@
 namespace crashrank {
 namespace {
 
-detail::OrderKey key_of(const CandidateResult& c, Infeasible infeasible) {
+detail::OrderKey result_key(const CandidateResult& c, Infeasible infeasible) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   detail::OrderKey key;
   key.demoted = !c.feasible && infeasible != Infeasible::keep;
-  key.worth = c.score.value_or(c.score_interval.highest);
+  key.score = c.score.value_or(c.score_interval.highest);
   key.known = c.score.has_value();
   key.collision_probability = c.collision_probability;
   key.collides = c.collides;
@@ -80,7 +80,7 @@ bool OrderKey::is_best_of_its_score() const noexcept {
 int compare(const OrderKey& a, const OrderKey& b) noexcept {
   const auto before = [](bool first) { return first ? -1 : 1; };
   if (a.demoted != b.demoted) return before(b.demoted);
-  if (a.worth != b.worth) return before(a.worth < b.worth);
+  if (a.score != b.score) return before(a.score < b.score);
   if (a.known != b.known) return before(a.known);
   if (a.collision_probability != b.collision_probability) {
     return before(a.collision_probability < b.collision_probability);
@@ -103,10 +103,10 @@ void assign_places(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   for (std::size_t first = 0, end = 0; first < ranking.size(); first = end) {
     end = first + 1;
-    const OrderKey key = key_of(ranking[first], result.infeasible);
+    const OrderKey key = result_key(ranking[first], result.infeasible);
     // What is not known of a score may still decide: only known scores tie.
     while (end < ranking.size() && ranking[first].score && ranking[end].score &&
-           compare(key, key_of(ranking[end], result.infeasible)) == 0) {
+           compare(key, result_key(ranking[end], result.infeasible)) == 0) {
       ++end;
     }
     for (std::size_t i = first; i < end; ++i) {
@@ -127,10 +127,11 @@ void drop_infeasible(RankResult& result) {
   result.ranking.erase(first, result.ranking.end());
 }
 
-void put_in_order(RankResult& result) {
+void sort_ranking(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   std::sort(ranking.begin(), ranking.end(), [&](const auto& a, const auto& b) {
-    const int compared = compare(key_of(a, result.infeasible), key_of(b, result.infeasible));
+    const int compared =
+        compare(result_key(a, result.infeasible), result_key(b, result.infeasible));
     return compared != 0 ? compared < 0 : a.candidate < b.candidate;
   });
   result.complete = std::all_of(ranking.begin(), ranking.end(),
@@ -160,7 +161,7 @@ void put_in_order(RankResult& result) {
     if (!beaten && c.score_interval.lowest <= lowest_high) result.in_race.push_back(c.candidate);
   }
   result.proved = result.in_race.size() <= 1;
-  tell_stability(result);
+  compute_stability(result);
 }
 
 }  // namespace detail

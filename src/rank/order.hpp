@@ -9,7 +9,7 @@ namespace crashrank::detail {
 /// What decides the place of a candidate, as far as it is known.
 struct OrderKey {
   bool demoted = false;  ///< the vehicle cannot follow it, and that counts
-  double worth = 0.0;    ///< the score, the worst that may come where it is not known
+  double score = 0.0;    ///< the score, the worst that may come where it is not known
   bool known = false;
   double collision_probability = 0.0;
   bool collides = false;  ///< this and the next in the likeliest future
@@ -31,14 +31,14 @@ struct OrderKey {
 int compare(const OrderKey& a, const OrderKey& b) noexcept;
 
 /// Orders the ranking, leaves out what is dropped, and says how sure its first place is.
-void put_in_order(RankResult& result);
+void sort_ranking(RankResult& result);
 
 /// Leaves what the vehicle cannot follow out of a ranking in order, where that is asked for and
 /// something is left.
 void drop_infeasible(RankResult& result);
 
 /// Fills the places of a ranking that is in order, and says how stable they are over the samples.
-void tell_stability(RankResult& result);
+void compute_stability(RankResult& result);
 
 /// Fills `place` and `sharing` of a ranking that is in order.
 void assign_places(RankResult& result);

@@ -17,7 +17,7 @@ constexpr std::uint32_t chain_segments = 4;
 /// pieces, and so few corners that distances are found several times sooner.
 constexpr double straight_m = 0.002;
 
-constexpr double nowhere_m = std::numeric_limits<double>::infinity();
+constexpr double infinity_m = std::numeric_limits<double>::infinity();
 
 /// Of a point to a piece from its begin, all relative to that begin.
 double distance2(double x, double y, double along_x, double along_y, double per_length2) {
@@ -31,7 +31,7 @@ double distance2(double x, double y, double along_x, double along_y, double per_
 /// any of them to that other.
 double corners_distance2(double x, double y, double cosine, double sine, double half_x,
                          double half_y, double other_half_x, double other_half_y) {
-  double least = nowhere_m;
+  double least = infinity_m;
   for (const double side_x : {-1.0, 1.0}) {
     for (const double side_y : {-1.0, 1.0}) {
       const double corner_x = x + side_x * half_x * cosine - side_y * half_y * sine;
@@ -85,7 +85,7 @@ bool is_straight(const std::vector<OutlineSegment>& pieces, std::size_t first, s
 }
 
 /// The pieces of a band in as few segments as their shape allows.
-std::vector<OutlineSegment> straightened(const std::vector<OutlineSegment>& pieces) {
+std::vector<OutlineSegment> merge_straight_pieces(const std::vector<OutlineSegment>& pieces) {
   constexpr std::size_t most_pieces = 512;  // of a segment: what is checked grows with its square
   std::vector<OutlineSegment> segments;
   for (std::size_t first = 0, last = 0; first < pieces.size(); first = last + 1) {
@@ -100,7 +100,7 @@ std::vector<OutlineSegment> straightened(const std::vector<OutlineSegment>& piec
   return segments;
 }
 
-std::vector<OutlineSegment> cut_of(const Profile& profile, std::size_t band) {
+std::vector<OutlineSegment> profile_segments(const Profile& profile, std::size_t band) {
   std::vector<OutlineSegment> segments;
   for (std::size_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
     segments.push_back(segment_of(profile.pieces[i]));
@@ -153,11 +153,11 @@ std::vector<OutlineSegment> hull_of(Ring points) {
 }  // namespace
 
 BodyOutline::BodyOutline(const Profile& profile, const TriangleMesh* convex_mesh) {
-  double low_x = nowhere_m;
-  double low_y = nowhere_m;
-  double high_x = -nowhere_m;
-  double high_y = -nowhere_m;
-  const auto hold = [&](double x, double y) {
+  double low_x = infinity_m;
+  double low_y = infinity_m;
+  double high_x = -infinity_m;
+  double high_y = -infinity_m;
+  const auto grow_bounds = [&](double x, double y) {
     low_x = std::min(low_x, x);
     low_y = std::min(low_y, y);
     high_x = std::max(high_x, x);
@@ -169,15 +169,16 @@ BodyOutline::BodyOutline(const Profile& profile, const TriangleMesh* convex_mesh
   for (std::size_t band = 0; band < profile_bands; ++band) {
     first_chain_[band] = static_cast<std::uint32_t>(chains_.size());
     const auto first_of_band = static_cast<std::uint32_t>(pieces_.size());
-    for (const OutlineSegment& segment : straightened(
-             convex_mesh != nullptr ? hull_of(std::move(points[band])) : cut_of(profile, band))) {
+    for (const OutlineSegment& segment :
+         merge_straight_pieces(convex_mesh != nullptr ? hull_of(std::move(points[band]))
+                                                      : profile_segments(profile, band))) {
       const Eigen::Vector2d along = segment.to - segment.from;
       const double length2 = along.squaredNorm();
       if (!(length2 > 0.0)) continue;
       pieces_.push_back({segment.from.x(), segment.from.y(), along.x(), along.y(),
                          std::sqrt(length2), 1.0 / length2});
-      hold(segment.from.x(), segment.from.y());
-      hold(segment.to.x(), segment.to.y());
+      grow_bounds(segment.from.x(), segment.from.y());
+      grow_bounds(segment.to.x(), segment.to.y());
     }
     const auto end_of_band = static_cast<std::uint32_t>(pieces_.size());
     for (std::uint32_t first = first_of_band; first < end_of_band; first += chain_segments) {
@@ -273,7 +274,7 @@ double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const 
       }
     }
   }
-  return common ? least : nowhere_m;
+  return common ? least : infinity_m;
 }
 
 double rectangle_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,

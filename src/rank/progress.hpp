@@ -16,7 +16,7 @@ public:
       : options_(options), candidates_(candidates) {}
 
   /// Evaluations with this scratch memory stop once the ranking is cancelled.
-  void watch(Scratch& scratch) {
+  void attach_to(Scratch& scratch) {
     if (!options_.on_progress) return;
     scratch.stop = {[](void* self) { return static_cast<RankProgress*>(self)->is_cancelled(); },
                     this};

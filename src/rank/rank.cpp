@@ -17,21 +17,21 @@
 namespace crashrank {
 namespace {
 
-/// Evaluates all candidates. `felt_left_out` becomes true as Scratch's does.
+/// Evaluates all candidates. `needs_left_out` becomes true as Scratch's does.
 Status evaluate_all(const detail::Scene& scene, const RankOptions& options, RankResult& result,
-                    bool& felt_left_out) {
+                    bool& needs_left_out) {
   const std::size_t count = result.candidates.size();
   if (options.workers > 1 && count > 0) {
-    return detail::evaluate_on_workers(scene, options, result, felt_left_out);
+    return detail::evaluate_on_workers(scene, options, result, needs_left_out);
   }
   detail::RankProgress progress(options, count);
   detail::Scratch scratch;
-  progress.watch(scratch);
+  progress.attach_to(scratch);
   for (std::size_t i = 0; i < count; ++i) {
     result.ranking[i] = detail::evaluate(scene, result.candidates[i], scratch, result.work);
     if (result.ranking[i].score) progress.advance();
   }
-  felt_left_out = felt_left_out || scratch.felt_left_out;
+  needs_left_out = needs_left_out || scratch.needs_left_out;
   return Success{};
 }
 
@@ -39,13 +39,13 @@ Status evaluate_all(const detail::Scene& scene, const RankOptions& options, Rank
 /// more in those that leave out nobody.
 Status evaluate_in_futures(detail::Scene& scene, const RankOptions& options, RankResult& result) {
   std::vector<char> reached(scene.actors.size());
-  detail::leave_out_far(scene, {result.candidates.data(), result.candidates.size()}, reached,
-                        result.work.box_tests);
-  bool felt_left_out = false;
-  Status done = evaluate_all(scene, options, result, felt_left_out);
-  if (done && felt_left_out) {
-    detail::leave_out_none(scene, reached);
-    done = evaluate_all(scene, options, result, felt_left_out);
+  detail::leave_out_distant_actors(scene, {result.candidates.data(), result.candidates.size()},
+                                   reached, result.work.box_tests);
+  bool needs_left_out = false;
+  Status done = evaluate_all(scene, options, result, needs_left_out);
+  if (done && needs_left_out) {
+    detail::include_all_actors(scene, reached);
+    done = evaluate_all(scene, options, result, needs_left_out);
   }
   result.futures = scene.futures.summary;
   return done;
@@ -78,7 +78,7 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   const Status evaluated = evaluate_in_futures(*scene, options, result);
   if (!evaluated) return evaluated.error();
   for (std::size_t i = 0; i < count; ++i) result.ranking[i].candidate = i;
-  detail::put_in_order(result);
+  detail::sort_ranking(result);
   return result;
 }
 

@@ -7,18 +7,19 @@ namespace crashrank::detail {
 namespace {
 
 /// Further than most crashes throw bodies beyond where the ego could have gone, m.
-constexpr float thrown_m = 50.0F;
+constexpr float throw_distance_m = 50.0F;
 /// Plans are followed for so long after the horizon, s: a scene goes on after its last contact.
 constexpr double after_horizon_s = 3.0;
 /// Boxes are swept over about this time, s.
-constexpr double stretch_s = 1.0;
+constexpr double interval_s = 1.0;
 
 /// The box of a motion over [0, until].
-Box whole_box(const Body& body, const Motion& motion, double until_s, std::uint64_t& box_tests) {
+Box swept_box_until(const Body& body, const Motion& motion, double until_s,
+                    std::uint64_t& box_tests) {
   Box whole;
-  const auto stretches = std::max<std::size_t>(1, static_cast<std::size_t>(until_s / stretch_s));
-  for (std::size_t i = 0; i < stretches; ++i) {
-    const double share = 1.0 / static_cast<double>(stretches);
+  const auto intervals = std::max<std::size_t>(1, static_cast<std::size_t>(until_s / interval_s));
+  for (std::size_t i = 0; i < intervals; ++i) {
+    const double share = 1.0 / static_cast<double>(intervals);
     whole.grow(swept_box(body, motion, until_s * share * static_cast<double>(i),
                          until_s * share * static_cast<double>(i + 1), 0.0));
     ++box_tests;
@@ -28,35 +29,35 @@ Box whole_box(const Body& body, const Motion& motion, double until_s, std::uint6
 
 }  // namespace
 
-bool leave_out_far(Scene& scene, View<const Candidate> candidates, std::vector<char>& reached,
-                   std::uint64_t& box_tests) {
+bool leave_out_distant_actors(Scene& scene, View<const Candidate> candidates,
+                              std::vector<char>& reached, std::uint64_t& box_tests) {
   Futures& futures = scene.futures;
   if (!futures.can_leave_out() || candidates.empty()) return false;
   const double horizon_s = scene.slice_s.back();
   Box near;
   for (const Candidate& candidate : candidates) {
-    const Box box = whole_box(scene.ego, candidate.motion, horizon_s, box_tests);
+    const Box box = swept_box_until(scene.ego, candidate.motion, horizon_s, box_tests);
     near.grow(box);
   }
-  near.min.head<2>().array() -= thrown_m;
-  near.max.head<2>().array() += thrown_m;
+  near.min.head<2>().array() -= throw_distance_m;
+  near.max.head<2>().array() += throw_distance_m;
   std::fill(reached.begin(), reached.end(), char{0});
   for (std::size_t p = 0; p < futures.own_plans(); ++p) {
     const std::size_t actor = futures.plans[p].actor;
     if (reached[actor] != 0 || futures.is_certain(actor)) continue;
-    const Box box = whole_box(scene.actors[actor], futures.plans[p].motion,
-                              horizon_s + after_horizon_s, box_tests);
+    const Box box = swept_box_until(scene.actors[actor], futures.plans[p].motion,
+                                    horizon_s + after_horizon_s, box_tests);
     // A crash is in the plane of the road, whatever the height.
     const bool apart = (box.min.head<2>().array() > near.max.head<2>().array()).any() ||
                        (box.max.head<2>().array() < near.min.head<2>().array()).any();
     reached[actor] = apart ? 0 : 1;
   }
-  return futures.combine_reached(reached);
+  return futures.leave_out_unreached(reached);
 }
 
-void leave_out_none(Scene& scene, std::vector<char>& reached) {
+void include_all_actors(Scene& scene, std::vector<char>& reached) {
   std::fill(reached.begin(), reached.end(), char{1});
-  scene.futures.combine_reached(reached);
+  scene.futures.leave_out_unreached(reached);
 }
 
 }  // namespace crashrank::detail

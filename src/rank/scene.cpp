@@ -110,10 +110,10 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
 }
 
 /// Puts the bodies that nothing moves where they are.
-void stand(Scene& scene) {
+void set_fixed_poses(Scene& scene) {
   for (const Plan& plan : scene.futures.plans) {
     Body& body = scene.actors[plan.actor];
-    if (!body.vehicle.movable()) body.standing = plan.motion.pose_at(0.0);
+    if (!body.vehicle.movable()) body.fixed_pose = plan.motion.pose_at(0.0);
   }
 }
 
@@ -154,8 +154,8 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   if (measure_row(scene.measure).has_samples && scene.harm.intervals) {
     scene.samples = harm_samples(scene.harm);
   }
-  scene.plain.friction = scene.harm.friction;
-  scene.plain.model = scene.harm.model;
+  scene.nominal.friction = scene.harm.friction;
+  scene.nominal.model = scene.harm.model;
   scene.impact = options.impact;
   scene.impact.start_is_apart = false;
   scene.ego_start = scenario.ego.pose;
@@ -217,7 +217,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   if (options.risk) scene.futures.summary.risk = *options.risk;
   result.futures = scene.futures.summary;
   if (Status one = check_fixed(scene, scenario); !one) return one.error();
-  stand(scene);
+  set_fixed_poses(scene);
   if (Status joined = join_fixed(scene); !joined) return joined.error();
   const auto slices =
       static_cast<int>(std::clamp(std::ceil(scenario.horizon_s / slice_length_s), 1.0, max_slices));
@@ -228,12 +228,12 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   scene.boxes.resize(scene.futures.plans.size());
   scene.apart_at_start.resize(scene.futures.plans.size());
   ImpactWorkspace workspace;
-  place_actors(scene, workspace);
+  update_plans(scene, workspace);
   return scene;
 }
 
-void place_actors(Scene& scene, ImpactWorkspace& workspace) {
-  stand(scene);
+void update_plans(Scene& scene, ImpactWorkspace& workspace) {
+  set_fixed_poses(scene);
   const std::vector<Plan>& plans = scene.futures.plans;
   scene.fastest_plan_mps = 0.0;
   for (const Plan& plan : plans) {
@@ -252,10 +252,10 @@ void place_actors(Scene& scene, ImpactWorkspace& workspace) {
     }
     scene.slices[s].build(scene.boxes);
   }
-  place_ways(scene, scene.ways);
+  sample_trajectories(scene, scene.trajectories);
   std::fill(scene.apart_at_start.begin(), scene.apart_at_start.end(), char{1});
-  const Motion standing = Motion::at_rest(scene.ego_start);
-  const Box ego = swept_box(scene.ego, standing, 0.0, 0.0, scene.impact.tolerance_m);
+  const Motion at_rest = Motion::at_rest(scene.ego_start);
+  const Box ego = swept_box(scene.ego, at_rest, 0.0, 0.0, scene.impact.tolerance_m);
   scene.work.box_tests += scene.slices.front().query(ego, [&](std::size_t i) {
     const Body& actor = scene.actors[plans[i].actor];
     const Impact impact = initial_state(scene.ego.model->tree, scene.ego_start, actor.model->tree,

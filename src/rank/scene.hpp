@@ -28,7 +28,7 @@ namespace crashrank::detail {
 struct Body {
   const Model* model = nullptr;
   double mass_kg = 0.0;
-  Pose standing;                                          ///< of what nothing moves
+  Pose fixed_pose;                                        ///< of what nothing moves
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
   double radius_m = 0.0;                       ///< no point of the body is further from its origin
@@ -56,7 +56,7 @@ struct Scene {
   std::vector<Body> actors;
   std::vector<JoinedBodies> joined;
   std::vector<std::size_t> joined_of;  ///< by actor: its place in `joined`, or `alone`
-  static constexpr std::size_t alone = static_cast<std::size_t>(-1);
+  static constexpr std::size_t not_joined = static_cast<std::size_t>(-1);
   /// By actor: fixed bodies that it adjoins but is not joined with, since one of the two may not
   /// exist. The first member of joined bodies stands for all of them.
   std::vector<std::vector<std::uint32_t>> adjoining;
@@ -70,13 +70,13 @@ struct Scene {
   std::vector<char> apart_at_start;
   Measure measure = Measure::polygons;
   HarmOptions harm;
-  HarmSample plain;                 ///< in which nothing varies
+  HarmSample nominal;               ///< in which nothing varies
   std::vector<HarmSample> samples;  ///< in which the score is evaluated, too; may be empty
   EgoLimits limits;
   Infeasible infeasible = Infeasible::demote;
   Road road;
   double grip = 0.8;  ///< of tyres on the road
-  PlanWays ways;
+  PlanTrajectories trajectories;
   ImpactOptions impact;
   RankWork work;  ///< spent on preparing
 };
@@ -91,6 +91,6 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
 
 /// Reads the plans: sweeps their boxes, and finds which the ego at its start is clear of. Allocates
 /// only to grow beyond what was held before.
-void place_actors(Scene& scene, ImpactWorkspace& workspace);
+void update_plans(Scene& scene, ImpactWorkspace& workspace);
 
 }  // namespace crashrank::detail

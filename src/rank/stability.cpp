@@ -25,7 +25,8 @@ double lowest_of(const CandidateResult& c) { return c.score.value_or(c.score_int
 double highest_of(const CandidateResult& c) { return c.score.value_or(c.score_interval.highest); }
 
 /// Whether `a` stands before `b` by tier and score, whatever is found out.
-bool surely_before(const CandidateResult& a, const CandidateResult& b, Infeasible infeasible) {
+bool is_certainly_before(const CandidateResult& a, const CandidateResult& b,
+                         Infeasible infeasible) {
   const Tier p = tier_of(a, infeasible);
   const Tier q = tier_of(b, infeasible);
   if (p == followable && q == demoted) return true;
@@ -51,7 +52,7 @@ struct TierEnds {
   }
 };
 
-/// How many stand before a candidate, and how many do not, by `surely_before`.
+/// How many stand before a candidate, and how many do not, by `is_certainly_before`.
 void count_by_tiers(const std::array<TierEnds, tiers>& ends, Tier tier, CandidateResult& c,
                     std::size_t& before, std::size_t& behind) {
   for (const Tier other : {followable, undecided, demoted}) {
@@ -105,7 +106,7 @@ void places_by_intervals(RankResult& result) {
 
 }  // namespace
 
-void tell_stability(RankResult& result) {
+void compute_stability(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   assign_places(result);
   // What the vehicle cannot follow stands behind in every sample.
@@ -117,8 +118,8 @@ void tell_stability(RankResult& result) {
     c.worst_place = c.place - 1;
   }
   for (std::size_t i = 0; i + 1 < ranking.size(); ++i) {
-    ranking[i].separable = surely_before(ranking[i], ranking[i + 1], result.infeasible) ||
-                           surely_before(ranking[i + 1], ranking[i], result.infeasible);
+    ranking[i].separable = is_certainly_before(ranking[i], ranking[i + 1], result.infeasible) ||
+                           is_certainly_before(ranking[i + 1], ranking[i], result.infeasible);
   }
   if (!result.complete) {
     places_by_intervals(result);
@@ -154,16 +155,16 @@ void tell_stability(RankResult& result) {
   const std::size_t counted = range_sample_count(result);
   for (std::size_t place = 0; place + 1 < known; ++place) {
     if (is_demoted(ranking[place]) != is_demoted(ranking[place + 1])) continue;
-    std::size_t turned = 0;
+    std::size_t reversed = 0;
     for (std::size_t sample = 0; sample < samples; ++sample) {
       if (is_numerical(result.samples[sample])) continue;
       if (ranking[place + 1].sample_scores[sample] < ranking[place].sample_scores[sample]) {
-        ++turned;
+        ++reversed;
       }
     }
     CandidateResult& c = ranking[place];
     const CandidateResult& next = ranking[place + 1];
-    c.overtaken = static_cast<double>(turned) / static_cast<double>(counted);
+    c.overtaken = static_cast<double>(reversed) / static_cast<double>(counted);
     c.within_numerical_error = counted < samples && c.place != next.place &&
                                c.numerical_interval.highest >= next.numerical_interval.lowest;
     c.separable = c.separable && !c.within_numerical_error && c.overtaken <= separable_share;

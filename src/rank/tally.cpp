@@ -16,13 +16,15 @@ double reduced_mass_kg(const Body& a, const Body& b) {
   return std::isinf(b.mass_kg) ? a.mass_kg : a.mass_kg * b.mass_kg / (a.mass_kg + b.mass_kg);
 }
 
-double struck_by(const Body& body, double closing_mps, double delta_v_mps, double reduced_kg) {
+double struck_speed_of(const Body& body, double closing_mps, double delta_v_mps,
+                       double reduced_kg) {
   if (!body.vehicle.movable()) return closing_mps;
   return struck_speed_mps(closing_mps, delta_v_mps, body.mass_kg, reduced_kg);
 }
 
 /// Adds a side of a contact to an event.
-void extend(BodyEvent& event, const Scene& scene, const ContactEffect& effect, std::size_t side) {
+void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect& effect,
+                      std::size_t side) {
   const SideEffect& own = effect.sides[side];
   const Body& other = body_of(scene, effect.sides[1 - side].body);
   event.end_s = std::max(event.end_s, effect.end_s);
@@ -44,7 +46,7 @@ void extend(BodyEvent& event, const Scene& scene, const ContactEffect& effect, s
   event.leading_edge_m = other.vehicle.leading_edge_m;
 }
 
-BodyEvent begun(const SideEffect& side) {
+BodyEvent new_event(const SideEffect& side) {
   BodyEvent event;
   event.forward = side.forward;
   event.road_mps = side.road_mps;
@@ -53,13 +55,13 @@ BodyEvent begun(const SideEffect& side) {
 
 }  // namespace
 
-double most_intrusion_m(const Vehicle& v) {
+double max_intrusion_m(const Vehicle& v) {
   const CrushCore& core = v.strength.core;
   const double half = 0.5 * (core.cage_front_m - core.cage_rear_m);
   return std::max(0.0, std::min(half, core.cage_half_width_m));
 }
 
-ContactEffect with_rebound(const ContactEffect& effect, double factor) {
+ContactEffect scale_restitution(const ContactEffect& effect, double factor) {
   ContactEffect e = effect;
   if (factor == 1.0) return e;
   const double gain = rebound_gain(effect.restitution, factor);
@@ -81,7 +83,7 @@ HarmExposure exposure_of(const Scene& scene, std::size_t index, const BodyEvent&
   e.ego = index == ego_body;
   e.delta_v_mps = event.size_mps();
   e.pdof_deg = pdof_deg(event.impulse_ns, event.forward);
-  e.closing_speed_mps = struck_by(body, event.closing_mps, e.delta_v_mps, event.reduced_kg);
+  e.closing_speed_mps = struck_speed_of(body, event.closing_mps, e.delta_v_mps, event.reduced_kg);
   e.leading_edge_m = event.leading_edge_m;
   e.intrusion_m = event.intrusion_m;
   e.road_speed_mps = event.road_mps;
@@ -117,14 +119,14 @@ void Tally::add_side(const Scene& scene, const ContactEffect& effect, std::size_
   if (e.open.number == 0 || effect.is_apart || !(effect.begin_s - e.open.end_s < same_event_s)) {
     e.closed = term(scene, e);
     const std::size_t number = e.open.number + 1;
-    e.open = begun(own);
+    e.open = new_event(own);
     e.open.number = number;
   }
-  extend(e.open, scene, effect, side);
+  add_contact_side(e.open, scene, effect, side);
   if (!measure_row(scene.measure).counts_people) return;
-  BodyEvent alone = begun(own);
-  extend(alone, scene, effect, side);
-  const double risk = risk_of(exposure_of(scene, own.body, alone), scene.harm, sample);
+  BodyEvent single = new_event(own);
+  add_contact_side(single, scene, effect, side);
+  const double risk = risk_of(exposure_of(scene, own.body, single), scene.harm, sample);
   e.greatest_risk = std::max(e.greatest_risk, risk);
   e.open.risk = std::max(
       {e.open.risk, risk, risk_of(exposure_of(scene, own.body, e.open), scene.harm, sample)});
@@ -132,7 +134,7 @@ void Tally::add_side(const Scene& scene, const ContactEffect& effect, std::size_
 
 void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSample& sample) {
   const MeasureRow& row = measure_row(scene.measure);
-  const ContactEffect effect = with_rebound(simulated, sample.restitution);
+  const ContactEffect effect = scale_restitution(simulated, sample.restitution);
   for (std::size_t side = 0; side < effect.sides.size(); ++side) {
     add_side(scene, effect, side, sample);
     sum_ += row.of_side(effect.sides[side], scene.harm.weights);
@@ -157,11 +159,11 @@ double Tally::people_score(const Scene& scene, std::size_t body) const {
 std::vector<PersonRisk> Tally::people(const Scene& scene) const {
   std::vector<PersonRisk> people;
   if (!measure_row(scene.measure).counts_people) return people;
-  HarmWeights heads = scene.harm.weights;
-  heads.ego_occupant = heads.other_occupant = 1.0;
-  heads.pedestrian = heads.cyclist = heads.motorcyclist = 1.0;
+  HarmWeights unit_weights = scene.harm.weights;
+  unit_weights.ego_occupant = unit_weights.other_occupant = 1.0;
+  unit_weights.pedestrian = unit_weights.cyclist = unit_weights.motorcyclist = 1.0;
   for (const Entry& e : bodies_) {
-    const double persons = people_weight(exposure_of(scene, e.body, e.open), heads);
+    const double persons = people_weight(exposure_of(scene, e.body, e.open), unit_weights);
     if (persons > 0.0) people.push_back({e.body, persons, term(scene, e)});
   }
   return people;
@@ -178,7 +180,7 @@ double Tally::score(const Scene& scene) const {
   return score;
 }
 
-double Tally::least_score(const Scene& scene) const {
+double Tally::lower_bound(const Scene& scene) const {
   constexpr double rounding = 1.0 - 1e-9;
   double score = sum_;
   if (measure_row(scene.measure).counts_people) {

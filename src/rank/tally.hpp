@@ -43,10 +43,10 @@ struct ContactEffect {
 
 /// The effect with the restitution multiplied by `factor`, without another simulation: exact as far
 /// as one rebound gives back part of the impulse.
-ContactEffect with_rebound(const ContactEffect& effect, double factor);
+ContactEffect scale_restitution(const ContactEffect& effect, double factor);
 
 /// Depth of the middle of the passenger compartment: no intrusion is greater, m.
-double most_intrusion_m(const Vehicle& v);
+double max_intrusion_m(const Vehicle& v);
 
 /// A body's contacts of one event taken together.
 struct BodyEvent {
@@ -88,7 +88,7 @@ public:
   /// The score of all added so far.
   double score(const Scene& scene) const;
   /// No score that has these contacts and any others is lower, in whatever order they come.
-  double least_score(const Scene& scene) const;
+  double lower_bound(const Scene& scene) const;
   /// The share of a body's people in the score; measures but harm: of the ego's delta-v.
   double people_score(const Scene& scene, std::size_t body) const;
   /// What the people of every body with contacts risk, the ego first; measure harm only.

@@ -47,7 +47,7 @@ std::vector<DamagedBody> damaged_others(const Scenario& scenario, View<const Mod
     }
   }
   for (DamagedBody& body : bodies) {
-    sum_up(mesh_of_actor(scenario, models, body.actor), body.damage);
+    fill_area_and_parts(mesh_of_actor(scenario, models, body.actor), body.damage);
   }
   return bodies;
 }

@@ -36,14 +36,14 @@ inline Scene scene_of(Measure measure) {
   scene.measure = measure;
   scene.ego = make_body(BodyKind::car);
   for (const BodyKind kind : all_kinds) scene.actors.push_back(make_body(kind));
-  scene.plain.model = scene.harm.model;
+  scene.nominal.model = scene.harm.model;
   return scene;
 }
 
 /// What the contacts come to in the plain variant.
 inline Tally tally_of(const Scene& scene, const std::vector<ContactEffect>& effects) {
   Tally tally;
-  for (const ContactEffect& e : effects) tally.add(scene, e, scene.plain);
+  for (const ContactEffect& e : effects) tally.add(scene, e, scene.nominal);
   return tally;
 }
 

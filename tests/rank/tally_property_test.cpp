@@ -32,7 +32,7 @@ Scene small_scene(Random& random, const Scene& all, Measure measure) {
   Scene scene;
   scene.measure = measure;
   scene.harm.model = models[random.below(models.size())];
-  scene.plain.model = scene.harm.model;
+  scene.nominal.model = scene.harm.model;
   scene.harm.weights.property_per_mj = random.below(2) == 0 ? 0.0 : 0.3;
   scene.ego = all.actors[random.below(4)];
   scene.actors.push_back(all.actors[random.below(6)]);
@@ -74,7 +74,7 @@ ContactEffect any_effect(Random& random, const Scene& scene, double begin_s) {
     side.delta_v_mps = log_uniform(random, 0.01, 60.0) * side.impulse_ns.normalized();
     side.yaw_radps = random.uniform(-5.0, 5.0);
     side.road_mps = random.uniform(0.0, 50.0);
-    side.intrusion_m = random.uniform(0.0, 1.0) * most_intrusion_m(body.vehicle);
+    side.intrusion_m = random.uniform(0.0, 1.0) * max_intrusion_m(body.vehicle);
   }
   return e;
 }
@@ -105,7 +105,7 @@ TEST(Tally, NoFurtherContactLowersAScore) {
       const double before = tally.score(scene);
       const std::array<BodyEvent, 2> earlier{tally.event(e.sides[0].body),
                                              tally.event(e.sides[1].body)};
-      tally.add(scene, e, scene.plain);
+      tally.add(scene, e, scene.nominal);
       ASSERT_GE(tally.score(scene), before * (1.0 - 1e-12)) << "case " << i;
       for (std::size_t side = 0; side < 2; ++side) {
         const BodyEvent event = tally.event(e.sides[side].body);
@@ -138,7 +138,7 @@ TEST(Tally, ExchangingTheSidesOfContactsChangesNothing) {
       ASSERT_EQ(p.event(body).delta_v_mps, q.event(body).delta_v_mps) << "case " << i;
     }
     ASSERT_NEAR(p.score(scene), q.score(scene), 1e-12 * p.score(scene)) << "case " << i;
-    ASSERT_NEAR(p.least_score(scene), q.least_score(scene), 1e-12 * p.score(scene)) << "case " << i;
+    ASSERT_NEAR(p.lower_bound(scene), q.lower_bound(scene), 1e-12 * p.score(scene)) << "case " << i;
   }
 }
 
@@ -177,7 +177,7 @@ TEST(Tally, NoScoreWithFurtherContactsIsBelowTheLeast) {
   int says_something = 0;
   for (int i = 0; i < cases; ++i) {
     const Scene scene = small_scene(random, all, tallied[random.below(4)]);
-    HarmSample sample = scene.plain;
+    HarmSample sample = scene.nominal;
     sample.restitution = random.uniform(0.5, 1.5);
     const std::vector<ContactEffect> effects = any_effects(random, scene, 1 + random.below(6));
     std::vector<bool> known(effects.size());
@@ -186,7 +186,7 @@ TEST(Tally, NoScoreWithFurtherContactsIsBelowTheLeast) {
     for (std::size_t k = 0; k < effects.size(); ++k) {
       if (known[k]) some.add(scene, effects[k], sample);
     }
-    const double least = some.least_score(scene);
+    const double least = some.lower_bound(scene);
     ASSERT_LE(least, some.score(scene)) << "case " << i;
     // The known contacts among all others, in any order.
     std::vector<std::size_t> order(effects.size());

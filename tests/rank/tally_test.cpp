@@ -32,7 +32,7 @@ TEST(Tally, NothingScoresNothing) {
   for (const Measure measure : tallied) {
     const Scene scene = scene_of(measure);
     EXPECT_EQ(Tally().score(scene), 0.0);
-    EXPECT_EQ(Tally().least_score(scene), 0.0);
+    EXPECT_EQ(Tally().lower_bound(scene), 0.0);
     EXPECT_EQ(Tally().event(ego_body).number, 0U);
   }
 }
@@ -68,14 +68,14 @@ TEST(Tally, ContactsWithinATenthOfASecondAreOneEvent) {
 TEST(Tally, AnEventGoesOnFromTheLatestEnd) {
   const Scene scene = scene_of(Measure::delta_v);
   Tally tally;
-  tally.add(scene, effect(ego_body, 0, 1.0, 1.6, {-3, 0, 0}), scene.plain);
-  tally.add(scene, effect(ego_body, 1, 1.1, 1.2, {-3, 0, 0}), scene.plain);
+  tally.add(scene, effect(ego_body, 0, 1.0, 1.6, {-3, 0, 0}), scene.nominal);
+  tally.add(scene, effect(ego_body, 1, 1.1, 1.2, {-3, 0, 0}), scene.nominal);
   EXPECT_EQ(tally.event(ego_body).number, 1U);
   EXPECT_EQ(tally.event(ego_body).end_s, 1.6);
-  tally.add(scene, effect(ego_body, 2, 1.65, 1.7, {-3, 0, 0}), scene.plain);
+  tally.add(scene, effect(ego_body, 2, 1.65, 1.7, {-3, 0, 0}), scene.nominal);
   EXPECT_EQ(tally.event(ego_body).number, 1U);
   EXPECT_DOUBLE_EQ(tally.event(ego_body).delta_v_mps.x(), -9.0);
-  tally.add(scene, effect(ego_body, 3, 1.9, 2.0, {-3, 0, 0}), scene.plain);
+  tally.add(scene, effect(ego_body, 3, 1.9, 2.0, {-3, 0, 0}), scene.nominal);
   EXPECT_EQ(tally.event(ego_body).number, 2U);
   EXPECT_DOUBLE_EQ(tally.event(ego_body).delta_v_mps.x(), -3.0);
   EXPECT_DOUBLE_EQ(tally.score(scene), 12.0);
@@ -87,9 +87,9 @@ TEST(Tally, EveryBodyHasEventsOfItsOwn) {
   // Actor 0 is pushed by the ego and then, within 0.1 s, into actor 2; actor 1 is hit later.
   ContactEffect push = effect(0, ego_body, 1.0, 1.1, {9, 0, 0});
   std::swap(push.sides[0], push.sides[1]);
-  tally.add(scene, push, scene.plain);
-  tally.add(scene, effect(0, 2, 1.15, 1.25, {-4, 0, 0}), scene.plain);
-  tally.add(scene, effect(0, 1, 3.0, 3.1, {0, 5, 0}), scene.plain);
+  tally.add(scene, push, scene.nominal);
+  tally.add(scene, effect(0, 2, 1.15, 1.25, {-4, 0, 0}), scene.nominal);
+  tally.add(scene, effect(0, 1, 3.0, 3.1, {0, 5, 0}), scene.nominal);
   EXPECT_EQ(tally.event(0).number, 2U);
   EXPECT_EQ(tally.event(ego_body).number, 1U);
   EXPECT_EQ(tally.event(1).number, 1U);
@@ -210,7 +210,7 @@ TEST(Tally, PropertyHarmAddsUpOverContactsAndBodies) {
   EXPECT_NEAR(score_of(scene, {first}), 0.4 * 0.5, 1e-14);
   EXPECT_NEAR(score_of(scene, {first, second}), 0.4 * 0.65, 1e-14);
   // Nothing that follows takes it back: it is in the least score, but for the margin of rounding.
-  EXPECT_NEAR(tally_of(scene, {first, second}).least_score(scene), 0.4 * 0.65, 1e-8);
+  EXPECT_NEAR(tally_of(scene, {first, second}).lower_bound(scene), 0.4 * 0.65, 1e-8);
 }
 
 TEST(Tally, OtherMeasuresSumOverContacts) {
@@ -226,7 +226,7 @@ TEST(Tally, OtherMeasuresSumOverContacts) {
   EXPECT_DOUBLE_EQ(score_of(intrusion, {e, e, further}), 3 * 0.35);
   // A rebound keeps its share of the energy.
   e.restitution = 0.2;
-  HarmSample bouncing = energy.plain;
+  HarmSample bouncing = energy.nominal;
   bouncing.restitution = 2.0;
   Tally kept;
   kept.add(energy, e, bouncing);
@@ -242,7 +242,7 @@ TEST(Tally, DeltaVCountsTheEgosAlone) {
 
 TEST(Tally, ASampleScalesTheReboundOfEachContactByItself) {
   const Scene scene = scene_of(Measure::delta_v);
-  HarmSample bouncing = scene.plain;
+  HarmSample bouncing = scene.nominal;
   bouncing.restitution = 1.5;
   const ContactEffect soft = effect(ego_body, 0, 1.0, 1.1, {-6.0, 0, 0});
   ContactEffect hard = effect(ego_body, 1, 2.0, 2.1, {-6.0, 0, 0});
@@ -269,7 +269,7 @@ TEST(Tally, AReboundScalesBothSides) {
     side.crush_j = 1e4;
     side.intrusion_m = 0.1;
   }
-  const ContactEffect r = with_rebound(e, 1.5);
+  const ContactEffect r = scale_restitution(e, 1.5);
   constexpr double gain = 1.3 / 1.2;
   constexpr double loss = (1.0 - 0.09) / (1.0 - 0.04);
   for (std::size_t i = 0; i < 2; ++i) {

@@ -3,10 +3,10 @@
 #include "base/hidden.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
 #include "crashrank/internal/base/guarded.hpp"
-#include "rank/anytime/race.hpp"
+#include "rank/anytime/candidate_queue.hpp"
 #include "rank/anytime/refine.hpp"
 #include "rank/anytime/step_rounds.hpp"
-#include "rank/near.hpp"
+#include "rank/nearby_actors.hpp"
 #include "rank/order.hpp"
 #include "rank/reach.hpp"
 #include "rank/scene.hpp"
@@ -26,19 +26,19 @@
 namespace crashrank {
 namespace {
 
-using detail::Race;
-using detail::Refined;
+using detail::CandidateQueue;
+using detail::CandidateState;
+using detail::Deadline;
 using detail::StepRounds;
-using detail::Watch;
 
-/// As many as wait in a race are refined together.
-constexpr std::size_t refined_together = 16;
+/// As many as wait in a queue are refined together.
+constexpr std::size_t refined_per_round = 16;
 
-double seconds_between(Watch::Clock::time_point from, Watch::Clock::time_point to) {
+double seconds_between(Deadline::Clock::time_point from, Deadline::Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
   // FNV-1a over words, then a shift so that high bits reach low ones.
   constexpr std::uint64_t prime = 0x100000001b3;
   hash = (hash ^ word) * prime;
@@ -48,11 +48,11 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
 std::uint64_t hash_of(View<const RankedCandidate> ranking) {
   std::uint64_t hash = 0xcbf29ce484222325;
   for (const RankedCandidate& c : ranking) {
-    hash = mixed(hash, c.candidate);
-    hash = mixed(hash, static_cast<std::uint64_t>(c.stage) * 2 + (c.known ? 1 : 0));
-    hash = mixed(hash, std::bit_cast<std::uint64_t>(c.score));
-    hash = mixed(hash, std::bit_cast<std::uint64_t>(c.interval.lowest));
-    hash = mixed(hash, std::bit_cast<std::uint64_t>(c.interval.highest));
+    hash = mix_hash(hash, c.candidate);
+    hash = mix_hash(hash, static_cast<std::uint64_t>(c.stage) * 2 + (c.known ? 1 : 0));
+    hash = mix_hash(hash, std::bit_cast<std::uint64_t>(c.score));
+    hash = mix_hash(hash, std::bit_cast<std::uint64_t>(c.interval.lowest));
+    hash = mix_hash(hash, std::bit_cast<std::uint64_t>(c.interval.highest));
   }
   return hash;
 }
@@ -71,139 +71,140 @@ struct CRASHRANK_HIDDEN Ranker::State {
   /// Those of a complete answer; the scene has none, since no step evaluates them.
   std::vector<HarmSample> samples;
   double prepare_s = 0.0;
-  std::vector<Refined> states;
+  std::vector<CandidateState> states;
   std::vector<RankedCandidate> ranking;
-  Race race;
-  std::array<std::uint32_t, StepRounds::most_steps> chosen{};
-  std::vector<Motion> coming;  ///< of the actors, while they are copied
-  Motion room;                 ///< of a displaced candidate
-  std::size_t known = 0;       ///< candidates whose score is known, of this call
-  std::vector<char> reached;   ///< by actor, while those far away are left out
-  bool felt_left_out = false;  ///< a crash reaches one of these
+  CandidateQueue queue;
+  std::array<std::uint32_t, StepRounds::max_steps> chosen{};
+  std::vector<Motion> new_motions;  ///< of the actors, while they are copied
+  Motion displaced;                 ///< of a displaced candidate
+  std::size_t known = 0;            ///< candidates whose score is known, of this call
+  std::vector<char> reached;        ///< by actor, while those far away are left out
+  bool needs_left_out = false;      ///< a crash reaches one of these
 
   /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
   /// of work or time.
-  bool take_over(std::size_t steps, const RankBudget& budget, std::uint64_t& work) noexcept {
+  bool collect_results(std::size_t steps, const RankBudget& budget, std::uint64_t& work) noexcept {
     bool in_time = true;
     for (std::size_t i = 0; i < steps; ++i) {
       const bool affordable = work < budget.work;
       const StepRounds::Done done = rounds.done(i);
       if (affordable && done.state != nullptr) {
-        if (done.state->told.known && !states[chosen[i]].told.known) ++known;
+        if (done.state->result.known && !states[chosen[i]].result.known) ++known;
         states[chosen[i]] = *done.state;
-        felt_left_out = felt_left_out || done.state->felt_left_out;
+        needs_left_out = needs_left_out || done.state->needs_left_out;
         work += done.end.work;
       }
       in_time = in_time && affordable && done.state != nullptr && done.end.finished;
-      race.put_back(chosen[i], states);
+      queue.insert(chosen[i], states);
     }
     if (budget.known != nullptr) budget.known->store(known, std::memory_order_relaxed);
-    return in_time && !felt_left_out && !rounds.expired();
+    return in_time && !needs_left_out && !rounds.expired();
   }
 
   /// Everything until time, work or questions run out.
   void refine_all(const RankBudget& budget, RankerEffort& effort) noexcept {
-    const auto start = Watch::Clock::now();
+    const auto start = Deadline::Clock::now();
     const auto all = static_cast<std::uint32_t>(rounds.candidates().size());
     bool going = budget.work > 0;
     std::uint32_t begin = 0;
     if (going && all > 1) {
       // Where the ego may be elsewhere, too, its plans do not tell.
       if (!scene.futures.displaces_ego() &&
-          detail::all_are_clear(scene, rounds.candidates(), rounds.watch(), effort.work)) {
+          detail::all_are_clear(scene, rounds.candidates(), rounds.deadline(), effort.work)) {
         for (std::uint32_t i = 0; i < all; ++i) detail::bound_as_clear(scene, states[i]);
       }
       going = effort.work < budget.work && !rounds.expired();
     }
     while (begin < all && going) {
-      const std::size_t steps = std::min<std::size_t>(StepRounds::most_steps, all - begin);
+      const std::size_t steps = std::min<std::size_t>(StepRounds::max_steps, all - begin);
       for (std::size_t i = 0; i < steps; ++i) {
         chosen[i] = begin + static_cast<std::uint32_t>(i);
       }
       rounds.run(states, chosen.data(), steps, std::numeric_limits<double>::infinity());
       begin += static_cast<std::uint32_t>(steps);
-      going = take_over(steps, budget, effort.work);
+      going = collect_results(steps, budget, effort.work);
     }
-    const auto seen = Watch::Clock::now();
+    const auto seen = Deadline::Clock::now();
     effort.bounds_s = seconds_between(start, seen);
     while (going) {
-      const bool deciding = !race.decided();
-      const double limit = deciding ? race.limit() : std::numeric_limits<double>::infinity();
-      const std::size_t steps = race.choose(states, refined_together, chosen.data());
+      const bool deciding = !queue.decided();
+      const double limit = deciding ? queue.limit() : std::numeric_limits<double>::infinity();
+      const std::size_t steps = queue.choose(states, refined_per_round, chosen.data());
       if (steps == 0) {
-        if (budget.first_place_only || !race.resume(states)) break;
+        if (budget.first_place_only || !queue.requeue_beaten(states)) break;
         continue;
       }
       rounds.run(states, chosen.data(), steps, limit);
-      going = take_over(steps, budget, effort.work);
+      going = collect_results(steps, budget, effort.work);
     }
-    effort.refining_s = seconds_between(seen, Watch::Clock::now());
+    effort.refining_s = seconds_between(seen, Deadline::Clock::now());
   }
 
   /// All that time and work allow, in futures that leave out who is far away; where a crash reaches
   /// one of these, once more in those that leave out nobody.
-  void refine_in_futures(View<const Candidate> asked, const RankBudget& budget,
+  void refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
                          RankerEffort& effort) noexcept {
     const bool leaves = budget.work > 0 && !rounds.expired();
-    if (leaves && detail::leave_out_far(scene, asked, reached, effort.work)) begin(asked);
+    if (leaves && detail::leave_out_distant_actors(scene, candidates, reached, effort.work))
+      begin(candidates);
     refine_all(budget, effort);
-    if (!felt_left_out) return;
-    detail::leave_out_none(scene, reached);
-    begin(asked);
+    if (!needs_left_out) return;
+    detail::include_all_actors(scene, reached);
+    begin(candidates);
     refine_all(budget, effort);
   }
 
   /// Nothing is known of any candidate but what none can exceed. Touches nothing that workers do.
-  void begin(View<const Candidate> asked) noexcept {
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      detail::begin_refining(scene, bounds, asked[i], i, room, states[i]);
+  void begin(View<const Candidate> candidates) noexcept {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      detail::begin_refining(scene, bounds, candidates[i], i, displaced, states[i]);
     }
-    race.begin(asked.size());
+    queue.begin(candidates.size());
     known = 0;
-    felt_left_out = false;
+    needs_left_out = false;
   }
 
   /// Evaluates what is known of an answer. True where a crash reaches an actor that is left out of
   /// the futures.
-  bool explain_all(View<const Candidate> candidates, const RankerAnswer& answer, const Watch& watch,
-                   RankResult& result) {
+  bool explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
+                   const Deadline& deadline, RankResult& result) {
     detail::Scratch scratch;
-    scratch.stop = {&Watch::stop, const_cast<Watch*>(&watch)};
+    scratch.stop = {&Deadline::stop, const_cast<Deadline*>(&deadline)};
     for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
-      const RankedCandidate& told = answer.ranking[i];
+      const RankedCandidate& ranked = answer.ranking[i];
       CandidateResult& full = result.ranking[i];
-      if (told.known && !watch.expired()) {
-        full = detail::evaluate(scene, candidates[told.candidate], scratch, result.work);
+      if (ranked.known && !deadline.expired()) {
+        full = detail::evaluate(scene, candidates[ranked.candidate], scratch, result.work);
       } else {
-        full.feasible = told.feasible;
-        full.collides = told.collides;
-        full.score_interval = told.interval;
-        if (told.known || told.stage >= RankStage::searched) {
+        full.feasible = ranked.feasible;
+        full.collides = ranked.collides;
+        full.score_interval = ranked.interval;
+        if (ranked.known || ranked.stage >= RankStage::searched) {
           full.searched = true;
-          full.score_estimate = told.estimate;
-          full.collision_probability = told.collision_probability;
-          if (told.collides) {
-            full.first_touch = {told.actor, told.time_of_impact_s, told.closing_speed_mps};
+          full.score_estimate = ranked.estimate;
+          full.collision_probability = ranked.collision_probability;
+          if (ranked.collides) {
+            full.first_touch = {ranked.actor, ranked.time_of_impact_s, ranked.closing_speed_mps};
           }
         }
       }
-      full.candidate = told.candidate;
+      full.candidate = ranked.candidate;
     }
-    return scratch.felt_left_out;
+    return scratch.needs_left_out;
   }
 
   /// Of the first `all` states. Touches nothing that workers do.
-  void tell(RankerAnswer& answer, std::size_t all) noexcept {
-    race.mark(states);
+  void write_answer(RankerAnswer& answer, std::size_t all) noexcept {
+    queue.mark_in_race(states);
     bool searched = true;
     for (std::size_t i = 0; i < all; ++i) {
-      ranking[i] = states[i].told;
+      ranking[i] = states[i].result;
       searched = searched && (ranking[i].known || ranking[i].stage >= RankStage::searched);
     }
     // Estimates of some, from their contacts, say nothing beside bounds of others.
     std::sort(ranking.begin(), ranking.begin() + static_cast<std::ptrdiff_t>(all),
               [searched](const RankedCandidate& a, const RankedCandidate& b) {
-                return detail::promises_more(a, b, searched);
+                return detail::ranks_before(a, b, searched);
               });
     answer.ranking = {ranking.data(), all};
     answer.complete = true;
@@ -233,7 +234,8 @@ Ranker::~Ranker() = default;
 
 namespace {
 
-Status within(const RankerLimits& limits, const Scenario& scenario, View<const Model> models) {
+Status check_limits(const RankerLimits& limits, const Scenario& scenario,
+                    View<const Model> models) {
   if (scenario.actors.size() > limits.actors) {
     return make_error(ErrorCode::usage, "the scenario has more actors than the Ranker's limit",
                       "raise RankerLimits::actors");
@@ -247,7 +249,7 @@ Status within(const RankerLimits& limits, const Scenario& scenario, View<const M
   return Success{};
 }
 
-Error refused(const char* whose, std::size_t index, const char* fault) {
+Error refused_motion_of(const char* whose, std::size_t index, const char* fault) {
   return detail::refused_motion(whose + std::string("[") + std::to_string(index) + "]",
                                 "its motion", fault);
 }
@@ -265,17 +267,17 @@ Status check_call(View<const Candidate> candidates, const RankBudget& budget,
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     if (const char* const fault = detail::motion_fault(candidate.motion, scene.slice_s.back())) {
-      return refused("candidates", i, fault);
+      return refused_motion_of("candidates", i, fault);
     }
     if (!detail::begins_at(candidate.motion.pose_at(0.0), scene.ego_start)) {
-      Error error =
-          refused("candidates", i, "begins more than 1 m or 30 degrees from the ego's pose");
+      Error error = refused_motion_of("candidates", i,
+                                      "begins more than 1 m or 30 degrees from the ego's pose");
       error.remedy = "make the candidates anew after each move_actors";
       return error;
     }
     // They decide between equals.
     if (!std::isfinite(candidate.acceleration_mps2) || !std::isfinite(candidate.curvature_per_m)) {
-      return refused("candidates", i, "is told with numbers that are not finite");
+      return refused_motion_of("candidates", i, "is told with numbers that are not finite");
     }
   }
   return Success{};
@@ -285,12 +287,12 @@ Status check_call(View<const Candidate> candidates, const RankBudget& budget,
 
 Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> models,
                                const RankerOptions& options) {
-  const auto start = Watch::Clock::now();
+  const auto start = Deadline::Clock::now();
   return detail::guarded([&]() -> Result<Ranker> {
     if (Status shared = detail::check_workers(options.rank.workers); !shared) return shared.error();
     const Status sound = detail::check_scenario(scenario);
     if (!sound) return sound.error();
-    const Status fits = within(options.limits, scenario, models);
+    const Status fits = check_limits(options.limits, scenario, models);
     if (!fits) return fits.error();
     RankResult bodies;
     const RankOptions& how = options.rank;
@@ -316,13 +318,13 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->bodies = std::move(bodies);
     state->bounds.prepare(state->scene);
     state->states.resize(options.limits.candidates);
-    for (Refined& each : state->states) each.reserve(state->scene.futures);
+    for (CandidateState& each : state->states) each.reserve(state->scene.futures);
     state->ranking.resize(options.limits.candidates);
-    state->race.prepare(options.limits.candidates);
+    state->queue.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
-    state->coming.resize(state->scene.futures.own_plans());
+    state->new_motions.resize(state->scene.futures.own_plans());
     state->reached.resize(state->scene.actors.size());
-    state->prepare_s = seconds_between(start, Watch::Clock::now());
+    state->prepare_s = seconds_between(start, Deadline::Clock::now());
     return Ranker(std::move(state));
   });
 }
@@ -332,9 +334,9 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
   state_->rounds.await();
   return detail::guarded([&]() -> Status {
     detail::Scene& scene = state_->scene;
-    std::vector<Motion>& coming = state_->coming;
+    std::vector<Motion>& new_motions = state_->new_motions;
     std::vector<detail::Plan>& plans = scene.futures.plans;
-    if (actors.size() != coming.size()) {
+    if (actors.size() != new_motions.size()) {
       return make_error(ErrorCode::usage, "there is not one motion for each actor's plan",
                         "give them in the order of Ranker::plans");
     }
@@ -347,17 +349,17 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
     }
     for (std::size_t i = 0; i < actors.size(); ++i) {
       if (const char* const fault = detail::motion_fault(actors[i], scene.slice_s.back())) {
-        return refused("actors", i, fault);
+        return refused_motion_of("actors", i, fault);
       }
-      coming[i] = actors[i];
+      new_motions[i] = actors[i];
     }
     // From here on nothing can fail.
-    for (std::size_t i = 0; i < actors.size(); ++i) std::swap(plans[i].motion, coming[i]);
+    for (std::size_t i = 0; i < actors.size(); ++i) std::swap(plans[i].motion, new_motions[i]);
     scene.futures.displace_plans();
     scene.ego_start = ego_start;
     scene.limits.speed_mps = ego ? ego->speed_mps : std::numeric_limits<double>::quiet_NaN();
     scene.limits.yaw_rate_radps = ego ? ego->yaw_rate_radps : 0.0;
-    detail::place_actors(scene, state_->rounds.own().impact);
+    detail::update_plans(scene, state_->rounds.caller_scratch().impact);
     state_->bounds.update(scene);
     return Success{};
   });
@@ -407,9 +409,9 @@ Status Ranker::weigh_plans(View<const double> probabilities) noexcept {
       }
       if (is_last) sum = 0.0;
     }
-    futures.weigh(probabilities);
+    futures.set_probabilities(probabilities);
     if (futures.own_plans() < futures.plans.size()) {
-      detail::place_actors(state_->scene, state_->rounds.own().impact);
+      detail::update_plans(state_->scene, state_->rounds.caller_scratch().impact);
       state_->bounds.update(state_->scene);
     }
     return Success{};
@@ -417,7 +419,7 @@ Status Ranker::weigh_plans(View<const double> probabilities) noexcept {
 }
 
 RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& budget) noexcept {
-  const auto start = Watch::Clock::now();
+  const auto start = Deadline::Clock::now();
   State& s = *state_;
   RankerAnswer answer;
   answer.status =
@@ -425,23 +427,23 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   if (!answer.status) return answer;
   // What is left to do after the last look at the clock: an order and a hash.
   const auto count = static_cast<double>(candidates.size());
-  const double closing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);
-  Watch watch(budget.cancel);
+  const double finishing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);
+  Deadline deadline(budget.cancel);
   constexpr double longest_s = 1e6;
   if (budget.deadline_s < longest_s) {
-    const double seconds = std::max(budget.deadline_s - closing_s, 0.0);
-    watch = Watch(start + std::chrono::duration_cast<Watch::Clock::duration>(
-                              std::chrono::duration<double>(seconds)),
-                  budget.cancel);
+    const double seconds = std::max(budget.deadline_s - finishing_s, 0.0);
+    deadline = Deadline(start + std::chrono::duration_cast<Deadline::Clock::duration>(
+                                    std::chrono::duration<double>(seconds)),
+                        budget.cancel);
   }
   answer.effort.prepare_s = s.prepare_s;
   s.begin(candidates);
-  if (s.rounds.await(watch)) {
-    s.rounds.begin(candidates, watch);
+  if (s.rounds.await(deadline)) {
+    s.rounds.begin(candidates, deadline);
     s.refine_in_futures(candidates, budget, answer.effort);
   }
-  s.tell(answer, candidates.size());
-  answer.elapsed_s = seconds_between(start, Watch::Clock::now());
+  s.write_answer(answer, candidates.size());
+  answer.elapsed_s = seconds_between(start, Deadline::Clock::now());
   return answer;
 }
 
@@ -464,23 +466,23 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     }
     result.candidates.assign(candidates.begin(), candidates.end());
     result.ranking.resize(answer.ranking.size());
-    const Watch watch(cancel);
-    if (s.explain_all(candidates, answer, watch, result)) {
-      // The samples' crashes reach further than the plain ones.
-      detail::leave_out_none(s.scene, s.reached);
-      s.explain_all(candidates, answer, watch, result);
+    const Deadline deadline(cancel);
+    if (s.explain_all(candidates, answer, deadline, result)) {
+      // The samples' crashes reach further than the nominal ones.
+      detail::include_all_actors(s.scene, s.reached);
+      s.explain_all(candidates, answer, deadline, result);
     }
     result.futures = s.scene.futures.summary;
-    for (const RankedCandidate& told : answer.ranking) {
-      if (told.in_race) result.in_race.push_back(told.candidate);
+    for (const RankedCandidate& ranked : answer.ranking) {
+      if (ranked.in_race) result.in_race.push_back(ranked.candidate);
     }
-    result.complete = answer.complete && !watch.expired();
+    result.complete = answer.complete && !deadline.expired();
     result.infeasible = s.scene.infeasible;
     detail::drop_infeasible(result);
     result.proved = answer.proved;
     result.elapsed_s = answer.elapsed_s;
     result.effort = answer.effort;
-    detail::tell_stability(result);
+    detail::compute_stability(result);
     return result;
   });
 }

@@ -1,12 +1,12 @@
 #include "rank/anytime/refine.hpp"
 
-#include "rank/anytime/guess.hpp"
+#include "rank/anytime/estimate.hpp"
 #include "rank/combine_futures.hpp"
 #include "rank/ego_motion.hpp"
 #include "rank/hits.hpp"
 #include "rank/manoeuvre.hpp"
 #include "rank/measure_table.hpp"
-#include "rank/near.hpp"
+#include "rank/nearby_actors.hpp"
 #include "rank/road_leaving.hpp"
 
 #include <algorithm>
@@ -17,19 +17,19 @@
 namespace crashrank::detail {
 namespace {
 
-void narrow(Refined& state, double lowest, double highest) {
-  ScoreInterval& interval = state.told.interval;
+void narrow(CandidateState& state, double lowest, double highest) {
+  ScoreInterval& interval = state.result.interval;
   interval.lowest = std::max(interval.lowest, lowest);
   interval.highest = std::max(std::min(interval.highest, highest), interval.lowest);
 }
 
-void settle(Refined& state, double score) {
-  state.told.known = true;
-  state.told.score = state.told.estimate = score;
-  state.told.interval = {score, score};
+void settle(CandidateState& state, double score) {
+  state.result.known = true;
+  state.result.score = state.result.estimate = score;
+  state.result.interval = {score, score};
 }
 
-std::uint64_t tests_of(const RankWork& work) {
+std::uint64_t work_units(const RankWork& work) {
   return work.box_tests + work.impact.bv_tests + work.impact.primitive_tests +
          work.damage.bv_tests + work.damage.primitive_tests + work.paths + work.crash_pieces;
 }
@@ -37,64 +37,65 @@ std::uint64_t tests_of(const RankWork& work) {
 constexpr double never_s = std::numeric_limits<double>::infinity();
 /// Pieces of outlines that the first simulation of a crash in a race moves: about the first contact
 /// of two cars.
-constexpr std::uint64_t first_turn = 20'000;
+constexpr std::uint64_t first_quota = 20'000;
 
 /// Tells what is to be said besides the crash. False when time was up.
-bool describe(const RefineQuery& q, const Followed& followed, Refined& state, Scratch& scratch) {
+bool fill_manoeuvre(const RefineQuery& q, const FollowedPlan& followed, CandidateState& state,
+                    Scratch& scratch) {
   const ManoeuvreFacts facts =
-      describe_manoeuvre(q.scene, q.candidate, followed, state.leaving, scratch);
+      evaluate_manoeuvre(q.scene, q.candidate, followed, state.leaving, scratch);
   if (!followed.touches && scratch.stopped()) return false;
-  RankedCandidate& told = state.told;
-  told.feasible = facts.feasible || q.scene.infeasible == Infeasible::keep;
-  told.leaves_road = facts.leaves_road.has_value();
-  told.least_distance_m = facts.clearance.distance_m;
-  told.least_time_gap_s = facts.clearance.time_gap_s;
-  told.end_speed_mps = told.collides ? 0.0 : facts.at_horizon.speed_mps;
+  RankedCandidate& result = state.result;
+  result.feasible = facts.feasible || q.scene.infeasible == Infeasible::keep;
+  result.leaves_road = facts.leaves_road.has_value();
+  result.least_distance_m = facts.clearance.distance_m;
+  result.least_time_gap_s = facts.clearance.time_gap_s;
+  result.end_speed_mps = result.collides ? 0.0 : facts.at_horizon.speed_mps;
   state.demand_known = true;
   return true;
 }
 
 /// Narrows the interval to what is known of the futures; settles it where all that count are known.
-void combine(const RefineQuery& q, Refined& state, Scratch& scratch) {
+void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   const Futures& futures = q.scene.futures;
   bool known = true;
   for (std::size_t f = 0; f < futures.size(); ++f) {
     known = known && (state.futures[f].known() || !(futures.probability(f) > 0.0));
   }
   const auto risk_with = [&](auto of_unknown) {
-    std::vector<double>& scores = scratch.first_s;  // room that is free between searches
+    std::vector<double>& scores = scratch.first_s;  // displaced that is free between searches
     scores.clear();
     for (const FutureScore& each : state.futures) {
       scores.push_back(each.known() ? each.score : of_unknown(each));
     }
     return risk_of_futures(q.scene, {scores.data(), scores.size()}, scratch.weighted);
   };
-  const auto least_of = [](const FutureScore& future) { return future.least; };
-  const double estimate =
-      risk_with([](const FutureScore& future) { return std::max(future.least, future.guess); });
+  const auto lower_bound_of = [](const FutureScore& future) { return future.lower_bound; };
+  const double estimate = risk_with(
+      [](const FutureScore& future) { return std::max(future.lower_bound, future.estimate); });
   if (known) {
-    settle(state, risk_with(least_of));
+    settle(state, risk_with(lower_bound_of));
   } else if (futures.size() == 1) {
-    narrow(state, state.futures.front().least, state.told.interval.highest);
+    narrow(state, state.futures.front().lower_bound, state.result.interval.highest);
   } else {
     // Sums round.
     constexpr double rounding = 1e-12;
-    narrow(state, (1.0 - rounding) * risk_with(least_of),
-           (1.0 + rounding) * risk_with([&](const FutureScore&) { return state.most; }));
+    narrow(state, (1.0 - rounding) * risk_with(lower_bound_of),
+           (1.0 + rounding) * risk_with([&](const FutureScore&) { return state.upper_bound; }));
   }
-  const ScoreInterval& interval = state.told.interval;
-  state.told.estimate = std::clamp(estimate, interval.lowest, interval.highest);
+  const ScoreInterval& interval = state.result.interval;
+  state.result.estimate = std::clamp(estimate, interval.lowest, interval.highest);
 }
 
 /// The future whose crash is simulated next: that in which the least has been simulated for its
 /// probability.
-std::size_t next_future(const Futures& futures, const Refined& state) {
+std::size_t next_future(const Futures& futures, const CandidateState& state) {
   std::size_t next = futures.size();
   double least = 0.0;
   for (std::size_t f = 0; f < futures.size(); ++f) {
     const double probability = futures.probability(f);
     if (state.futures[f].known() || !(probability > 0.0)) continue;
-    const double simulated = static_cast<double>(first_turn + state.futures[f].simulated);
+    const double simulated = static_cast<double>(first_quota + state.futures[f].simulated);
     if (next < futures.size() && simulated >= least * probability) continue;
     next = f;
     least = simulated / probability;
@@ -103,8 +104,8 @@ std::size_t next_future(const Futures& futures, const Refined& state) {
 }
 
 /// Leaving of the road by the ego on its motion in a future.
-std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const Refined& state, const Motion& ego,
-                                      const Scratch& scratch) {
+std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const CandidateState& state,
+                                      const Motion& ego, const Scratch& scratch) {
   if (&ego == &q.candidate.motion) return state.leaving;
   return find_leaving(q.scene.road, q.scene.ego, ego, q.scene.slice_s.back(), scratch.stop);
 }
@@ -114,15 +115,15 @@ bool comes_near(const RefineQuery& q, Scratch& scratch, RankWork& work) {
   const Futures& futures = q.scene.futures;
   for (std::size_t f = 0; f < futures.size(); f = futures.group(f).end) {
     const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
-    find_near(q.scene, ego, futures.group(f), 0.0, q.scene.slice_s.back(), scratch, work);
+    find_nearby_actors(q.scene, ego, futures.group(f), 0.0, q.scene.slice_s.back(), scratch, work);
     // Where time is up, nothing is settled: what was not looked at may come near.
-    if (!scratch.near.empty() || (f > 0 && q.watch.expired())) return true;
+    if (!scratch.near.empty() || (f > 0 && q.deadline.expired())) return true;
   }
   return false;
 }
 
 /// No future has a contact: all scores are known. False when time was up.
-bool settle_without_contact(const RefineQuery& q, Refined& state, Scratch& scratch) {
+bool settle_without_contact(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   const Futures& futures = q.scene.futures;
   if (!futures.displaces_ego()) {
     settle(state, leaving_score(q.scene, state.leaving, never_s));
@@ -139,21 +140,21 @@ bool settle_without_contact(const RefineQuery& q, Refined& state, Scratch& scrat
 }
 
 /// False when time was up.
-bool look_near(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+bool find_nearby(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
   const double horizon_s = q.scene.slice_s.back();
   const auto leaving =
       find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s, scratch.stop);
   if (q.scene.road.ends() && scratch.stopped()) return false;
   state.leaving = leaving;
   if (!comes_near(q, scratch, work)) {
-    if (!describe(q, {horizon_s, never_s, false}, state, scratch) ||
+    if (!fill_manoeuvre(q, {horizon_s, never_s, false}, state, scratch) ||
         !settle_without_contact(q, state, scratch)) {
       return false;
     }
-    state.told.stage = RankStage::near;
+    state.result.stage = RankStage::near;
     return true;
   }
-  state.told.stage = RankStage::near;
+  state.result.stage = RankStage::near;
   // What can be followed to the horizon can be followed to any contact.
   state.demand_known =
       q.scene.infeasible == Infeasible::keep ||
@@ -167,114 +168,114 @@ Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch:
 
 /// What the crash that begins with a contact is taken for; `most` where a first contact alone says
 /// nothing of the measure.
-double guess_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit, double most,
-                Scratch& scratch) {
+double estimate_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit, double most,
+                   Scratch& scratch) {
   if (scored_by_damage(q.scene.measure)) return most;
-  const double guess = guess_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
-                                   first_contact_of(q, ego, hit), scratch.tally);
-  const bool says_nothing = !(guess > 0.0) && !measure_row(q.scene.measure).counts_people;
-  return says_nothing ? most : guess;
+  const double estimate = estimate_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
+                                         first_contact_of(q, ego, hit), scratch.tally);
+  const bool says_nothing = !(estimate > 0.0) && !measure_row(q.scene.measure).counts_people;
+  return says_nothing ? most : estimate;
 }
 
 /// Keeps the contacts of the last search that are the first of a future of the group, in their
 /// order, and what the crashes that begin with them are taken for.
-void keep_firsts(const RefineQuery& q, const FutureGroup& group, const Motion& ego, Refined& state,
-                 Scratch& scratch) {
+void store_first_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
+                      CandidateState& state, Scratch& scratch) {
   const Futures& futures = q.scene.futures;
   for (const Scratch::Hit& hit : scratch.hits) {
     if (!hit.impact.hit()) continue;
-    const auto index = static_cast<std::uint32_t>(state.firsts.size());
-    double guess = FutureScore::unknown;
+    const auto index = static_cast<std::uint32_t>(state.first_hits.size());
+    double estimate = FutureScore::unknown;
     for (std::size_t f = group.begin; f < group.end; ++f) {
       FutureScore& future = state.futures[f];
-      if (future.first != FutureScore::no_contact || !futures.has(f, hit.plan)) continue;
-      if (guess < 0.0) {
-        guess = guess_of(q, ego, hit, state.most, scratch);
-        state.firsts.push_back(hit);
+      if (future.first != FutureScore::no_contact || !futures.follows(f, hit.plan)) continue;
+      if (estimate < 0.0) {
+        estimate = estimate_of(q, ego, hit, state.upper_bound, scratch);
+        state.first_hits.push_back(hit);
       }
       future.first = index;
-      future.guess = guess;
+      future.estimate = estimate;
     }
   }
 }
 
 /// Notes what the search of a group of futures found.
-void note_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego, Refined& state,
-               Followed& followed, Scratch& scratch) {
+void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
+                CandidateState& state, FollowedPlan& followed, Scratch& scratch) {
   const std::size_t likeliest = q.scene.futures.likeliest();
   const auto leaving = leaving_of(q, state, ego, scratch);
-  keep_firsts(q, group, ego, state, scratch);
+  store_first_hits(q, group, ego, state, scratch);
   for (std::size_t f = group.begin; f < group.end; ++f) {
     FutureScore& future = state.futures[f];
     const bool touches = future.first != FutureScore::no_contact;
-    const double until_s = touches ? state.firsts[future.first].impact.time_s : never_s;
+    const double until_s = touches ? state.first_hits[future.first].impact.time_s : never_s;
     followed.touches = followed.touches || touches;
     followed.longest_s = std::max(followed.longest_s, touches ? until_s : q.scene.slice_s.back());
     const double left = leaving_score(q.scene, leaving, until_s);
     if (touches) {
-      future.least = left;
-      future.guess += left;
+      future.lower_bound = left;
+      future.estimate += left;
     } else {
       future.score = left;
     }
     if (f != likeliest) continue;
     followed.first_s = until_s;
-    RankedCandidate& told = state.told;
-    told.collides = touches;
-    told.grazes = grazes_before(q.scene, scratch, f, until_s);
+    RankedCandidate& result = state.result;
+    result.collides = touches;
+    result.grazes = grazes_before(q.scene, scratch, f, until_s);
     if (!touches) continue;
-    const Contact first = first_contact_of(q, ego, state.firsts[future.first]);
-    told.actor = first.actor;
-    told.time_of_impact_s = first.time_of_impact_s;
-    told.closing_speed_mps = first.closing_speed_mps;
+    const Contact first = first_contact_of(q, ego, state.first_hits[future.first]);
+    result.actor = first.actor;
+    result.time_of_impact_s = first.time_of_impact_s;
+    result.closing_speed_mps = first.closing_speed_mps;
   }
 }
 
 /// Finds the first contacts of the ego in all futures. False when time was up.
-bool search(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+bool search(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
   const Futures& futures = q.scene.futures;
-  const auto take_back = [&state, before = state.told] {
-    state.told = before;
+  const auto restore = [&state, before = state.result] {
+    state.result = before;
     state.futures.assign(state.futures.size(), {});
-    state.firsts.clear();
+    state.first_hits.clear();
     return false;
   };
   bool decided = true;
   double probability = 0.0;
-  Followed followed;
+  FollowedPlan followed;
   for (std::size_t f = 0; f < futures.size(); f = futures.group(f).end) {
     const FutureGroup group = futures.group(f);
     const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
     const bool known = find_hits(q.scene, ego, group, scratch, work);
     const bool in_time = known && group.size() == futures.size();
-    if (!in_time && scratch.stopped()) return take_back();
+    if (!in_time && scratch.stopped()) return restore();
     decided = decided && known;
     probability = collision_probability(q.scene, group, scratch, probability);
-    note_hits(q, group, ego, state, followed, scratch);
-    if (!in_time && scratch.stopped()) return take_back();
+    store_hits(q, group, ego, state, followed, scratch);
+    if (!in_time && scratch.stopped()) return restore();
   }
-  state.stuck = !decided;
+  state.unresolved = !decided;
   if (!decided) {
-    take_back();
+    restore();
     return true;
   }
-  state.told.stage = RankStage::searched;
-  state.told.collision_probability = probability;
-  if (!describe(q, followed, state, scratch)) return take_back();
+  state.result.stage = RankStage::searched;
+  state.result.collision_probability = probability;
+  if (!fill_manoeuvre(q, followed, state, scratch)) return restore();
   combine(q, state, scratch);
   return true;
 }
 
 /// What a simulation of one future's crash has found holds for all that do not differ from it as
 /// far as it went. False where it reaches an actor that was left out: then it holds for none.
-bool spread(const Scene& scene, std::size_t future, Refined& state, Scratch& scratch) {
+bool share_score(const Scene& scene, std::size_t future, CandidateState& state, Scratch& scratch) {
   const FutureScore found = state.futures[future];
   const FutureGroup group = scene.futures.group(future);
   if (group.size() == 1 && !scene.futures.leaves_out()) return true;
-  std::fill(scratch.felt.begin(), scratch.felt.end(), char{0});
-  for (std::uint32_t k = 0; k <= found.first; ++k) scratch.felt[state.firsts[k].plan] = 1;
-  scratch.chain.feel(scene, scratch.felt);
-  if (scene.futures.feels_left_out(scratch.felt)) return false;
+  std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
+  for (std::uint32_t k = 0; k <= found.first; ++k) scratch.relevant[state.first_hits[k].plan] = 1;
+  scratch.chain.mark_relevant_plans(scene, scratch.relevant);
+  if (scene.futures.needs_left_out(scratch.relevant)) return false;
   scratch.same.clear();
   scratch.others.clear();
   for (std::size_t f = group.begin; f < group.end; ++f) {
@@ -282,11 +283,11 @@ bool spread(const Scene& scene, std::size_t future, Refined& state, Scratch& scr
       scratch.same.push_back(static_cast<std::uint32_t>(f));
     }
   }
-  scene.futures.split(future, scratch.felt, scratch.same, scratch.others);
+  scene.futures.split(future, scratch.relevant, scratch.same, scratch.others);
   for (const std::uint32_t f : scratch.same) {
     FutureScore& same = state.futures[f];
     same.score = found.score;
-    same.least = std::max(same.least, found.least);
+    same.lower_bound = std::max(same.lower_bound, found.lower_bound);
     same.simulated = std::max(same.simulated, found.simulated);
   }
   return true;
@@ -296,23 +297,23 @@ bool spread(const Scene& scene, std::size_t future, Refined& state, Scratch& scr
 ///
 /// To find the first place, candidates and their futures take turns, each with several times the
 /// work of its last turn: most candidates are beaten by first contacts alone. A simulation begins
-/// anew with each turn, for there is no room for one of each future; all turns before the last cost
-/// half of it together.
-bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& work) {
+/// anew with each turn, for there is no displaced for one of each future; all turns before the last
+/// cost half of it together.
+bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
   constexpr int steps_at_a_time = 4;
-  constexpr std::uint64_t more = 3;
+  constexpr std::uint64_t quota_growth = 3;
   const std::size_t index = next_future(q.scene.futures, state);
   FutureScore& future = state.futures[index];
   const FutureScore before = future;
-  const RankedCandidate told_before = state.told;
-  const bool in_turns = q.give_up_above < std::numeric_limits<double>::infinity();
-  const std::uint64_t turn = std::max(first_turn, more * future.simulated);
-  const HarmSample& plain = q.scene.plain;
+  const RankedCandidate result_before = state.result;
+  const bool is_limited = q.stop_above < std::numeric_limits<double>::infinity();
+  const std::uint64_t quota = std::max(first_quota, quota_growth * future.simulated);
+  const HarmSample& nominal = q.scene.nominal;
   CrashChain& chain = scratch.chain;
   const Motion& ego = ego_motion(q.scene, q.candidate, index, scratch.ego);
-  const Contact first = first_contact_of(q, ego, state.firsts[future.first]);
-  chain.begin(q.scene, ego, index, first, plain);
-  std::size_t over = 0;
+  const Contact first = first_contact_of(q, ego, state.first_hits[future.first]);
+  chain.begin(q.scene, ego, index, first, nominal);
+  std::size_t added = 0;
   scratch.tally.begin();
   bool going = true;
   bool in_time = true;
@@ -322,17 +323,17 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   while (going) {
     going = chain.advance(steps_at_a_time);
     if (!going) break;
-    const bool more_is_over = over < chain.contacts().size();
-    for (; over < chain.contacts().size(); ++over) {
-      scratch.tally.add(q.scene, chain.effect(over), plain);
+    const bool has_new_contacts = added < chain.contacts().size();
+    for (; added < chain.contacts().size(); ++added) {
+      scratch.tally.add(q.scene, chain.effect(added), nominal);
     }
-    if (more_is_over) {
-      future.least = std::max(future.least, left + scratch.tally.least_score(q.scene));
+    if (has_new_contacts) {
+      future.lower_bound = std::max(future.lower_bound, left + scratch.tally.lower_bound(q.scene));
       combine(q, state, scratch);
     }
-    in_time = !q.watch.expired();
-    if (!in_time || state.told.interval.lowest > q.give_up_above) break;
-    if (in_turns && chain.run().work() > turn) break;
+    in_time = !q.deadline.expired();
+    if (!in_time || state.result.interval.lowest > q.stop_above) break;
+    if (is_limited && chain.run().work() > quota) break;
   }
   future.simulated = std::max(future.simulated, chain.run().work());
   work.crash_steps += chain.run().steps();
@@ -340,13 +341,13 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
   if (!going) {
     chain.effects(scratch.effects, scratch.order);
     scratch.tally.begin();
-    for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, plain);
+    for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, nominal);
     future.score = left + scratch.tally.score(q.scene);
   }
-  if (!spread(q.scene, index, state, scratch)) {
+  if (!share_score(q.scene, index, state, scratch)) {
     future = before;
-    state.told = told_before;
-    state.stuck = state.felt_left_out = true;
+    state.result = result_before;
+    state.unresolved = state.needs_left_out = true;
     return in_time;
   }
   combine(q, state, scratch);
@@ -356,38 +357,38 @@ bool crash(const RefineQuery& q, Refined& state, Scratch& scratch, RankWork& wor
 }  // namespace
 
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
-                    std::size_t index, Motion& room, Refined& state) {
+                    std::size_t index, Motion& displaced, CandidateState& state) {
   // They keep their memory.
   std::vector<FutureScore> futures = std::move(state.futures);
-  std::vector<Scratch::Hit> firsts = std::move(state.firsts);
+  std::vector<Scratch::Hit> first_hits = std::move(state.first_hits);
   state = {};
   state.futures = std::move(futures);
-  state.firsts = std::move(firsts);
+  state.first_hits = std::move(first_hits);
   state.futures.assign(scene.futures.size(), {});
-  state.firsts.clear();
-  state.told.candidate = index;
+  state.first_hits.clear();
+  state.result.candidate = index;
   // Whether it leaves the road is looked for later.
-  state.most = bounds.most_displaced(scene, candidate.motion, room);
-  if (scene.road.ends()) state.most += leaving_score(scene, RoadLeaving{}, never_s);
-  state.told.interval = {0.0, state.most};
-  state.told.estimate = state.most;
+  state.upper_bound = bounds.upper_bound_displaced(scene, candidate.motion, displaced);
+  if (scene.road.ends()) state.upper_bound += leaving_score(scene, RoadLeaving{}, never_s);
+  state.result.interval = {0.0, state.upper_bound};
+  state.result.estimate = state.upper_bound;
 }
 
-void bound_as_clear(const Scene& scene, Refined& state) {
+void bound_as_clear(const Scene& scene, CandidateState& state) {
   const std::optional<RoadLeaving> may_leave =
       scene.road.ends() ? std::optional<RoadLeaving>(RoadLeaving{}) : std::nullopt;
-  state.most = leaving_score(scene, may_leave, never_s);
-  narrow(state, 0.0, state.most);
-  state.told.estimate = state.most;
+  state.upper_bound = leaving_score(scene, may_leave, never_s);
+  narrow(state, 0.0, state.upper_bound);
+  state.result.estimate = state.upper_bound;
 }
 
-StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
+StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   RankWork work;
-  StepEnd end;
-  scratch.stop = {&Watch::stop, const_cast<Watch*>(&q.watch)};
-  switch (state.told.stage) {
+  StepResult end;
+  scratch.stop = {&Deadline::stop, const_cast<Deadline*>(&q.deadline)};
+  switch (state.result.stage) {
     case RankStage::unseen:
-      end.finished = look_near(q, state, scratch, work);
+      end.finished = find_nearby(q, state, scratch, work);
       break;
     case RankStage::near:
       end.finished = search(q, state, scratch, work);
@@ -395,34 +396,34 @@ StepEnd refine(const RefineQuery& q, Refined& state, Scratch& scratch) {
     case RankStage::searched:
     case RankStage::scored:
       if (!scored_by_damage(q.scene.measure)) {
-        end.finished = crash(q, state, scratch, work);
+        end.finished = simulate_crash(q, state, scratch, work);
       } else {
-        // No stop within: what is begun is worth finishing.
+        // No stop within: what is begun is score finishing.
         scratch.stop = {};
         try {
-          scratch.felt_left_out = false;
+          scratch.needs_left_out = false;
           const CandidateResult result = evaluate(q.scene, q.candidate, scratch, work);
-          state.felt_left_out = scratch.felt_left_out;
-          if (result.score && !state.felt_left_out) {
+          state.needs_left_out = scratch.needs_left_out;
+          if (result.score && !state.needs_left_out) {
             settle(state, *result.score);
           } else {
-            state.stuck = true;
+            state.unresolved = true;
           }
         } catch (const std::exception&) {
-          state.stuck = true;  // no memory: the interval stands
+          state.unresolved = true;  // no memory: the interval stands
         }
       }
-      if (state.told.known) state.told.stage = RankStage::scored;
+      if (state.result.known) state.result.stage = RankStage::scored;
       break;
   }
-  end.work = tests_of(work);
+  end.work = work_units(work);
   return end;
 }
 
 OrderKey key_of(const RankedCandidate& c, bool by_estimate) noexcept {
   OrderKey key;
   key.demoted = !c.feasible;
-  key.worth = c.known ? c.score : by_estimate ? c.estimate : c.interval.highest;
+  key.score = c.known ? c.score : by_estimate ? c.estimate : c.interval.highest;
   key.known = c.known;
   key.collision_probability = c.collision_probability;
   key.collides = c.collides;
@@ -435,7 +436,7 @@ OrderKey key_of(const RankedCandidate& c, bool by_estimate) noexcept {
   return key;
 }
 
-bool promises_more(const RankedCandidate& a, const RankedCandidate& b, bool by_estimate) noexcept {
+bool ranks_before(const RankedCandidate& a, const RankedCandidate& b, bool by_estimate) noexcept {
   const int compared = compare(key_of(a, by_estimate), key_of(b, by_estimate));
   return compared != 0 ? compared < 0 : a.candidate < b.candidate;
 }

@@ -8,9 +8,9 @@
 namespace crashrank::detail {
 namespace {
 
-/// How much sooner time is up for workers, so that what they know by then still counts: most
+/// How much goes_first time is up for workers, so that what they know by then still counts: most
 /// stretches of work between two looks at the clock are shorter (bench/rank: clock_looks).
-constexpr std::chrono::microseconds ahead{30};
+constexpr std::chrono::microseconds worker_lead{30};
 
 void prepare_scratch(const Scene& scene, Scratch& scratch) {
   scratch.prepare(scene);
@@ -29,44 +29,44 @@ void StepRounds::prepare(std::size_t candidates) {
   scratch_ = std::vector<Scratch>(pool_.size() + 1);
   for (Scratch& scratch : scratch_) prepare_scratch(scene_, scratch);
   for (std::uint32_t i = 0; i < pool_.size(); ++i) helpers_.push_back({this, i + 1});
-  if (pool_.size() > 0) kept_.resize(candidates);
+  if (pool_.size() > 0) copies_.resize(candidates);
   for (Slot& slot : slots_) slot.state.reserve(scene_.futures);
 }
 
 void StepRounds::await() noexcept {
-  if (left_) pool_.wait_all();
-  left_ = false;
+  if (workers_running_) pool_.wait_all();
+  workers_running_ = false;
 }
 
-bool StepRounds::await(const Watch& limit) noexcept {
-  if (!limit.runs()) {
+bool StepRounds::await(const Deadline& limit) noexcept {
+  if (!limit.is_set()) {
     await();
-  } else if (left_) {
-    left_ = !pool_.wait_all_until(limit.until());
+  } else if (workers_running_) {
+    workers_running_ = !pool_.wait_all_until(limit.time());
   }
-  return !left_;
+  return !workers_running_;
 }
 
-void StepRounds::begin(View<const Candidate> candidates, const Watch& watch) noexcept {
+void StepRounds::begin(View<const Candidate> candidates, const Deadline& deadline) noexcept {
   candidates_ = candidates;
-  watch_ = watch;
-  const bool looks = !scored_by_damage(scene_.measure);
-  leaves_ = watch.runs() && pool_.size() > 0 && looks &&
-            std::none_of(candidates.begin(), candidates.end(),
-                         [](const Candidate& c) { return c.motion.holds_poses(); });
-  helpers_watch_ = leaves_ ? watch.earlier_by(ahead) : watch;
-  if (!leaves_) return;
+  deadline_ = deadline;
+  const bool polls_clock = !scored_by_damage(scene_.measure);
+  returns_at_deadline_ = deadline.is_set() && pool_.size() > 0 && polls_clock &&
+                         std::none_of(candidates.begin(), candidates.end(),
+                                      [](const Candidate& c) { return c.motion.holds_poses(); });
+  workers_deadline_ = returns_at_deadline_ ? deadline.earlier_by(worker_lead) : deadline;
+  if (!returns_at_deadline_) return;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    kept_[i].motion = candidates[i].motion;
-    kept_[i].acceleration_mps2 = candidates[i].acceleration_mps2;
-    kept_[i].curvature_per_m = candidates[i].curvature_per_m;
+    copies_[i].motion = candidates[i].motion;
+    copies_[i].acceleration_mps2 = candidates[i].acceleration_mps2;
+    copies_[i].curvature_per_m = candidates[i].curvature_per_m;
   }
-  candidates_ = {kept_.data(), candidates.size()};
+  candidates_ = {copies_.data(), candidates.size()};
 }
 
-void StepRounds::run(const std::vector<Refined>& states, const std::uint32_t* chosen,
-                     std::size_t steps, double give_up_above) noexcept {
-  give_up_above_ = give_up_above;
+void StepRounds::run(const std::vector<CandidateState>& states, const std::uint32_t* chosen,
+                     std::size_t steps, double stop_above) noexcept {
+  stop_above_ = stop_above;
   count_ = steps;
   next_.store(0, std::memory_order_relaxed);
   for (std::size_t i = 0; i < steps; ++i) {
@@ -77,35 +77,35 @@ void StepRounds::run(const std::vector<Refined>& states, const std::uint32_t* ch
   const std::size_t wanted = std::min(helpers_.size(), steps > 0 ? steps - 1 : 0);
   std::size_t posted = 0;
   // Waking many takes long, and whose time is up need not be woken.
-  for (; posted < wanted && !helpers_watch_.expired(); ++posted) {
+  for (; posted < wanted && !workers_deadline_.expired(); ++posted) {
     const WorkerPool::Task task{[](void* context, std::uint32_t) {
                                   const Helper& helper = *static_cast<Helper*>(context);
                                   StepRounds& rounds = *helper.rounds;
-                                  rounds.take_part(rounds.scratch_[helper.worker],
-                                                   rounds.helpers_watch_);
+                                  rounds.run_steps(rounds.scratch_[helper.worker],
+                                                   rounds.workers_deadline_);
                                 },
                                 &helpers_[posted]};
     pool_.post(static_cast<std::uint32_t>(posted), task);
   }
-  take_part(own(), watch_);
+  run_steps(caller_scratch(), deadline_);
   // All steps are begun by now: whoever has not woken yet need not.
   for (std::size_t i = 0; i < posted; ++i) {
     WorkerPool::Task unneeded;
     pool_.recall(static_cast<std::uint32_t>(i), unneeded);
   }
-  if (leaves_) {
-    left_ = !pool_.wait_all_until(watch_.until());
+  if (returns_at_deadline_) {
+    workers_running_ = !pool_.wait_all_until(deadline_.time());
   } else {
     pool_.wait_all();
   }
 }
 
-void StepRounds::take_part(Scratch& own, const Watch& until) noexcept {
-  while (!until.expired()) {
+void StepRounds::run_steps(Scratch& own, const Deadline& deadline) noexcept {
+  while (!deadline.expired()) {
     const std::size_t i = next_.fetch_add(1, std::memory_order_relaxed);
     if (i >= count_) return;
     Slot& slot = slots_[i];
-    const RefineQuery query{scene_, bounds_, candidates_[chosen_[i]], give_up_above_, until};
+    const RefineQuery query{scene_, bounds_, candidates_[chosen_[i]], stop_above_, deadline};
     slot.end = refine(query, slot.state, own);
     slot.done.store(true, std::memory_order_release);
   }

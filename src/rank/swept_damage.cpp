@@ -1,4 +1,4 @@
-#include "rank/passed.hpp"
+#include "rank/swept_damage.hpp"
 
 #include "crashrank/internal/collide/predicates.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
@@ -125,8 +125,8 @@ bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree&
 
 // Behind `near`: of the nodes in [begin, end) those that a box overlaps, in place of larger ones
 // their children.
-void list_near(const AabbTree& tree, const Box& box, std::uint32_t begin, std::uint32_t end,
-               std::vector<std::uint32_t>& near) {
+void list_overlapping(const AabbTree& tree, const Box& box, std::uint32_t begin, std::uint32_t end,
+                      std::vector<std::uint32_t>& near) {
   const auto size = [](const Box& b) { return (b.max - b.min).squaredNorm(); };
   const float own = size(box);
   near.resize(end);
@@ -144,7 +144,7 @@ void list_near(const AabbTree& tree, const Box& box, std::uint32_t begin, std::u
 }
 
 // Whether all triangles of a leaf are in the set.
-bool holds(const TriangleSet& set, const AabbTree& tree, const Node& leaf) {
+bool contains_leaf(const TriangleSet& set, const AabbTree& tree, const Node& leaf) {
   const auto* const first = tree.order.data() + leaf.first;
   return std::all_of(first, first + leaf.count,
                      [&](std::uint32_t triangle) { return set.contains(triangle); });
@@ -152,9 +152,9 @@ bool holds(const TriangleSet& set, const AabbTree& tree, const Node& leaf) {
 
 }  // namespace
 
-std::uint64_t add_passed(const Body& moving, const Pose& first, const Pose& last, const Body& fixed,
-                         TriangleSet& set, PassedScratch& scratch) {
-  using Path = PassedScratch::Path;
+std::uint64_t add_swept_triangles(const Body& moving, const Pose& first, const Pose& last,
+                                  const Body& fixed, TriangleSet& set, SweptScratch& scratch) {
+  using Path = SweptScratch::Path;
   const TriangleMesh& mesh = moving.model->mesh;
   const AabbTree& tree = moving.model->tree;
   const AabbTree& other = fixed.model->tree;
@@ -179,16 +179,16 @@ std::uint64_t add_passed(const Body& moving, const Pose& first, const Pose& last
   scratch.near.assign(1, 0);
   scratch.visits.assign(1, {0, 0, 1, false});
   while (!scratch.visits.empty()) {
-    const PassedScratch::Visit visit = scratch.visits.back();
+    const SweptScratch::Visit visit = scratch.visits.back();
     scratch.visits.pop_back();
     if (set.is_full(visit.node)) continue;
     const Node& node = tree.nodes[visit.node];
     // Most of what is near was passed at an earlier pose.
-    const bool is_full = node.is_leaf() ? holds(set, tree, node)
+    const bool is_full = node.is_leaf() ? contains_leaf(set, tree, node)
                                         : set.is_full(node.first) && set.is_full(node.first + 1);
     if (is_full) set.note_full(visit.node);
     if (is_full || visit.is_done) continue;
-    list_near(other, swept(node.box), visit.begin, visit.end, scratch.near);
+    list_overlapping(other, swept(node.box), visit.begin, visit.end, scratch.near);
     begin = visit.end;
     end = scratch.near.size();
     if (end == begin) continue;

@@ -1,4 +1,4 @@
-#include "rank/anytime/guess.hpp"
+#include "rank/anytime/estimate.hpp"
 
 #include "rank/crash_chain.hpp"
 #include "rank/measure_table.hpp"
@@ -22,7 +22,7 @@ double share_of(double own_kg, double other_kg) {
 }
 
 /// The weighted people in or on a body.
-double people_on(const Scene& scene, std::size_t body) {
+double people_weight_of(const Scene& scene, std::size_t body) {
   return people_weight(exposure_of(scene, body, {}), scene.harm.weights);
 }
 
@@ -48,20 +48,21 @@ Eigen::Vector3d stopped_part(const Contact& first, double friction) {
   const double normal_mps = first.closing.dot(first.normal);
   if (!(normal_mps > 0.0)) return first.closing;
   const Eigen::Vector3d along = normal_mps * first.normal;
-  const Eigen::Vector3d aside = first.closing - along;
-  const double slip_mps = aside.norm();
-  const double most_mps = friction * normal_mps;
-  return slip_mps > most_mps ? Eigen::Vector3d(along + (most_mps / slip_mps) * aside)
-                             : first.closing;
+  const Eigen::Vector3d tangential = first.closing - along;
+  const double slip_mps = tangential.norm();
+  const double friction_limit_mps = friction * normal_mps;
+  return slip_mps > friction_limit_mps
+             ? Eigen::Vector3d(along + (friction_limit_mps / slip_mps) * tangential)
+             : first.closing;
 }
 
 }  // namespace
 
-double guess_score(const Scene& scene, const Motion& ego, const Motion& other, const Contact& first,
-                   Tally& room) {
+double estimate_score(const Scene& scene, const Motion& ego, const Motion& other,
+                      const Contact& first, Tally& tally) {
   const double own_kg = scene.ego.mass_kg;
   const double other_kg = scene.actors[first.actor].mass_kg;
-  const Eigen::Vector3d stopped = stopped_part(first, scene.plain.friction);
+  const Eigen::Vector3d stopped = stopped_part(first, scene.nominal.friction);
   ContactEffect effect;
   effect.begin_s = effect.end_s = first.time_of_impact_s;
   effect.closing_mps = stopped.norm();
@@ -71,15 +72,16 @@ double guess_score(const Scene& scene, const Motion& ego, const Motion& other, c
       side_of(scene, ego_body, ego, first.time_of_impact_s, -share_of(own_kg, other_kg) * stopped);
   effect.sides[1] = side_of(scene, first.actor, other, first.time_of_impact_s,
                             share_of(other_kg, own_kg) * stopped);
-  room.begin();
-  room.add(scene, effect, scene.plain);
-  const double score = room.score(scene);
+  tally.begin();
+  tally.add(scene, effect, scene.nominal);
+  const double score = tally.score(scene);
   if (!measure_row(scene.measure).counts_people) return score;
   // Half of what the normal stops, and a quarter of all: what glances off may catch later.
   const double energy_j = 0.5 * effect.dissipated_j + 0.25 * first.closing_energy_j;
-  const double utmost_j = 0.5 * own_kg * one_person_mps * one_person_mps;
-  const double people = std::max(people_on(scene, ego_body), people_on(scene, first.actor));
-  return std::max(score, people * energy_j / utmost_j);
+  const double one_person_j = 0.5 * own_kg * one_person_mps * one_person_mps;
+  const double people =
+      std::max(people_weight_of(scene, ego_body), people_weight_of(scene, first.actor));
+  return std::max(score, people * energy_j / one_person_j);
 }
 
 }  // namespace crashrank::detail

@@ -1,4 +1,4 @@
-#include "rank/tell_contacts.hpp"
+#include "rank/report_contacts.hpp"
 
 #include "crashrank/crash/contact_law.hpp"
 #include "rank/adjoin.hpp"
@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-void fill(const ContactBody& body, const Model& model, const BodyContact& from, bool slides,
-          BodyOutcome& to) {
+void fill_outcome(const ContactBody& body, const Model& model, const BodyContact& from, bool slides,
+                  BodyOutcome& to) {
   const Vehicle& v = *body.vehicle;
   const Vector3d local = body.pose.rotation.transpose() * from.delta_v_mps;
   to.delta_v_mps = from.delta_v_mps.norm();
@@ -38,7 +38,7 @@ void fill(const ContactBody& body, const Model& model, const BodyContact& from, 
 std::size_t second_body(const Scene& scene, const CrashChain& chain, const SceneContact& contact) {
   const std::size_t body = chain.body(contact.b);
   const std::size_t joined = scene.joined_of[body];
-  if (joined == Scene::alone) return body;
+  if (joined == Scene::not_joined) return body;
   const std::vector<std::size_t>& members = scene.joined[joined].members;
   const auto away_m = [&](std::size_t actor) {
     return distance_m(rectangle_of(scene.actors[actor]), contact.outcome.point_m.head<2>());
@@ -78,20 +78,20 @@ FurtherContact further_contact(const Scene& scene, const CrashChain& chain,
   contact.slides = from.outcome.slides;
   contact.duration_s = from.outcome.duration_s;
   contact.dissipated_j = from.outcome.dissipated_j;
-  fill(from.given_a, *a.model, from.outcome.a, contact.slides, contact.outcome_a);
-  fill(from.given_b, *b.model, from.outcome.b, contact.slides, contact.outcome_b);
+  fill_outcome(from.given_a, *a.model, from.outcome.a, contact.slides, contact.outcome_a);
+  fill_outcome(from.given_b, *b.model, from.outcome.b, contact.slides, contact.outcome_b);
   return contact;
 }
 
-void tell_severity(const Scene& scene, const SceneContact& from, Contact& contact) {
+void fill_severity(const Scene& scene, const SceneContact& from, Contact& contact) {
   ContactSeverity& severity = contact.severity;
   severity.simulated = needs_crash(scene.measure);
   severity.slides = from.outcome.slides;
   severity.duration_s = from.outcome.duration_s;
   severity.dissipated_j = from.outcome.dissipated_j;
-  fill(from.given_a, *scene.ego.model, from.outcome.a, severity.slides, severity.ego);
-  fill(from.given_b, *scene.actors[contact.actor].model, from.outcome.b, severity.slides,
-       severity.other);
+  fill_outcome(from.given_a, *scene.ego.model, from.outcome.a, severity.slides, severity.ego);
+  fill_outcome(from.given_b, *scene.actors[contact.actor].model, from.outcome.b, severity.slides,
+               severity.other);
 }
 
 /// The actors that pressed on the first body in a contact, joined ones with those beside them.
@@ -101,7 +101,7 @@ std::vector<std::size_t> pressed_actors(const Scene& scene, const CrashChain& ch
   for (std::size_t k = 0; k < from.pressed_count; ++k) {
     const std::size_t actor = chain.body(from.pressed[k]);
     const std::size_t joined = scene.joined_of[actor];
-    if (joined == Scene::alone) {
+    if (joined == Scene::not_joined) {
       pressed.push_back(actor);
     } else {
       const std::vector<std::size_t>& members = scene.joined[joined].members;
@@ -148,26 +148,27 @@ Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor, 
   return contact;
 }
 
-OutcomePair outcomes_of(CandidateResult& result, const ToldContact& told) {
-  if (told.is_further) {
-    FurtherContact& contact = result.further[told.index];
+OutcomePair outcomes_of(CandidateResult& result, const ReportedContact& reported) {
+  if (reported.is_further) {
+    FurtherContact& contact = result.further[reported.index];
     return {contact.outcome_a, contact.outcome_b};
   }
-  ContactSeverity& severity = result.contacts[told.index].severity;
+  ContactSeverity& severity = result.contacts[reported.index].severity;
   return {severity.ego, severity.other};
 }
 
-std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& chain,
-                                       const std::vector<std::size_t>& order, const Impact& impact,
-                                       const Pose& ego, const Pose& other, CandidateResult& result,
-                                       std::vector<DamagePlan>& plans) {
-  std::vector<ToldContact> told;
+std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChain& chain,
+                                             const std::vector<std::size_t>& order,
+                                             const Impact& impact, const Pose& ego,
+                                             const Pose& other, CandidateResult& result,
+                                             std::vector<DamagePlan>& plans) {
+  std::vector<ReportedContact> reported;
   std::vector<DamagePlan> further_plans;
   plans.emplace_back();  // the first contact's
   bool first_acts = false;
   for (const std::size_t k : order) {
     if (k == CrashChain::without_force) {
-      told.push_back({false, 0});
+      reported.push_back({false, 0});
       continue;
     }
     const SceneContact& from = chain.contacts()[k];
@@ -176,7 +177,7 @@ std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& cha
     DamageQuery query;
     if (from.a != 0) {
       result.further.push_back(further_contact(scene, chain, from));
-      told.push_back({true, result.further.size() - 1});
+      reported.push_back({true, result.further.size() - 1});
       const FurtherContact& contact = result.further.back();
       query = {contact.a, contact.b, ImpactState::contact, 0.0, -1, -1, contact.point_m};
       further_plans.push_back(plan_damage(scene, query, from.outcome.motion, pressed_view));
@@ -186,8 +187,8 @@ std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& cha
     if (!is_first) result.contacts.push_back(later_contact(scene, chain, from));
     const std::size_t index = is_first ? 0 : result.contacts.size() - 1;
     Contact& contact = result.contacts[index];
-    tell_severity(scene, from, contact);
-    told.push_back({false, index});
+    fill_severity(scene, from, contact);
+    reported.push_back({false, index});
     query = {ego_body, contact.actor, contact.state, contact.gap_m, -1, -1, contact.point_m};
     if (is_first) {
       query.triangle_a = impact.triangle_a;
@@ -216,7 +217,7 @@ std::vector<ToldContact> tell_contacts(const Scene& scene, const CrashChain& cha
                                 motion, {});
   }
   for (DamagePlan& plan : further_plans) plans.push_back(std::move(plan));
-  return told;
+  return reported;
 }
 
 }  // namespace crashrank::detail

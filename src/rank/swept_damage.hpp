@@ -9,7 +9,7 @@
 namespace crashrank::detail {
 
 /// Memory that following paths reuses.
-struct PassedScratch {
+struct SweptScratch {
   enum class Path : std::uint8_t { unknown, clear, crossing };
   /// A node of the moving body's tree, and what its parent comes near, as a range of `near`.
   struct Visit {
@@ -26,7 +26,7 @@ struct PassedScratch {
 /// Adds the triangles of `moving` that the surface of `fixed` has passed through: those of which a
 /// corner's path, the chord from `first` to `last` (poses of moving in fixed's frame), crosses a
 /// triangle of fixed. Needs no closed surfaces. Returns the number of paths followed.
-std::uint64_t add_passed(const Body& moving, const Pose& first, const Pose& last, const Body& fixed,
-                         TriangleSet& set, PassedScratch& scratch);
+std::uint64_t add_swept_triangles(const Body& moving, const Pose& first, const Pose& last,
+                                  const Body& fixed, TriangleSet& set, SweptScratch& scratch);
 
 }  // namespace crashrank::detail

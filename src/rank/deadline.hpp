@@ -7,32 +7,32 @@ namespace crashrank::detail {
 
 /// When a ranking has to end: by a time, where there is one, or as soon as it is cancelled. Read by
 /// all its threads.
-class Watch {
+class Deadline {
 public:
   using Clock = std::chrono::steady_clock;
 
-  Watch() = default;
+  Deadline() = default;
   /// Ends when `cancel` is set; null: never.
-  explicit Watch(const std::atomic<bool>* cancel) : cancel_(cancel) {}
+  explicit Deadline(const std::atomic<bool>* cancel) : cancel_(cancel) {}
   /// Ends at that time at the latest.
-  explicit Watch(Clock::time_point until, const std::atomic<bool>* cancel = nullptr)
-      : until_(until), runs_(true), cancel_(cancel) {}
+  explicit Deadline(Clock::time_point until, const std::atomic<bool>* cancel = nullptr)
+      : time_(until), is_set_(true), cancel_(cancel) {}
 
   /// Whether there is a time.
-  bool runs() const { return runs_; }
-  Clock::time_point until() const { return until_; }
+  bool is_set() const { return is_set_; }
+  Clock::time_point time() const { return time_; }
   /// The same, by so much earlier.
-  Watch earlier_by(Clock::duration time) const { return Watch(until_ - time, cancel_); }
+  Deadline earlier_by(Clock::duration time) const { return Deadline(time_ - time, cancel_); }
   bool expired() const {
     if (cancel_ != nullptr && cancel_->load(std::memory_order_relaxed)) return true;
-    return runs_ && Clock::now() >= until_;
+    return is_set_ && Clock::now() >= time_;
   }
   /// For ImpactOptions::stop.
-  static bool stop(void* watch) { return static_cast<const Watch*>(watch)->expired(); }
+  static bool stop(void* watch) { return static_cast<const Deadline*>(watch)->expired(); }
 
 private:
-  Clock::time_point until_;
-  bool runs_ = false;
+  Clock::time_point time_;
+  bool is_set_ = false;
   const std::atomic<bool>* cancel_ = nullptr;
 };
 

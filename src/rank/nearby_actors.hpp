@@ -1,7 +1,7 @@
 #pragma once
 
+#include "rank/deadline.hpp"
 #include "rank/evaluate.hpp"
-#include "rank/watch.hpp"
 
 #include <cstdint>
 
@@ -9,12 +9,12 @@ namespace crashrank::detail {
 
 /// Fills `scratch.near` with the plans on which an actor may come near the ego in [from, until] in
 /// a future of the group, by slices of time, the soonest first.
-void find_near(const Scene& scene, const Motion& ego, const FutureGroup& group, double from_s,
-               double until_s, Scratch& scratch, RankWork& work);
+void find_nearby_actors(const Scene& scene, const Motion& ego, const FutureGroup& group,
+                        double from_s, double until_s, Scratch& scratch, RankWork& work);
 
 /// Whether the swept boxes of all candidates overlap no plan's in any time slice. False when time
 /// is up.
-bool all_are_clear(const Scene& scene, View<const Candidate> candidates, const Watch& watch,
+bool all_are_clear(const Scene& scene, View<const Candidate> candidates, const Deadline& deadline,
                    std::uint64_t& box_tests);
 
 }  // namespace crashrank::detail

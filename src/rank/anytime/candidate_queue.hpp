@@ -13,7 +13,7 @@ namespace crashrank::detail {
 /// Who can still be first, and whose turn it is to be looked at more closely. Candidates wait in a
 /// heap, the most promising on top: those of the lowest possible score, of these that of the lowest
 /// certain one, then in their own order; last those that are demoted as not feasible.
-class Race {
+class CandidateQueue {
 public:
   void prepare(std::size_t most) {
     waiting_.reserve(most);
@@ -24,44 +24,46 @@ public:
   /// All begin.
   void begin(std::size_t count);
 
-  /// Takes up to `most` from the waiting into `chosen`; 0 when nobody that waits has a part in what
+  /// Takes up to `most` from the waiting into `chosen`; 0 when none that waits has a part in what
   /// is to be decided.
-  std::size_t choose(const std::vector<Refined>& states, std::size_t most, std::uint32_t* chosen);
+  std::size_t choose(const std::vector<CandidateState>& states, std::size_t most,
+                     std::uint32_t* chosen);
 
   /// One that was chosen, or has been looked at for the first time, comes back.
-  void put_back(std::uint32_t candidate, const std::vector<Refined>& states);
+  void insert(std::uint32_t candidate, const std::vector<CandidateState>& states);
 
   /// The first place is decided: those who cannot have it get their turn for the others. False when
   /// there are none.
-  bool resume(const std::vector<Refined>& states);
+  bool requeue_beaten(const std::vector<CandidateState>& states);
 
   bool decided() const noexcept { return resumed_; }
   /// The best candidate's score is at most this.
-  double limit() const noexcept { return limit_of(tier_of_first()); }
+  double limit() const noexcept { return limit_of(first_tier()); }
 
   /// Says of everybody whether he is in the race.
-  void mark(std::vector<Refined>& states);
+  void mark_in_race(std::vector<CandidateState>& states);
 
 private:
   /// Whether the vehicle can follow it: the first place goes to the first tier that has anybody.
   enum Tier : std::uint8_t { feasible, undecided, demoted };
 
-  static Tier tier(const Refined& state) noexcept {
-    if (!state.told.feasible) return demoted;
-    return state.demand_known || state.told.known ? feasible : undecided;
+  static Tier tier(const CandidateState& state) noexcept {
+    if (!state.result.feasible) return demoted;
+    return state.demand_known || state.result.known ? feasible : undecided;
   }
-  Tier tier_of_first() const noexcept {
+  Tier first_tier() const noexcept {
     if (counts_[feasible] > 0) return feasible;
     return counts_[undecided] > 0 ? undecided : demoted;
   }
-  /// Of those yet undecided nobody knows whether their scores count.
+  /// Of those yet undecided none knows whether their scores count.
   double limit_of(Tier tier) const noexcept {
     if (tier == undecided) return std::numeric_limits<double>::infinity();
     return limits_[tier];
   }
-  bool sooner(const std::vector<Refined>& states, std::uint32_t a, std::uint32_t b) const;
-  bool can_win(const Refined& state, const std::vector<Refined>& states) const;
-  void push(const std::vector<Refined>& states, std::uint32_t candidate);
+  bool goes_first(const std::vector<CandidateState>& states, std::uint32_t a,
+                  std::uint32_t b) const;
+  bool can_be_first(const CandidateState& state, const std::vector<CandidateState>& states) const;
+  void push(const std::vector<CandidateState>& states, std::uint32_t candidate);
 
   std::vector<std::uint32_t> waiting_;  ///< a heap
   std::vector<std::uint32_t> beaten_;
@@ -70,8 +72,8 @@ private:
   std::vector<Tier> tiers_;              ///< by candidate
   std::array<std::size_t, 3> counts_{};  ///< of candidates, by tier
   std::array<double, 3> limits_{};       ///< the least of their highest scores
-  static constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t best_known_ = nobody;
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t best_known_ = none;
 };
 
 }  // namespace crashrank::detail
