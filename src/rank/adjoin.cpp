@@ -19,7 +19,8 @@ double half_extent_along(const Rectangle& r, const Vector2d& direction) {
 
 constexpr double side_gap_m = 0.05;
 
-/// How near parts of one body have to be: more where they stand end to end.
+/// Largest gap at which the bodies count as parts of one structure, m. It is larger where they
+/// stand end to end.
 double max_gap_m(const Rectangle& p, const Rectangle& q) {
   const Vector2d apart = q.center - p.center;
   double widest_gap = 0.0;
@@ -41,7 +42,8 @@ double max_gap_m(const Rectangle& p, const Rectangle& q) {
   return reach;
 }
 
-/// Separating axes of two rectangles.
+/// Separating-axis test: returns true if no side direction separates the rectangles by more than
+/// `reach_m`.
 bool boxes_within(const Rectangle& p, const Rectangle& q, double reach_m) {
   for (const Rectangle* r : {&p, &q}) {
     for (const Vector2d& axis : r->axis) {
@@ -53,10 +55,10 @@ bool boxes_within(const Rectangle& p, const Rectangle& q, double reach_m) {
   return true;
 }
 
-/// A piece of an outline.
+/// A straight piece of an outline in plan view.
 struct FixedSegment {
-  Vector2d middle;  ///< from the origin of the search, world axes, m
-  Vector2d half;    ///< from the middle to one end
+  Vector2d middle;  ///< relative to the origin of the search, world axes, m
+  Vector2d half;    ///< vector from the middle to one end, m
   double half_m = 0.0;
 };
 
@@ -83,7 +85,8 @@ bool are_near(const FixedSegment& s, const FixedSegment& t, double reach_m) {
          distance_m(t, s.middle + s.half) <= reach_m || cross_each_other(s, t);
 }
 
-/// A body's heading seen from above, as the contact law has it.
+/// Planar frame of a body: its forward axis and its origin in plan view, as the contact law uses
+/// them.
 struct Heading {
   explicit Heading(const Pose& pose)
       : forward(pose.rotation.col(0).head<2>().normalized()), at(pose.translation.head<2>()) {}
@@ -97,7 +100,7 @@ struct Heading {
   Vector2d at;
 };
 
-/// The pieces of a body's outlines that lie within reach of a rectangle, by rising band.
+/// Outline pieces of a body within `reach_m` of a rectangle, in ascending order of height bands.
 std::vector<FixedSegment> segments_near(const Body& body, const Rectangle& box,
                                         const Vector2d& origin, double reach_m) {
   const Heading heading(body.fixed_pose);
@@ -113,8 +116,9 @@ std::vector<FixedSegment> segments_near(const Body& body, const Rectangle& box,
   return near;
 }
 
-/// Segments sorted into the cells of a grid so wide that those which are near each other have their
-/// middles in cells that touch.
+/// Uniform grid over segments, keyed by their middles. A cell is at least as wide as the largest
+/// distance between the middles of two segments that are near each other, so searching a cell and
+/// its eight neighbours finds every such pair.
 class Grid {
 public:
   Grid(const std::vector<FixedSegment>& segments, double longest_half_m)
@@ -126,7 +130,8 @@ public:
     std::sort(cells_.begin(), cells_.end());
   }
 
-  /// Whether one of those around a segment is predicate, by its index.
+  /// Returns true if the predicate holds for the index of any segment in the cell of `s` or in a
+  /// neighbouring cell.
   template <class Predicate> bool any_near(const FixedSegment& s, Predicate&& predicate) const {
     const Cell own = cell_of(s);
     for (std::int64_t column = own.first - 1; column <= own.first + 1; ++column) {
@@ -164,13 +169,13 @@ bool outlines_within(const std::vector<FixedSegment>& p, const std::vector<Fixed
   });
 }
 
-/// Whether another segment faces one within reach ahead of its outer side. Both run with the body
-/// on the same hand.
+/// Returns true if `other` faces `s`: it runs in the opposite direction and crosses the outward
+/// normal of `s` within `widest_joint_m`. All segments have the body on the same side.
 bool faces(const FixedSegment& s, const FixedSegment& other) {
   constexpr double opposed = -0.5;
   const Vector2d along = s.half / s.half_m;
   if (along.dot(other.half) > opposed * other.half_m) return false;
-  // From the middle along the outward normal until the other's line.
+  // Intersection of the outward normal through the middle of `s` with the line of `other`.
   const Vector2d normal(along.y(), -along.x());
   const Vector2d apart = other.middle - s.middle;
   const double across = cross(normal, other.half);
@@ -181,13 +186,15 @@ bool faces(const FixedSegment& s, const FixedSegment& other) {
   return ahead_m > 0.0 && ahead_m <= widest_joint_m && std::abs(on_other) <= reach;
 }
 
-/// Whether one of the pieces, none of which is near the body's outlines, lies inside them.
+/// Returns true if at least one piece lies inside the outlines of the body. Requires that no piece
+/// crosses these outlines.
 bool lies_inside(const std::vector<FixedSegment>& pieces, const Body& body,
                  const Vector2d& origin) {
   const Heading heading(body.fixed_pose);
   const FixedSegment* before = nullptr;
   for (const FixedSegment& s : pieces) {
-    // Of a loop that no outline crosses all pieces lie on one side.
+    // No outline crosses the loop, so all of its pieces lie on the same side: testing the first is
+    // enough.
     const bool same_loop = before != nullptr &&
                            (s.middle - before->middle).norm() <= 1.01 * (s.half_m + before->half_m);
     before = &s;

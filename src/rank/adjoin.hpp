@@ -10,30 +10,32 @@
 
 namespace crashrank::detail {
 
-/// A fixed body's box seen from above, world axes.
+/// Bounding rectangle of a fixed body in plan view, world axes.
 struct Rectangle {
   Eigen::Vector2d center;
-  std::array<Eigen::Vector2d, 2> axis;  ///< unit
-  std::array<double, 2> half;           ///< m
+  std::array<Eigen::Vector2d, 2> axis;  ///< unit vectors of the sides
+  std::array<double, 2> half;           ///< half the side along each axis, m
 };
 
 Rectangle rectangle_of(const Body& fixed);
 
-/// From a point to the rectangle, 0 inside it, m.
+/// Distance from a point to the rectangle, m; 0 inside it.
 double distance_m(const Rectangle& rectangle, const Eigen::Vector2d& point);
 
-/// Whether two fixed bodies are parts of one: their outlines, seen from above, overlap or come
-/// within 50 mm of each other, or within `widest_joint_m` where they stand end to end, of which one
-/// is at most twice as wide as the other. The rectangles are theirs. O(1) where these are further
-/// apart, else O(n·log n) in the pieces of the outlines near each other, and O(n) a loop of them
-/// where they do not adjoin. Allocates.
+/// Returns true if two fixed bodies are parts of one structure: in plan view their outlines overlap
+/// or are at most 50 mm apart. The gap may be up to `widest_joint_m` where the bodies stand end to
+/// end, provided that the wider end is at most twice as wide as the other. `box_p` and `box_q` are
+/// the rectangles of p and q. Complexity: O(1) if the rectangles are further apart than that;
+/// otherwise O(n·log n) in the outline pieces near the other body, plus O(n) for each of their
+/// loops if the bodies do not adjoin. Allocates.
 bool adjoin(const Body& p, const Rectangle& box_p, const Body& q, const Rectangle& box_q);
 
-/// Joints between parts of one body are no wider, m.
+/// Widest gap between two parts of one structure, m.
 inline constexpr double widest_joint_m = 0.3;
 
-/// Of the pieces of a profile that is that of several bodies, those before which another faces them
-/// within `widest_joint_m`: 1, else 0. O(n·log n) where pieces are spread evenly. Allocates.
+/// For each piece of the common profile of several bodies: 1 if another piece faces it within
+/// `widest_joint_m`, that is, if it lies in a joint; otherwise 0. O(n·log n) for pieces that are
+/// spread evenly. Allocates.
 std::vector<std::uint8_t> pieces_in_joints(const Profile& profile);
 
 }  // namespace crashrank::detail

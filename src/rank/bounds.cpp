@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Sums and roots round; bounds are widened by far more than that.
+/// Widens every bound by far more than the rounding errors of sums and roots.
 constexpr double slack = 1.0 + 1e-9;
 
 double surface_area_m2(const TriangleMesh& mesh) {
@@ -24,8 +24,8 @@ double surface_area_m2(const TriangleMesh& mesh) {
   return area;
 }
 
-/// Energy that a body on its plan never exceeds. A plan ends with the horizon, and what is touched
-/// later is followed for as long as a scene lasts.
+/// Upper bound on the kinetic energy of a body that follows its plan, J. Covers the horizon and the
+/// longest simulation after it, since a body can be hit after the end of its plan.
 double max_energy_j(const Scene& scene, const Body& body, const Motion& motion) {
   if (!std::isfinite(body.mass_kg)) return 0.0;
   const MotionBound bound = motion.bound(0.0, scene.slice_s.back() + SceneOptions{}.longest_s);
@@ -34,7 +34,8 @@ double max_energy_j(const Scene& scene, const Body& body, const Motion& motion) 
   return slack * 0.5 * (body.mass_kg * speed * speed + body.vehicle.yaw_inertia_kgm2 * spin * spin);
 }
 
-/// Harm to those on a body, property apart, whatever hits it.
+/// Upper bound on the harm to the people in or on a body, without property: their weight, at a risk
+/// of 1.
 double max_people_weight(const Scene& scene, std::size_t index) {
   const Body& body = body_of(scene, index);
   HarmExposure own;
@@ -64,7 +65,7 @@ void ScoreBounds::add(const Scene& scene, std::size_t index) {
   if (scene.measure == Measure::area) limits_.area_m2 += surface_area_m2(body.model->mesh);
   limits_.intrusion_m = std::max(limits_.intrusion_m, max_intrusion_m(body.vehicle));
   if (!std::isfinite(body.mass_kg)) return;
-  // Energy about a point as far from its centre of mass as it reaches.
+  // The energy about a point at distance `arm` from the centre of mass grows by m·arm² / I at most.
   const double arm = 2.0 * body.radius_m;
   max_energy_ratio_ =
       std::max(max_energy_ratio_, 1.0 + body.mass_kg * arm * arm / body.vehicle.yaw_inertia_kgm2);
@@ -83,7 +84,7 @@ void ScoreBounds::update(const Scene& scene) {
 double ScoreBounds::upper_bound(const Scene& scene, const Motion& ego) const {
   CrashLimits limits = limits_;
   limits.energy_j = slack * (energy_sum_j_ + max_energy_j(scene, scene.ego, ego));
-  // A contact's energy, with its share of turning, is no larger than twice all there is.
+  // The closing energy of a contact, rotation included, is at most twice the total energy.
   limits.closing_energy_j = 2.0 * max_energy_ratio_ * limits.energy_j;
   return slack * measure_row(scene.measure).upper_bound(limits, scene.harm.weights);
 }
@@ -92,7 +93,8 @@ double ScoreBounds::upper_bound_displaced(const Scene& scene, const Motion& ego,
                                           Motion& displaced) const {
   double bound = upper_bound(scene, ego);
   if (!scene.futures.displaces_ego()) return bound;
-  // Energy does not depend on place and heading, and no speed between the two is further from 0.
+  // Energy does not depend on position and heading, and the largest speed occurs at one end of the
+  // interval of speed errors.
   for (const double error : scene.futures.ego_speed_errors()) {
     displaced = ego;
     displaced.displace({0.0, 0.0, 0.0, error});

@@ -8,28 +8,32 @@
 
 namespace crashrank::detail {
 
-/// What scores of a scene cannot exceed, prepared once for all its candidates. Rests on what the
-/// simulation promises: energy is never gained, momentum conserved.
+/// Upper bounds on the scores of all candidates of a scene, prepared once. They follow from two
+/// properties of the simulation: it conserves momentum and never gains energy.
 class ScoreBounds {
 public:
-  /// Makes displaced for a scene's actors and reads what does not change with their motions.
+  /// Allocates for the scene and computes everything that does not depend on the motions of the
+  /// actors.
   void prepare(const Scene& scene);
-  /// Reads the actors' motions. Allocates nothing.
+  /// Updates the kinetic energies after the motions of the actors changed. Does not allocate.
   void update(const Scene& scene);
 
-  /// No crash of a candidate that moves so can score more, whatever it meets.
+  /// Upper bound on the score of any crash of a candidate with this motion.
   double upper_bound(const Scene& scene, const Motion& ego) const;
-  /// The same in all futures, whatever the ego is displaced by. `displaced` is for a motion;
-  /// allocates only for timed motions.
+  /// Upper bound over all futures, with every error of the state of the ego that was drawn.
+  /// `displaced` is working memory for a motion; allocates only if the motion is timed poses.
   double upper_bound_displaced(const Scene& scene, const Motion& ego, Motion& displaced) const;
 
 private:
   void add(const Scene& scene, std::size_t index);
 
-  CrashLimits limits_;             ///< but for energies, which change with motions
-  double max_energy_ratio_ = 1.0;  ///< of a body's energy about any of its points to that it has
-  double energy_sum_j_ = 0.0;      ///< of all actors' motions
-  std::vector<double> actor_energy_j_;  ///< by actor, the most on any of its plans
+  /// maxima that do not depend on motions; the energies are added for each candidate
+  CrashLimits limits_;
+  /// largest ratio of the kinetic energy of a body about one of its points to that about its centre
+  /// of mass
+  double max_energy_ratio_ = 1.0;
+  double energy_sum_j_ = 0.0;           ///< sum over all actors, J
+  std::vector<double> actor_energy_j_;  ///< by actor: maximum over its plans, J
 };
 
 }  // namespace crashrank::detail

@@ -12,11 +12,11 @@ namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
-/// At 30 m/s a car moves a third of its length in a step.
+/// At 30 m/s a car moves by a third of its length in one step.
 constexpr double longest_step_s = 0.05;
 constexpr double max_steps = 400.0;
 
-/// A body and its ego_poses.
+/// A body with its sampled trajectory.
 struct MovingBody {
   const BodyOutline& outline;
   const Motion& motion;
@@ -31,7 +31,7 @@ double fastest_point_mps(const Motion& motion, const BodyOutline& outline, doubl
   return bound.speed_mps + bound.angular_radps * outline.radius_m();
 }
 
-/// Whether bodies stand so far above each other that they pass over and under.
+/// Returns true if the height ranges of the bodies are disjoint, so that one passes over the other.
 bool passes_over(const Body& a, const Motion& of_a, const Body& b, const Motion& of_b) {
   const auto reach = [](const Body& body, const Motion& motion) {
     const Pose pose = motion.pose_at(0.0);
@@ -44,7 +44,7 @@ bool passes_over(const Body& a, const Motion& of_a, const Body& b, const Motion&
   return low_a > high_b || low_b > high_a;
 }
 
-/// Least outline distance of two bodies on their trajectories.
+/// Smallest distance between the outlines of two bodies along their trajectories.
 class MinimumDistance {
 public:
   MinimumDistance(const MovingBody& a, const MovingBody& b, double step_s, const StopCheck& stop)
@@ -62,10 +62,12 @@ public:
     }
   }
 
-  /// No distance is less. Between two times a distance falls by half of the travel at most.
+  /// Lower bound on the distance: between two samples it is smaller than at the nearer sample by at
+  /// most half the relative travel of one step.
   double lower_bound_m() const noexcept { return coarse_m_ - 0.5 * travel_m_; }
 
-  /// Looks closely only at the times at which the rectangles come near enough.
+  /// Returns the smallest distance. Computes exact distances only at times at which the bounding
+  /// rectangles are near enough to improve the result.
   double find() {
     double best = at(nearest_, unbounded);
     double before = unbounded;
@@ -86,7 +88,8 @@ private:
   double at(std::size_t i, double cutoff_m) {
     return outline_distance_m(a_.outline, a_.poses[i], b_.outline, b_.poses[i], cutoff_m, chains_);
   }
-  /// Infinity where nothing below `best` is near.
+  /// Returns the distance at sample `i`, or infinity if no distance below `best` is possible near
+  /// that time.
   double near(std::size_t i, double best) {
     const double reach = best + travel_m_;
     if (rectangle_distance_m(a_.outline, a_.poses[i], b_.outline, b_.poses[i]) >= reach) {
@@ -99,14 +102,15 @@ private:
     return outline_distance_m(a_.outline, a_.at(time_s), b_.outline, b_.at(time_s), cutoff_m,
                               chains_);
   }
-  /// Golden section between the neighbours of a time.
+  /// Golden-section search between the neighbours of sample `i`.
   double refine(std::size_t i, double here) {
     constexpr double golden = 0.6180339887498949;
     constexpr int rounds = 10;  // 0.1 s · 0.618^10 is less than a millisecond
     const double end_s = step_s_ * static_cast<double>(a_.poses.size() - 1);
     const double middle = step_s_ * static_cast<double>(i);
     const double cutoff = here + travel_m_;
-    // Most often the least is at one of the ends, and the distance falls until there.
+    // A minimum at one end of the horizon is the most frequent case: one evaluation just inside
+    // shows that the distance still falls towards the end.
     const bool at_end = i == 0 || i + 1 == a_.poses.size();
     const double inside = middle + (i == 0 ? 0.05 : -0.05) * step_s_;
     if (at_end && at_time(inside, cutoff) >= here) return here;
@@ -153,7 +157,8 @@ bool overlap(const MovingBody& a, const PlanarPose& pose_a, const MovingBody& b,
          !(rectangle_distance_m(a.outline, pose_a, b.outline, pose_b) > 0.0);
 }
 
-/// Whether b is, `lag_s` later than a, where a was around step i.
+/// Returns true if b, at some time near step `i` shifted by `lag_s`, overlaps the place of a at the
+/// unshifted time.
 bool overlaps_near(const MovingBody& a, const MovingBody& b, double step_s, std::size_t i,
                    double lag_s) {
   constexpr int parts = 8;
@@ -168,7 +173,8 @@ bool overlaps_near(const MovingBody& a, const MovingBody& b, double step_s, std:
   return false;
 }
 
-/// Least time between a and b at one place, where it is not above `most_s`.
+/// Smallest time between a and b occupying the same place, if it is at most `most_s`; otherwise
+/// infinity.
 double least_time_gap_s(const MovingBody& a, const MovingBody& b, double step_s, double most_s,
                         const StopCheck& stop) {
   constexpr std::size_t parts = 16;
@@ -177,7 +183,7 @@ double least_time_gap_s(const MovingBody& a, const MovingBody& b, double step_s,
     return step_s / static_cast<double>(parts) * static_cast<double>(part);
   };
   for (std::size_t lag = 0; lag < count && !stop(); ++lag) {
-    // What is found at one lag of whole steps may begin up to two steps before it.
+    // An overlap found at a whole-step lag can begin up to two steps earlier.
     if (lag > 2 && lag_s((lag - 2) * parts) > most_s) break;
     std::size_t least = lag * parts;
     bool overlaps = false;
@@ -231,8 +237,8 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
                        {ego_poses.data(), ego_poses.size()},
                        fastest_point_mps(ego, *scene.ego.outline, scene.slice_s.back())};
   Clearance least;
-  // A pair is left out where it is known to be further apart than another: by no bit does that
-  // decide the least.
+  // A pair is skipped only if its lower bound is not below the smallest distance so far, so
+  // skipping cannot change any bit of the result.
   double nearest = farthest_clearance_m;
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t p = 0; p < scene.futures.own_plans(); ++p) {

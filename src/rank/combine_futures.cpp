@@ -9,7 +9,8 @@
 namespace crashrank::detail {
 namespace {
 
-/// Least and greatest of the score and its samples under its own risk model.
+/// Sets the intervals to the range of the score and of its samples; for harm only samples with the
+/// chosen risk model count.
 void add_intervals(const Scene& scene, CandidateResult& result) {
   result.score_interval = {*result.score, *result.score};
   result.numerical_interval = result.score_interval;
@@ -25,10 +26,10 @@ void add_intervals(const Scene& scene, CandidateResult& result) {
   }
 }
 
-/// The ego before all actors.
+/// Sort key: the ego precedes all actors.
 std::size_t rank_of_body(std::size_t body) { return body + 1; }
 
-/// Mean over the futures.
+/// Mean risk of the people of each body over all futures.
 std::vector<PersonRisk> mean_risks(const std::vector<CandidateResult>& results,
                                    const std::vector<SimulatedOutcome>& outcomes) {
   std::vector<PersonRisk> people;

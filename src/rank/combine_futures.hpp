@@ -6,19 +6,19 @@
 
 namespace crashrank::detail {
 
-/// The result of a candidate from those of its outcomes: contacts and damage of the first, which is
-/// the likeliest future's, scores and samples of all by the scene's risk measure. `outcomes` tell
-/// which futures each result is of.
+/// Combines the results of all simulated outcomes of a candidate. Contacts and damage are those of
+/// the first outcome, which contains the likeliest future; score and samples are the risk measure
+/// of the scene over all futures. `outcomes[k].futures` lists the futures of `results[k]`.
 CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>&& results,
                                 const std::vector<SimulatedOutcome>& outcomes, Scratch& scratch);
 
-/// The scene's risk measure of scores by future. Sums run in the order of the futures, whichever
-/// share an outcome.
+/// Risk measure of the scene, applied to one score for each future. Sums run in the order of the
+/// futures, so the result does not depend on which futures share a simulation.
 double risk_of_futures(const Scene& scene, View<const double> scores,
                        std::vector<WeightedScore>& weighted);
 
-/// Probability of the futures of a group in which the ego touches somebody, from the hits that were
-/// found, added to that of the groups before.
+/// Adds to `before` the probability of the futures of a group in which the ego has a contact,
+/// according to the hits in `scratch`.
 double collision_probability(const Scene& scene, const FutureGroup& group, const Scratch& scratch,
                              double before);
 

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// No wheels are turned further, rad.
+/// Largest steering angle of the wheels, rad.
 constexpr double most_steering_rad = 0.7;
 
 SideEffect side_of(std::size_t body, const ContactBody& given, const BodyContact& contact) {
@@ -41,7 +41,7 @@ SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
   options.grip = scene.grip;
   options.drivable = scene.road.drivable;
   options.off_road_grip = scene.road.off_road_grip.value_or(scene.grip);
-  // A candidate that touches nobody is looked at until the horizon, and so is what follows here.
+  // Like candidates without contact, the simulation is evaluated at least until the horizon.
   options.until_s = scene.slice_s.back();
   options.fastest_plan_mps = scene.fastest_plan_mps;
   options.records_track =
@@ -59,7 +59,7 @@ double closing_energy_j(double mass_a_kg, double mass_b_kg, double speed_mps) {
 }
 
 ContactVariant variant_of(const HarmSample& sample) {
-  // What friction is stated for is the pair of painted panels; the others scale with it.
+  // The friction of a sample is stated for a pair of painted panels; other pairs scale with it.
   const double panels = friction_between(Surface::sheet_metal, Surface::sheet_metal);
   return {sample.friction / panels, sample.strength, 1.0};
 }
@@ -125,7 +125,8 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
              options_of(scene, sample));
 }
 
-/// By what they are and where, so that no answer depends on the order of the actors.
+/// Sorts the bodies by their properties and states, so that the result does not depend on the order
+/// of the actors.
 void CrashChain::sort_actors(double time_s) {
   sorted_.clear();
   for (const SceneBody& body : bodies_) {
@@ -163,7 +164,8 @@ void CrashChain::finish() {
 ContactEffect CrashChain::effect(std::size_t index) const {
   const View<const SceneContact> all = contacts();
   const SceneContact& contact = all[index];
-  // What two bodies close with again they had before. Contacts of a pair are in order.
+  // Closing energy counts only in the first contact of a pair. The contacts of a pair are in order
+  // of time.
   const bool again = std::any_of(all.begin(), all.begin() + index, [&](const SceneContact& before) {
     return before.a == contact.a && before.b == contact.b;
   });
@@ -215,7 +217,8 @@ void CrashChain::effects(std::vector<ContactEffect>& effects,
     touch.begin_s = touch.end_s = first_->time_of_impact_s;
     touch.closing_mps = first_->closing_speed_mps;
     touch.sides[1].body = first_->actor;
-    // Where the two meet with a force later, their energy is counted there.
+    // If the same bodies have a contact with force later, their closing energy is counted in that
+    // one.
     const bool has_later_force =
         std::any_of(all.begin(), all.end(), [&](const SceneContact& contact) {
           return body(contact.a) == ego_body && body(contact.b) == first_->actor;

@@ -9,38 +9,43 @@
 
 namespace crashrank::detail {
 
-/// Share of the tyres' grip with which vehicles brake after a contact, or more where the manoeuvre
-/// did: 0.36 g on a dry road, between a free roll (0.1 g) and locked wheels (0.7 g). A choice.
+/// Smallest share of the grip of the tyres with which vehicles brake after a contact: 0.36 g on a
+/// dry road, between coasting (0.1 g) and locked wheels (0.7 g). A manoeuvre that brakes harder
+/// keeps its braking. A design choice.
 inline constexpr double brake_after_contact = 0.45;
 
-/// Everything that follows from a candidate's first contact, simulated some steps at a time. One
-/// object serves any number of candidates, one after another; one for each thread.
+/// Simulation of the scene that follows from the first contact of a candidate, a limited number of
+/// steps at a time. One object serves any number of candidates in sequence; each thread needs its
+/// own.
 class CrashChain {
 public:
-  /// Room for the scene: nothing allocates after it.
+  /// Allocates for the scene; no other member allocates.
   void prepare(const Scene& scene);
 
-  /// Begins with the ego on its motion in a future at its first contact, the actors on their plans
-  /// in that future; all of them outlive the run.
+  /// Starts at the first contact of the ego on its motion in a future, with the actors on their
+  /// plans in that future. All arguments must outlive the run.
   void begin(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
              const HarmSample& sample);
-  /// Takes at most so many steps; false once everything rests.
+  /// Simulates at most `steps` steps; returns false once all bodies are at rest.
   bool advance(int steps) { return run_.advance(steps); }
   void finish();
 
-  /// Contacts with a force that are over.
+  /// Contacts that had a force and have ended.
   View<const SceneContact> contacts() const { return run_.contacts(); }
-  /// The bodies of those: an actor, or the ego; of joined bodies the first contact's, or the first
-  /// member.
+  /// Body of that index in a contact: an actor or the ego. Of joined bodies it is the actor of the
+  /// first contact or, otherwise, their first member.
   std::size_t body(std::size_t index) const { return actors_[index]; }
-  /// Effect of the contact of that index in `contacts`, whatever follows it.
+  /// Effect of the contact with that index in `contacts`, independent of later contacts.
   ContactEffect effect(std::size_t index) const;
-  /// Stands for the first contact where the outlines do not press: an effect without effects.
+  /// Index of a first contact whose outlines do not press on each other: it has an effect with zero
+  /// forces.
   static constexpr std::size_t without_force = static_cast<std::size_t>(-1);
-  /// Effects of all contacts by their begins. `order`: the index of each in `contacts`.
+  /// Effects of all contacts in the order of their begin times. `order` gets the index of each in
+  /// `contacts`.
   void effects(std::vector<ContactEffect>& effects, std::vector<std::size_t>& order) const;
   const SceneRun& run() const noexcept { return run_; }
-  /// Marks the plans that came near the chain while it was simulated, or would have.
+  /// Marks in `relevant` the plans of uncertain actors that influenced the simulation, or would
+  /// have: those that came near its bodies.
   void mark_relevant_plans(const Scene& scene, std::vector<char>& relevant) const;
 
 private:
@@ -54,18 +59,18 @@ private:
   const Contact* first_ = nullptr;
   SceneRun run_;
   std::vector<SceneBody> bodies_;
-  std::vector<std::size_t> actors_;  ///< by body of the run
+  std::vector<std::size_t> actors_;  ///< by body of the run: actor index or `ego_body`
   std::vector<SortedBody> sorted_;
 };
 
-/// Velocity of the lower body's material against the other's as a contact begins, where its force
-/// acts in the mean, m/s.
+/// Velocity of the material of body a relative to that of body b at the begin of a contact, at the
+/// mean point of the force, horizontal, m/s.
 Eigen::Vector3d closing_of(const SceneContact& contact);
 
 /// ½·reduced mass·v²; one of the masses may be infinite. J.
 double closing_energy_j(double mass_a_kg, double mass_b_kg, double speed_mps);
 
-/// The factors of a sample on the contact law's own values.
+/// Factors of a sample relative to the default parameters of the contact law.
 ContactVariant variant_of(const HarmSample& sample);
 
 }  // namespace crashrank::detail

@@ -8,8 +8,9 @@
 namespace crashrank::detail {
 namespace {
 
-/// The first body moves no further than this from one pose to the next, unless the record's
-/// neighbours are further apart: what lies between them is found by following corners.
+/// Largest displacement of body a between two selected poses, m, unless consecutive poses of the
+/// record are further apart. Triangles that are passed between two poses are found by following
+/// corners.
 constexpr double pose_spacing_m = 0.1;
 
 Box bounds_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
@@ -45,7 +46,7 @@ Box expanded(const Box& box, float by) {
   return result;
 }
 
-// How far a point in a's coordinates moves in the frame of b.
+// Displacement of a point of a, given in the coordinates of a, in the frame of b, m.
 double displacement_of_point_m(const ContactPoses& from, const ContactPoses& to,
                                const Eigen::Vector3d& in_a_m) {
   const Pose before = relative(from.b, from.a);
@@ -55,7 +56,7 @@ double displacement_of_point_m(const ContactPoses& from, const ContactPoses& to,
       .norm();
 }
 
-// How far the corner of a's box that moves most gets in b's frame.
+// Largest displacement of any corner of the box of a in the frame of b, m.
 double displacement_of_box_m(const Body& a, const ContactPoses& from, const ContactPoses& to) {
   double moved_m = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -67,8 +68,8 @@ double displacement_of_box_m(const Body& a, const ContactPoses& from, const Cont
   return moved_m;
 }
 
-// Entries of a record that stand for all: the first, the one at which the contact point has got
-// furthest, the last, and as many between them as keep neighbours close.
+// Selects poses of a record: the first, the one at which the contact point has moved furthest, the
+// last, and enough others to keep the displacement between neighbours small.
 std::vector<std::size_t> select_poses(const Body& a, View<const ContactPoses> record,
                                       std::size_t furthest) {
   std::vector<std::size_t> chosen{0};
@@ -81,7 +82,7 @@ std::vector<std::size_t> select_poses(const Body& a, View<const ContactPoses> re
   return chosen;
 }
 
-// Whether a body can touch the first at one of the poses.
+// Returns true if the bounding spheres of the bodies overlap at one of the poses.
 bool comes_near(const Body& first, const Body& other, const std::vector<Pose>& poses) {
   const double reach_m = first.radius_m + other.radius_m;
   return std::any_of(poses.begin(), poses.end(),
@@ -143,7 +144,7 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
   const std::vector<std::size_t> chosen = select_poses(a, record, furthest);
   const auto add_path = [&](std::size_t actor) {
     const Body& body = scene.actors[actor];
-    // Of joined bodies the record has the common pose.
+    // For joined bodies the record holds their common pose; each member needs its own.
     const bool is_fixed = !body.vehicle.movable();
     const Pose fixed_pose = body.fixed_pose;
     DamagePath path;

@@ -5,30 +5,30 @@
 
 namespace crashrank::detail {
 
-/// When a ranking has to end: by a time, where there is one, or as soon as it is cancelled. Read by
-/// all its threads.
+/// End of a ranking: an optional point of time, and an optional flag that cancels it earlier. Read
+/// by all threads of the ranking.
 class Deadline {
 public:
   using Clock = std::chrono::steady_clock;
 
   Deadline() = default;
-  /// Ends when `cancel` is set; null: never.
+  /// Expires when `cancel` is set; null: never.
   explicit Deadline(const std::atomic<bool>* cancel) : cancel_(cancel) {}
-  /// Ends at that time at the latest.
+  /// Expires at the given time at the latest.
   explicit Deadline(Clock::time_point until, const std::atomic<bool>* cancel = nullptr)
       : time_(until), is_set_(true), cancel_(cancel) {}
 
-  /// Whether there is a time.
+  /// Returns true if there is a point of time.
   bool is_set() const { return is_set_; }
   Clock::time_point time() const { return time_; }
-  /// The same, by so much earlier.
+  /// The same deadline, earlier by the given duration.
   Deadline earlier_by(Clock::duration time) const { return Deadline(time_ - time, cancel_); }
   bool expired() const {
     if (cancel_ != nullptr && cancel_->load(std::memory_order_relaxed)) return true;
     return is_set_ && Clock::now() >= time_;
   }
-  /// For ImpactOptions::stop.
-  static bool stop(void* watch) { return static_cast<const Deadline*>(watch)->expired(); }
+  /// Callback for ImpactOptions::stop; `deadline` points to a Deadline.
+  static bool stop(void* deadline) { return static_cast<const Deadline*>(deadline)->expired(); }
 
 private:
   Clock::time_point time_;

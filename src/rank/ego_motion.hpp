@@ -5,8 +5,8 @@
 
 namespace crashrank::detail {
 
-/// The candidate's motion as the ego follows it in a future: its own, or `displaced`, which gets it
-/// displaced. Allocates only for timed motions.
+/// Motion of the ego in a future: that of the candidate or, if the state of the ego has errors,
+/// `displaced`, which is set to the displaced motion. Allocates only for timed motions.
 inline const Motion& ego_motion(const Scene& scene, const Candidate& candidate, std::size_t future,
                                 Motion& displaced) {
   const Futures& futures = scene.futures;

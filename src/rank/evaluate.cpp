@@ -33,7 +33,7 @@ void add_grazes(const Scene& scene, const Scratch& scratch, std::size_t future,
   });
 }
 
-/// Adds damage to that of a body from earlier contacts; a triangle hit twice counts once.
+/// Merges the damage of another contact of a body; a triangle that is hit twice counts once.
 void merge(const BodyDamage& more, BodyDamage& whole) {
   std::vector<std::uint32_t> both;
   std::set_union(whole.triangles.begin(), whole.triangles.end(), more.triangles.begin(),
@@ -42,7 +42,7 @@ void merge(const BodyDamage& more, BodyDamage& whole) {
   whole.region.grow(more.region);
 }
 
-/// By body: the damage of all contacts together.
+/// Damage of all contacts together, by body.
 std::map<std::size_t, BodyDamage> total_damage(const Scene& scene, const CandidateResult& result) {
   std::map<std::size_t, BodyDamage> whole;
   const auto add = [&whole](std::size_t body, const BodyDamage& damage) {
@@ -67,8 +67,8 @@ double damage_score(const std::map<std::size_t, BodyDamage>& damage, const Measu
   return score;
 }
 
-/// The place among a candidate's effects of each sample's: samples that differ in risk alone share
-/// their simulation.
+/// For each sample the index of its simulation in SimulatedOutcome::effects. Samples that differ
+/// only in the risk model and its speeds share a simulation.
 std::vector<std::size_t> simulation_of_sample(const Scene& scene) {
   const auto same = [](const HarmSample& p, const HarmSample& q) {
     return p.friction == q.friction && p.strength == q.strength && p.step == q.step &&
@@ -83,7 +83,7 @@ std::vector<std::size_t> simulation_of_sample(const Scene& scene) {
   return places;
 }
 
-/// Simulates the chain of a first contact in a future and a sample.
+/// Simulates the scene that follows from a first contact, in one future and one sample.
 void simulate_chain(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
                     const HarmSample& sample, Scratch& scratch, RankWork& work,
                     std::vector<ContactEffect>& effects) {
@@ -96,14 +96,16 @@ void simulate_chain(const Scene& scene, const Motion& ego, std::size_t future, c
   work.crash_pieces += scratch.chain.run().work();
 }
 
-/// What events of bodies come to: contacts of an event that is over by now.
+/// Final values of all events. Needed because a contact is tallied before later contacts extend its
+/// event.
 struct EventTotals {
-  std::map<std::pair<std::size_t, std::size_t>, BodyEvent> last;  ///< by body and event
+  /// by body and number of the event
+  std::map<std::pair<std::size_t, std::size_t>, BodyEvent> last;
 
   void note(std::size_t body, const BodyEvent& event) { last[{body, event.number}] = event; }
 };
 
-/// The score of the nominal variant; each contact learns its event and what it adds to the harm.
+/// Returns the score of the nominal sample and sets the event and the added harm of each contact.
 double score_nominal(const Scene& scene, const SimulatedOutcome& from, Tally& tally,
                      CandidateResult& result) {
   const MeasureRow& row = measure_row(scene.measure);
@@ -148,7 +150,7 @@ double score_nominal(const Scene& scene, const SimulatedOutcome& from, Tally& ta
   return tally.score(scene);
 }
 
-/// What the candidate scores in every sample, leaving the road included.
+/// Appends the score of the candidate in every sample, including the harm of leaving the road.
 void score_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
                    double leaving, Tally& tally, CandidateResult& result) {
   const std::vector<std::size_t> place = simulation_of_sample(scene);
@@ -165,7 +167,7 @@ void score_samples(const Scene& scene, const std::vector<std::vector<ContactEffe
   }
 }
 
-/// Follows one candidate through its crash in a future. False where it was stopped.
+/// Simulates a candidate in one future. Returns false if it was stopped.
 bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, Scratch& scratch,
                      RankWork& work, SimulatedOutcome& found) {
   std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
@@ -207,7 +209,8 @@ double first_contact_s(const FutureOutcome& outcome) {
   return outcome.collides ? outcome.time_of_impact_s : std::numeric_limits<double>::infinity();
 }
 
-/// How far the plan is followed; nowhere where no future is known.
+/// How far the plan of the ego is followed: until its first contact or the horizon; time 0 if no
+/// future is known.
 FollowedPlan followed_plan(const Scene& scene, const std::vector<FutureOutcome>& futures) {
   FollowedPlan followed;
   for (const FutureOutcome& outcome : futures) {
@@ -219,7 +222,8 @@ FollowedPlan followed_plan(const Scene& scene, const std::vector<FutureOutcome>&
   return followed;
 }
 
-/// What is to be said besides the crash, of a candidate whose futures are known.
+/// Fills in demand, feasibility, clearances and the state at the horizon of a candidate whose
+/// futures are known.
 void add_manoeuvre(const Scene& scene, const Candidate& candidate,
                    const std::optional<RoadLeaving>& leaving, Scratch& scratch,
                    CandidateResult& result) {
@@ -240,7 +244,7 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
   if (!result.collides) result.at_horizon = facts.at_horizon;
 }
 
-/// Reads the damage of one outcome and scores it.
+/// Evaluates the damage and the score of one outcome.
 CandidateResult finish_outcome(const Scene& scene, SimulatedOutcome& outcome,
                                PrecomputedPairs& found, Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(outcome.result);
@@ -264,7 +268,8 @@ CandidateResult finish_outcome(const Scene& scene, SimulatedOutcome& outcome,
   return result;
 }
 
-/// An outcome without contact that scores the same: two such outcomes do not differ.
+/// Returns an outcome without contact that has the same score, or null. Two such outcomes count as
+/// one.
 SimulatedOutcome* same_without_contact(const Scene& scene,
                                        const std::optional<RoadLeaving>& leaving,
                                        std::vector<SimulatedOutcome>& outcomes) {
@@ -278,8 +283,8 @@ SimulatedOutcome* same_without_contact(const Scene& scene,
   return same != outcomes.end() ? &*same : nullptr;
 }
 
-/// Follows one candidate through its crashes in the futures of a group, beginning with one of them.
-/// False where it was stopped.
+/// Simulates a candidate in the futures of a group, beginning with future `first`. Returns false if
+/// it was stopped.
 bool simulate_group(const Scene& scene, const Candidate& candidate, std::size_t first,
                     Scratch& scratch, RankWork& work, SimulatedCandidate& found) {
   const Futures& futures = scene.futures;
@@ -316,7 +321,8 @@ bool simulate_group(const Scene& scene, const Candidate& candidate, std::size_t 
     each.futures.assign(scratch.same.begin(), scratch.same.end());
     each.summary.futures = each.futures.size();
     each.summary.is_likeliest = future == futures.likeliest();
-    // Damage is reported of the likeliest future alone; elsewhere it counts where it is the score.
+    // Results report damage for the likeliest future only; for the others it is evaluated only if
+    // it is the score.
     if (!each.summary.is_likeliest && !scored_by_damage(scene.measure)) each.plans.clear();
     for (const std::uint32_t f : scratch.same) each.summary.probability += futures.probability(f);
   }
@@ -368,7 +374,7 @@ namespace {
 CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
                                  SimulatedCandidate&& simulated, PrecomputedPairs found,
                                  Scratch& scratch, RankWork& work) {
-  // The likeliest future's, in which the ego is not displaced.
+  // Leaving the road in the likeliest future, in which the ego is not displaced.
   const std::optional<RoadLeaving> leaving =
       simulated.outcomes.empty()
           ? find_leaving(scene.road, scene.ego, candidate.motion, scene.slice_s.back())
@@ -393,7 +399,7 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
   result.score_interval = {0.0, bounds.upper_bound_displaced(scene, candidate.motion, scratch.ego) +
                                     max_leaving_score(scene, leaving)};
   result.numerical_interval = result.score_interval;
-  // What it asks for at its begin is all that is known of it.
+  // For a candidate that was not simulated only the demand at time 0 is known.
   result.demand = demand_until(scene, candidate, 0.0, leaving);
   result.feasible = is_feasible(candidate, result.demand);
   return result;
@@ -404,7 +410,7 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
 CandidateResult finish(const Scene& scene, const Candidate& candidate,
                        SimulatedCandidate&& simulated, PrecomputedPairs found, Scratch& scratch,
                        RankWork& work) {
-  // What is evaluated is reported in full, also after the ranking was cancelled.
+  // An evaluated candidate is reported completely, even if the ranking was cancelled meanwhile.
   const StopCheck kept = std::exchange(scratch.stop, {});
   CandidateResult result =
       finish_unstopped(scene, candidate, std::move(simulated), found, scratch, work);

@@ -14,9 +14,10 @@
 
 namespace crashrank::detail {
 
-/// Memory that evaluating candidates reuses, one for each worker.
+/// Working memory of an evaluation, reused from candidate to candidate; one for each worker.
 struct Scratch {
-  /// A plan on which an actor's swept box overlaps the ego's, and in which slices.
+  /// A plan on which the swept box of an actor overlaps that of the ego, with the first and last
+  /// time slice in which it does.
   struct Near {
     std::size_t plan = 0;
     std::size_t first_slice = 0;
@@ -24,69 +25,71 @@ struct Scratch {
   };
   struct Hit {
     std::size_t plan = 0;
-    std::size_t actor = 0;  ///< whose plan it is
+    std::size_t actor = 0;  ///< actor that follows the plan
     Impact impact;
   };
   std::vector<Near> near;
-  std::vector<std::size_t> place;  ///< by plan: where it is in `near`, or none
+  std::vector<std::size_t> place;  ///< by plan: index in `near`, or none
   std::vector<Hit> hits;
-  std::vector<double> first_s;  ///< by future, while hits are searched
+  std::vector<double> first_s;  ///< by future: time of the first contact so far, s
   std::vector<double> until_s;
-  std::vector<char> relevant;            ///< by plan, see Futures::split
-  bool needs_left_out = false;           ///< see Futures::needs_left_out; of all since it was false
-  std::vector<std::uint32_t> same;       ///< futures that share an outcome
-  std::vector<std::uint32_t> remaining;  ///< and those still to be evaluated
-  std::vector<std::uint32_t> others;     ///< while these are split
-  std::vector<WeightedScore> weighted;   ///< while futures are combined
-  Motion ego;                            ///< in a future that displaces it
+  std::vector<char> relevant;       ///< by plan: it influences the outcome, see Futures::split
+  bool needs_left_out = false;      ///< see Futures::needs_left_out; remains true once it is set
+  std::vector<std::uint32_t> same;  ///< futures with the same outcome as the current one
+  std::vector<std::uint32_t> remaining;  ///< futures that remain to be simulated
+  std::vector<std::uint32_t> others;     ///< working memory for splitting them
+  std::vector<WeightedScore> weighted;   ///< working memory for combining futures
+  Motion ego;                            ///< motion of the ego in a future that displaces it
   ImpactWorkspace impact;
   CrashChain chain;
-  std::vector<PlanarPose> ego_poses;  ///< of the candidate
+  std::vector<PlanarPose> ego_poses;  ///< sampled trajectory of the candidate
   std::vector<ContactEffect> effects;
   std::vector<std::size_t> order;
   Tally tally;
   DamageScratch damage;
-  /// Asked by all searches and before each simulation.
+  /// Checked by all searches and before each simulation.
   StopCheck stop;
 
   bool stopped() const { return stop(); }
 
-  /// Room for a scene: nothing but its damage allocates after it.
+  /// Allocates for a scene; afterwards only the damage search allocates.
   void prepare(const Scene& scene);
 };
 
-/// A candidate followed through its crash in futures that do not differ for it, with the damage
-/// still to be read.
+/// Result of simulating a candidate in futures that do not differ for it. Damage is not evaluated
+/// yet.
 struct SimulatedOutcome {
-  CandidateResult result;                 ///< contacts without damage, grazes
-  std::vector<DamagePlan> plans;          ///< by contact, then by further contact
-  std::vector<ReportedContact> reported;  ///< by effect of the nominal variant
-  /// Of the nominal variant, then of those of the samples.
+  CandidateResult result;         ///< contacts without damage, and grazes
+  std::vector<DamagePlan> plans;  ///< by contact, followed by the further contacts
+  /// place of each effect of the nominal sample in the result
+  std::vector<ReportedContact> reported;
+  /// Effects of the nominal sample, followed by those of the other simulated samples.
   std::vector<std::vector<ContactEffect>> effects;
-  FutureOutcome summary;               ///< without its score
-  std::optional<RoadLeaving> leaving;  ///< of the ego's motion until the horizon
-  std::vector<std::uint32_t> futures;  ///< that it is of
+  FutureOutcome summary;  ///< summary of the outcome, without its score
+  /// first moment off the road on the motion of the ego until the horizon
+  std::optional<RoadLeaving> leaving;
+  std::vector<std::uint32_t> futures;  ///< the futures that have this outcome
 };
 
-/// The same in all futures.
+/// Results of simulating a candidate in all futures.
 struct SimulatedCandidate {
-  std::vector<SimulatedOutcome> outcomes;  ///< the likeliest future's first
+  std::vector<SimulatedOutcome> outcomes;  ///< the first contains the likeliest future
   double collision_probability = 0.0;
-  bool decided = true;  ///< else the search came to no end or was stopped
+  bool decided = true;  ///< false: a search stayed undecided or was stopped
 };
 
-/// Follows one candidate through its crash. Depends on the scene and the candidate alone, as do
-/// the others here, unless it is stopped: then nothing is known of it.
+/// Simulates the crashes of a candidate in all futures. Like the functions below it depends on the
+/// scene and the candidate alone, unless it is stopped: then its result must not be used.
 SimulatedCandidate simulate_candidate(const Scene& scene, const Candidate& candidate,
                                       Scratch& scratch, RankWork& work);
 
-/// Reads the damage, scores it and combines the futures. `found` is of the first contact's first
-/// pose; those of the contacts after it follow.
+/// Evaluates damage and scores of all outcomes and combines the futures. `found.first` is the query
+/// of the first pose of the first contact; those of later contacts follow it.
 CandidateResult finish(const Scene& scene, const Candidate& candidate,
                        SimulatedCandidate&& simulated, PrecomputedPairs found, Scratch& scratch,
                        RankWork& work);
 
-/// Both at once, on the calling thread.
+/// Calls simulate_candidate and finish on the calling thread.
 CandidateResult evaluate(const Scene& scene, const Candidate& candidate, Scratch& scratch,
                          RankWork& work);
 

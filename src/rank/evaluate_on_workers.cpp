@@ -13,12 +13,11 @@
 namespace crashrank::detail {
 namespace {
 
-/// Candidates whose pairs are held at a time, for each thread: enough that all stay busy, few
-/// enough that memory does not grow with the scenario and that what is known when the caller ends
-/// the ranking is soon told.
+/// Candidates for each thread whose pairs are held at a time: enough to keep all threads busy, few
+/// enough that memory does not grow with the scenario and that a cancelled ranking returns soon.
 constexpr std::size_t candidates_per_worker = 16;
 
-/// Where depth is left to the dispatcher it cuts a batch no finer than this.
+/// Largest distribution depth if the dispatcher chooses the depth.
 constexpr std::uint32_t auto_deepest = 12;
 
 Result<Dispatcher> start_dispatcher(unsigned workers) {
@@ -30,7 +29,7 @@ Result<Dispatcher> start_dispatcher(unsigned workers) {
   return Dispatcher::start(pool);
 }
 
-/// The part indices of the models in use, each made once.
+/// Part indices of the models in use, each made once.
 class PartIndices {
 public:
   explicit PartIndices(std::uint32_t deepest) : deepest_(deepest) {}
@@ -47,7 +46,7 @@ public:
 
 private:
   std::uint32_t deepest_;
-  std::deque<PartIndex> indices_;  ///< which stay where they are
+  std::deque<PartIndex> indices_;  ///< a deque keeps the addresses valid
 };
 
 }  // namespace
@@ -62,7 +61,7 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
   WorkerPool& pool = dispatcher->pool();
   const std::uint32_t deepest = options.depth == auto_depth ? auto_deepest : options.depth;
   PartIndices indices_a(deepest);
-  PartIndices indices_b(deepest);  // one model may stand on both sides
+  PartIndices indices_b(deepest);  // a model can be used on both sides of a query
   DispatchOptions how;
   how.policy = options.policy;
   how.depth = options.depth;

@@ -67,7 +67,7 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
     if (actor.predictions.empty() && (moved == 0 || moved + absences < scenario.futures.size())) {
       add(i, actor, 1.0, place);
     }
-    // However seldom: it is not certain.
+    // An actor with any absence is not certain, however improbable the absence is.
     constexpr double just_below_one = 1.0 - 1e-15;
     if (absences > 0) made.existence_.back() = std::clamp(present, 0.0, just_below_one);
   }
@@ -95,7 +95,7 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   return made;
 }
 
-/// Lists all futures, or draws a sample where they are too many.
+/// Lists all futures, or draws a sample if there are too many.
 void Futures::list_futures() {
   const double combined = is_joint() ? summary.combinations : count_combinations();
   const bool lists = is_joint() || combined <= double{max_combinations};
@@ -137,7 +137,7 @@ bool Futures::leave_out_unreached(const std::vector<char>& reached) {
     left_out_[i] = out;
     summary.left_out += static_cast<std::size_t>(out);
   }
-  // Draws do not depend on each other: in a sample an actor that is left out changes nothing.
+  // Actors are drawn independently, so leaving one out does not change a sample.
   if (summary.left_out > 0 && count_combinations() > double{max_combinations}) {
     std::fill(left_out_.begin(), left_out_.end(), char{0});
     summary.left_out = 0;
@@ -202,7 +202,7 @@ bool Futures::is_certain(std::size_t actor) const {
 void Futures::read_joint(const Scenario& scenario) {
   double sum = 0.0;
   for (const JointFuture& future : scenario.futures) sum += future.probability;
-  // Each actor's plans: one for each future that lists it, in their order, then its own.
+  // The plans of an actor are ordered: one for each future that lists it, then its own motion.
   std::vector<std::uint32_t> next(first_plan_.begin(), first_plan_.end() - 1);
   for (const JointFuture& future : scenario.futures) {
     joint_.push_back(future.probability / sum);
@@ -245,7 +245,7 @@ void Futures::add_combinations() {
   mark_followed_plans();
 }
 
-/// Makes room for the errors that are drawn.
+/// Draws the errors of all states and allocates the displaced plans.
 void Futures::read_errors(const Scenario& scenario) {
   const std::size_t count = summary.sampled;
   ego_uncertainty_ = scenario.ego.uncertainty;
@@ -303,7 +303,8 @@ void Futures::add_sample() {
 void Futures::displace_plans() {
   for (std::size_t k = 0; k < base_plans_.size(); ++k) {
     Plan& moved = plans[own_plans_ + k];
-    // Where the actor does not exist, the plan that nobody follows has to be somewhere.
+    // A future in which the actor is absent has no base plan: the unused displaced plan then gets
+    // the first one.
     moved.motion =
         plans[base_plans_[k] != absent ? base_plans_[k] : first_plan_[moved.actor]].motion;
     moved.motion.displace(errors_[k]);

@@ -15,14 +15,15 @@
 
 namespace crashrank::detail {
 
-/// A motion that an actor follows in some of the futures.
+/// A motion that an actor follows in some futures.
 struct Plan {
   std::size_t actor = 0;
   Motion motion;
-  double probability = 1.0;  ///< that the actor follows it, if it exists; not of joint futures
+  /// probability that the actor follows it, given that it exists; unused for joint futures
+  double probability = 1.0;
 };
 
-/// Futures [begin, end) in which the ego follows its candidate in the same way.
+/// Futures [begin, end) in which the ego has the same motion.
 struct FutureGroup {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -30,82 +31,89 @@ struct FutureGroup {
   std::size_t size() const noexcept { return end - begin; }
 };
 
-/// The futures that candidates are evaluated in, the same for all of them. A future says of every
-/// actor which plan it follows, or that it does not exist, and how far the ego is off its
-/// candidate.
+/// The futures in which candidates are evaluated, the same for all candidates. A future assigns to
+/// every actor a plan or absence, and to the ego the error of its initial state.
 ///
-/// Behind the scenario's own plans there is one for each drawn future and each actor whose
-/// perceived state has errors: the plan that it follows in that future, displaced.
+/// The plans of the scenario come first. They are followed by displaced plans: for each drawn
+/// future and each actor whose perceived state has errors, the plan that it follows in that future,
+/// displaced by the drawn error.
 class Futures {
 public:
   static constexpr std::uint32_t absent = static_cast<std::uint32_t>(-1);
-  /// All combinations of independent predictions are evaluated up to so many, else a sample.
+  /// Combinations of independent predictions are evaluated exhaustively up to this number, and
+  /// sampled above it.
   static constexpr std::size_t max_combinations = 1024;
 
-  /// Reads the motions of a scenario that is checked. Errors: bad_input for poses out of order and
-  /// motions beyond `scenario_limits`.
+  /// Makes the futures of a valid scenario. `sampled` is the number of futures to draw if a sample
+  /// is needed. Errors: bad_input for poses out of order and motions beyond `scenario_limits`.
   static Result<Futures> make(const Scenario& scenario, std::size_t sampled);
 
   std::size_t size() const noexcept { return probability_.size(); }
-  /// Probabilities sum to 1. That of the likeliest future is 0 where it is none of a sample.
+  /// Probability of a future; they sum to 1. With a sample the likeliest future is appended with
+  /// probability 0.
   double probability(std::size_t future) const { return probability_[future]; }
-  /// Index of the plan that an actor follows, or `absent`.
+  /// Index of the plan that an actor follows in a future, or `absent`.
   std::uint32_t plan(std::size_t future, std::size_t actor) const {
     return plan_of_[future * actors_ + actor];
   }
   bool follows(std::size_t future, std::size_t plan) const {
     return this->plan(future, plans[plan].actor) == plan;
   }
-  /// Whether the plan's actor follows it in a future whose probability is above 0.
+  /// Returns true if the actor of the plan follows it in a future with a probability above 0.
   bool is_followed(std::size_t plan) const { return followed_[plan] != 0; }
-  /// How many of the plans are the scenario's own; those behind them are displaced.
+  /// Number of plans of the scenario; the plans behind them are displaced.
   std::size_t own_plans() const noexcept { return own_plans_; }
   bool is_joint() const noexcept { return !joint_.empty(); }
-  /// Whether the ego is displaced, otherwise in each drawn future.
+  /// Returns true if the initial state of the ego has errors, which differ between the drawn
+  /// futures.
   bool displaces_ego() const noexcept { return ego_uncertainty_.any(); }
-  /// How far the ego is off its candidate. Only where it is displaced.
+  /// Error of the initial state of the ego in a future. Requires `displaces_ego`.
   const StateError& ego_error(std::size_t future) const { return ego_errors_[future]; }
-  /// The futures in which the ego follows its candidate as it does in this one: all, or it alone.
+  /// Group of the futures in which the ego has the same motion as in `future`: all futures, or this
+  /// one alone if the ego is displaced.
   FutureGroup group(std::size_t future) const {
     return displaces_ego() ? FutureGroup{future, future + 1} : FutureGroup{0, size()};
   }
-  /// The least and the greatest error of the ego's speed, m/s.
+  /// Smallest and largest error of the speed of the ego over all futures, m/s.
   const std::array<double, 2>& ego_speed_errors() const noexcept { return ego_speed_errors_; }
-  /// Each actor follows its likeliest plan without errors; of joint futures the likeliest, of equal
-  /// ones the first.
+  /// Index of the likeliest future: each actor has its likeliest choice, without errors. Of joint
+  /// futures the most probable one, the first of equal ones.
   std::size_t likeliest() const noexcept { return likeliest_; }
-  /// Whether an actor exists in every future and follows one plan without errors.
+  /// Returns true if an actor exists in every future and has one plan without errors.
   bool is_certain(std::size_t actor) const;
 
-  /// Whether leaving out actors that no candidate reaches may make fewer futures of them.
+  /// Returns true if the number of futures can be reduced by leaving out actors that no candidate
+  /// reaches.
   bool can_leave_out() const noexcept;
-  /// Combines the choices of those actors alone that may be reached: all others do what is
-  /// likeliest of them, in every future. Nothing changes where even so there are too many
-  /// combinations. Allocates nothing. False where the futures are the ones that they were.
+  /// Combines only the choices of the actors that are marked as reached; all others have their
+  /// likeliest choice in every future and are left out. If too many combinations remain even so, no
+  /// actor is left out. Does not allocate. Returns false if the futures did not change.
   bool leave_out_unreached(const std::vector<char>& reached);
-  /// Whether some actor does what is likeliest of it in every future, since none reaches it.
+  /// Returns true if an actor has its likeliest choice in every future because no candidate reaches
+  /// it.
   bool leaves_out() const noexcept { return summary.left_out > 0; }
-  /// Whether one of the plans that are relevant is of an actor that was left out: what was found so
-  /// far holds for its likeliest choice alone.
+  /// Returns true if a relevant plan belongs to an actor that was left out. Then the results hold
+  /// only for the likeliest choice of that actor and must be computed again without leaving it out.
   bool needs_left_out(const std::vector<char>& relevant) const;
-  /// How many futures there may be at most, whichever actors are left out.
+  /// Upper bound on the number of futures, for any set of actors that are left out.
   std::size_t max_future_count() const noexcept {
     return can_leave_out() ? std::max(size(), max_combinations) : size();
   }
 
-  /// Removes from `futures`, sorted, those that differ from `future`, which stays, in a plan that
-  /// is relevant, and appends them to `others`: `relevant` by plan.
+  /// Partitions the sorted list `futures` by outcome: futures with the same relevant plans as
+  /// `future` stay, the others are appended to `others`. `relevant` is indexed by plan.
   void split(std::size_t future, const std::vector<char>& relevant,
              std::vector<std::uint32_t>& futures, std::vector<std::uint32_t>& others) const;
 
-  /// Takes other probabilities of the plans, which sum to 1 for each actor, and draws samples anew.
-  /// Not of joint futures. Allocates nothing.
+  /// Sets the probabilities of the plans, which must sum to 1 for each actor, and draws samples
+  /// again. Not for joint futures. Does not allocate.
   void set_probabilities(View<const double> probabilities);
 
-  /// Derives the displaced plans from the scenario's own. Allocates only for timed motions.
+  /// Computes the displaced plans from the plans of the scenario. Allocates only for timed motions.
   void displace_plans();
 
-  std::vector<Plan> plans;  ///< the scenario's own by actor, in their order; then displaced ones
+  /// plans of the scenario ordered by actor, followed by the displaced plans
+  std::vector<Plan> plans;
   FutureSummary summary;
 
 private:
@@ -120,10 +128,10 @@ private:
   void add_sample();
   void draw(std::size_t actor);
   void draw_joint();
-  /// Of the choice of that index: plans, then not to exist.
+  /// Probability of a choice of an actor: its plans in order, then absence.
   double choice_probability(std::size_t actor, std::size_t choice) const;
   std::size_t choices(std::size_t actor) const;
-  /// The same; one where the actor is left out: its likeliest.
+  /// Number of choices that are combined: 1, the likeliest, if the actor is left out.
   std::size_t combined_choices(std::size_t actor) const {
     return left_out_[actor] != 0 ? 1 : choices(actor);
   }
@@ -132,9 +140,9 @@ private:
   std::size_t likeliest_choice(std::size_t actor) const;
 
   std::size_t actors_ = 0;
-  std::vector<std::uint32_t> first_plan_;  ///< by actor, and the end
+  std::vector<std::uint32_t> first_plan_;  ///< by actor, plus the end
   std::vector<double> existence_;          ///< by actor
-  std::vector<std::uint64_t> seed_;        ///< by actor, from its name
+  std::vector<std::uint64_t> seed_;        ///< by actor, derived from its name
   std::vector<double> probability_;        ///< by future
   std::vector<std::uint32_t> plan_of_;     ///< by future and actor
   std::vector<char> followed_;             ///< by plan
@@ -143,14 +151,15 @@ private:
   std::vector<double> joint_;               ///< probability of each joint future
   std::vector<std::uint32_t> joint_plans_;  ///< by joint future and actor
   Strata strata_;
-  // Of states with errors.
+  // The members below are used if states have errors.
   StateUncertainty ego_uncertainty_;
   std::vector<StateError> ego_errors_;  ///< by future
   std::array<double, 2> ego_speed_errors_{};
   std::vector<std::uint32_t>
-      displaced_;                   ///< by actor: its first displaced plan, or `not_displaced`
+      displaced_;  ///< by actor: index of its first displaced plan, or `not_displaced`
   std::vector<StateError> errors_;  ///< by displaced plan
-  std::vector<std::uint32_t> base_plans_;  ///< by displaced plan: the scenario's own, or `absent`
+  /// by displaced plan: index of the plan of the scenario, or `absent`
+  std::vector<std::uint32_t> base_plans_;
   std::size_t likeliest_ = 0;
 };
 

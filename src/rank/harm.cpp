@@ -28,7 +28,8 @@ double weight_of(Person person, bool ego, const HarmWeights& w) {
   return ego ? w.ego_occupant : w.other_occupant;
 }
 
-/// Inputs of the injury risk of one person in or on a body, as the sample changes them.
+/// Inputs of the injury risk curve for one person in or on a body, with the factors of the sample
+/// applied.
 Exposure person_exposure(const HarmExposure& body, Person person, const HarmOptions& options,
                          const HarmSample& sample) {
   double fall_mps = 0.0;
@@ -47,7 +48,7 @@ Exposure person_exposure(const HarmExposure& body, Person person, const HarmOpti
   return e;
 }
 
-/// Both ends of a range, one of them where they coincide.
+/// Both ends of a range, or one value if they are equal.
 std::vector<double> ends(double least, double most) {
   if (least == most) return {least};
   return {least, most};
@@ -104,7 +105,7 @@ double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept {
 }
 
 double standing_fall_mps(double delta_v_mps) noexcept {
-  // From a centre of mass 0.9 m over the ground: sqrt(2·9.81·0.9).
+  // Speed after a fall from 0.9 m, the height of the centre of mass: sqrt(2·9.81·0.9).
   constexpr double ground_mps = 4.2;
   return ground_mps * std::clamp(delta_v_mps / topple_delta_v_mps, 0.0, 1.0);
 }

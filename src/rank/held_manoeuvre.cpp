@@ -8,13 +8,14 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Poses every 0.1 s with coordinates to a centimetre tell an acceleration to 0.3 m/s² over this.
+/// Half the span of the differences for timed poses, s. Poses every 0.1 s, rounded to 1 cm, give
+/// the acceleration to 0.3 m/s² over this span.
 constexpr double half_span_of_poses_s = 0.3;
-/// Of what changes smoothly, rounding leaves eight digits.
+/// Half the span for smooth motions, s: rounding leaves eight digits.
 constexpr double half_span_s = 0.005;
-/// Poses within less time than twice this tell nothing.
+/// Shortest half span: shorter sequences of poses do not determine a manoeuvre.
 constexpr double shortest_half_span_s = 0.001;
-/// A path that is driven so slowly tells little of how the wheels are turned, m/s.
+/// Below this speed the path does not determine the steering angle, m/s.
 constexpr double least_steered_mps = 1.0;
 
 struct PlanarState {
@@ -28,7 +29,7 @@ PlanarState planar_state(const Motion& plan, const Eigen::Vector3d& center_m, do
           pose.rotation.col(0).head<2>().normalized()};
 }
 
-/// Mean speed along the forward axis.
+/// Mean speed along the forward axis, m/s.
 double speed_between(const PlanarState& from, const PlanarState& to, double seconds) {
   return (to.at_m - from.at_m).dot((from.forward + to.forward).normalized()) / seconds;
 }

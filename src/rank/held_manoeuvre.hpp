@@ -6,15 +6,17 @@
 
 namespace crashrank::detail {
 
-/// What a driver does when a crash begins, and goes on doing.
+/// Braking and steering at the begin of a crash, which the driver is assumed to hold.
 struct HeldManoeuvre {
-  double braking_mps2 = 0.0;     ///< of its speed, forward or backward; below 0 it gains
-  double curvature_per_m = 0.0;  ///< of its path, left positive
+  /// deceleration along the path, forward or backward; negative: speeding up
+  double braking_mps2 = 0.0;
+  double curvature_per_m = 0.0;  ///< curvature of the path, left positive
 };
 
-/// That of a plan at a time: of a constant manoeuvre exact but for rounding, of timed poses the
-/// mean over 0.6 s within their first and last; of a plan that has come to rest, what it was just
-/// before. `center_m`: the centre of mass, body coordinates. Constant time, allocates nothing.
+/// Estimates the manoeuvre of a plan at a time by finite differences: exact up to rounding for
+/// constant manoeuvres; for timed poses the mean over 0.6 s, inside their first and last time. A
+/// plan that has come to rest has the manoeuvre from just before. `center_m` is the centre of mass
+/// in body coordinates. Constant time; does not allocate.
 HeldManoeuvre held_manoeuvre(const Motion& plan, const Eigen::Vector3d& center_m, double time_s);
 
 }  // namespace crashrank::detail

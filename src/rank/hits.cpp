@@ -16,8 +16,8 @@ bool starts_at_ego_pose(const Scene& scene, const Motion& motion) {
          pose.translation == scene.ego_start.translation;
 }
 
-/// First contact of the ego with an actor. The search runs on the pair in the order of
-/// `goes_second`, so that exchanging their roles changes no bit of time and points.
+/// First contact of the ego with an actor on a plan. The pair is searched in the order of
+/// `goes_second`, so that exchanging the two bodies does not change a bit of time and points.
 Impact find_impact(const Scene& scene, const Motion& ego, const Plan& plan, double from_s,
                    double until_s, ImpactWorkspace& workspace, const ImpactOptions& options) {
   const Body& actor = scene.actors[plan.actor];
@@ -49,10 +49,10 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
   find_nearby_actors(scene, ego, group, 0.0, scene.slice_s.back(), scratch, work);
   const bool same_start = starts_at_ego_pose(scene, ego);
   bool decided = true;
-  // First contacts so far, by future.
+  // Earliest contact found so far, by future.
   scratch.first_s.assign(futures.size(), never_s);
-  // All plans that come near in the same slice are searched up to the same times, so that no
-  // answer depends on the order of the actors.
+  // All plans that first come near in the same slice are searched until the same time, so that the
+  // result does not depend on the order of the actors.
   scratch.until_s.assign(futures.size(), never_s);
   std::size_t slice = scene.slices.size();
   for (const Scratch::Near& near : scratch.near) {
@@ -60,7 +60,8 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
       slice = near.first_slice;
       scratch.until_s = scratch.first_s;
     }
-    // In each of its futures contacts after the first one are not searched.
+    // Contacts after the first one of a future do not matter, so search until the latest first
+    // contact of the futures with this plan.
     double until = 0.0;
     for (std::size_t f = group.begin; f < group.end; ++f) {
       if (futures.follows(f, near.plan)) until = std::max(until, scratch.until_s[f]);
@@ -79,7 +80,8 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
     ++work.body_pairs;
     work.impact += impact.work;
     if (impact.hit() && until < end) {
-      // The last bits of a time depend on the end of its search: no other actor decides it.
+      // The last bits of the time depend on the end of the search interval. Search the full
+      // interval again, so that they do not depend on other actors.
       impact = find_impact(scene, ego, plan, from, end, scratch.impact, options);
       work.impact += impact.work;
     }

@@ -9,7 +9,7 @@
 namespace crashrank::detail {
 namespace {
 
-/// All triangles of the members, in the body coordinates of the first.
+/// All triangles of the members, in the body coordinates of the first one.
 TriangleMesh common_mesh(const Scene& scene, const std::vector<std::size_t>& members) {
   TriangleMesh mesh;
   const Pose first = scene.actors[members.front()].fixed_pose;
@@ -32,7 +32,8 @@ std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
   return i;
 }
 
-/// Sets of certain fixed bodies that adjoin each other, directly or through others.
+/// Sets of certain fixed bodies that adjoin each other directly or through others, found by
+/// union-find.
 std::vector<std::vector<std::size_t>> adjoining_sets(const Scene& scene,
                                                      const std::vector<Rectangle>& boxes,
                                                      const std::vector<std::size_t>& certain) {
@@ -54,7 +55,7 @@ std::vector<std::vector<std::size_t>> adjoining_sets(const Scene& scene,
   return sets;
 }
 
-/// Fills `Scene::adjoining`. `fixed`: all bodies that nothing moves.
+/// Fills `Scene::adjoining`. `fixed` lists all fixed bodies.
 void list_adjoining(Scene& scene, const std::vector<Rectangle>& boxes,
                     const std::vector<std::size_t>& fixed) {
   const auto contact_body = [&scene](std::size_t actor) {

@@ -22,7 +22,7 @@ double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leavi
 }
 
 double max_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept {
-  // Where the ego is displaced, it may leave the road in a future though its plan does not.
+  // If the ego is displaced, it can leave the road in a future even though its plan stays on it.
   const bool may_leave = leaving || (scene.futures.displaces_ego() && scene.road.ends());
   return may_leave ? leaving_score(scene, RoadLeaving{}, 0.0) : 0.0;
 }
@@ -39,7 +39,7 @@ ManoeuvreFacts evaluate_manoeuvre(const Scene& scene, const Candidate& candidate
                         : clearance_of(scene, candidate.motion, scratch.ego_poses, scratch.stop);
   Pose pose;
   Velocity velocity;
-  // Timed poses that end with the horizon stand from then on: their speed is that before it.
+  // Timed poses that end at the horizon are at rest from then on, so the speed is read just before.
   constexpr double just_before = 1.0 - 1e-9;
   candidate.motion.state_at(just_before * scene.slice_s.back(), pose, velocity);
   facts.at_horizon.speed_mps = velocity.linear_mps.norm();

@@ -8,15 +8,15 @@
 
 namespace crashrank::detail {
 
-/// How far a candidate's plan is followed.
+/// How far the plan of a candidate is followed.
 struct FollowedPlan {
-  double longest_s = 0.0;  ///< to its first contact, in the future that has it last
-  /// To its first contact in the likeliest future; infinity: none.
+  double longest_s = 0.0;  ///< until the first contact, in the future in which it is latest
+  /// Until the first contact in the likeliest future; infinity without one.
   double first_s = std::numeric_limits<double>::infinity();
-  bool touches = false;  ///< somebody in a future
+  bool touches = false;  ///< it has a contact in at least one future
 };
 
-/// What is to be said of a candidate besides its crash.
+/// Results for a candidate that do not depend on its crash.
 struct ManoeuvreFacts {
   ManoeuvreDemand demand;
   bool feasible = true;
@@ -25,22 +25,23 @@ struct ManoeuvreFacts {
   HorizonState at_horizon;
 };
 
-/// `leaving`: of its plan until the horizon. Depends on the scene and the candidate alone, unless
-/// it is stopped where nobody is touched.
+/// Evaluates demand, feasibility, clearances and the state at the horizon. `leaving` is that of the
+/// plan until the horizon. Depends on the scene and the candidate alone. A candidate without
+/// contact can be stopped; then the clearances must not be used.
 ManoeuvreFacts evaluate_manoeuvre(const Scene& scene, const Candidate& candidate,
                                   const FollowedPlan& followed,
                                   const std::optional<RoadLeaving>& leaving, Scratch& scratch);
 
-/// Demand of a plan as far as `until_s`.
+/// Demand of a plan until `until_s`.
 ManoeuvreDemand demand_until(const Scene& scene, const Candidate& candidate, double until_s,
                              const std::optional<RoadLeaving>& leaving) noexcept;
 
-/// What leaving the road adds to the score of a future whose first contact is at `first_s`
-/// (infinity: none).
+/// Harm that leaving the road adds to the score of a future whose first contact is at `first_s`;
+/// infinity: no contact.
 double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving,
                      double first_s) noexcept;
 
-/// What leaving the road adds to the score of any future at most; `leaving` is that of the plan.
+/// Upper bound on `leaving_score` over all futures; `leaving` is that of the plan.
 double max_leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving) noexcept;
 
 }  // namespace crashrank::detail

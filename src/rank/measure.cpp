@@ -37,15 +37,16 @@ constexpr MeasureRow closing_energy{
     no_body,
     [](const CrashLimits& u, const HarmWeights&) { return u.contacts * u.closing_energy_j; }};
 
-constexpr MeasureRow delta_v{
-    Measure::delta_v, true, false, nullptr, no_contact, no_side,
-    [](double before, const BodyEvent& last, bool is_ego) {
-      return is_ego ? before + last.size_mps() : before;
-    },
-    // A body that has all of the energy is no faster than its root says, and turns round at most.
-    [](const CrashLimits& u, const HarmWeights&) {
-      return u.contacts * 2.0 * std::sqrt(2.0 * u.energy_j / u.ego_mass_kg);
-    }};
+constexpr MeasureRow delta_v{Measure::delta_v, true, false, nullptr, no_contact, no_side,
+                             [](double before, const BodyEvent& last, bool is_ego) {
+                               return is_ego ? before + last.size_mps() : before;
+                             },
+                             // The speed of the ego is at most that of a body with all the energy;
+                             // reversing it doubles the delta-v.
+                             [](const CrashLimits& u, const HarmWeights&) {
+                               return u.contacts * 2.0 *
+                                      std::sqrt(2.0 * u.energy_j / u.ego_mass_kg);
+                             }};
 
 constexpr MeasureRow energy{Measure::energy,
                             true,

@@ -41,7 +41,8 @@ bool all_are_clear(const Scene& scene, View<const Candidate> candidates, const D
       if (i % candidates_per_check == 0 && deadline.expired()) return false;
       const Box box = swept_box(scene.ego, candidates[i].motion, scene.slice_s[s],
                                 scene.slice_s[s + 1], scene.impact.tolerance_m);
-      if (box.min.hasNaN() || box.max.hasNaN()) return false;  // growing by it may change nothing
+      // a union with NaN can leave the box unchanged
+      if (box.min.hasNaN() || box.max.hasNaN()) return false;
       all.grow(box);
     }
     bool clear = true;

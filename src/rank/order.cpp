@@ -60,7 +60,7 @@ Result<Infeasible> infeasible_from_name(const std::string& name) {
   for (const Infeasible each : {Infeasible::demote, Infeasible::drop, Infeasible::keep}) {
     if (name == infeasible_name(each)) return each;
   }
-  return make_error(ErrorCode::usage, "'" + name + "' says nothing about infeasible manoeuvres",
+  return make_error(ErrorCode::usage, "'" + name + "' is not a treatment of infeasible manoeuvres",
                     "choose demote, drop or keep");
 }
 
@@ -104,7 +104,7 @@ void assign_places(RankResult& result) {
   for (std::size_t first = 0, end = 0; first < ranking.size(); first = end) {
     end = first + 1;
     const OrderKey key = result_key(ranking[first], result.infeasible);
-    // What is not known of a score may still decide: only known scores tie.
+    // An unknown score can still differ, so only known scores tie.
     while (end < ranking.size() && ranking[first].score && ranking[end].score &&
            compare(key, result_key(ranking[end], result.infeasible)) == 0) {
       ++end;
@@ -117,7 +117,7 @@ void assign_places(RankResult& result) {
 }
 
 void drop_infeasible(RankResult& result) {
-  // Of what is not evaluated to its end nobody knows whether it can be followed.
+  // The feasibility of candidates that are not fully evaluated is not known.
   if (result.infeasible != Infeasible::drop || !result.complete) return;
   const auto first = std::find_if(result.ranking.begin(), result.ranking.end(),
                                   [](const CandidateResult& c) { return !c.feasible; });
@@ -137,8 +137,8 @@ void sort_ranking(RankResult& result) {
   result.complete = std::all_of(ranking.begin(), ranking.end(),
                                 [](const CandidateResult& c) { return c.score.has_value(); });
   drop_infeasible(result);
-  // Known scores have one winner, the first of them in the order. It and those not yet known stay
-  // in the race unless somebody's highest score is below their lowest.
+  // Among the known scores only the first of the sorted ranking can win. It and the unknown ones
+  // stay in the race unless the upper bound of another candidate is below their lower bound.
   double lowest_high = std::numeric_limits<double>::infinity();
   const auto demoted = [&](const CandidateResult& c) {
     return !c.feasible && result.infeasible != Infeasible::keep;
@@ -154,7 +154,7 @@ void sort_ranking(RankResult& result) {
   }
   bool winner_seen = false;
   for (const CandidateResult& c : ranking) {
-    // Where nobody is known to be followed, even what is demoted may come first.
+    // Demoted candidates can be first only if no candidate is known to be feasible.
     if (demoted(c) && any_followable) continue;
     const bool beaten = c.score.has_value() && winner_seen;
     winner_seen = winner_seen || c.score.has_value();

@@ -6,41 +6,42 @@
 
 namespace crashrank::detail {
 
-/// What decides the place of a candidate, as far as it is known.
+/// Sort key of a candidate: what is known so far of the quantities that decide its place.
 struct OrderKey {
-  bool demoted = false;  ///< the vehicle cannot follow it, and that counts
-  double score = 0.0;    ///< the score, the worst that may come where it is not known
+  bool demoted = false;  ///< the vehicle cannot follow it, and infeasible candidates rank last
+  double score = 0.0;    ///< the score, or its upper bound or estimate if it is not known
   bool known = false;
   double collision_probability = 0.0;
-  bool collides = false;  ///< this and the next in the likeliest future
+  bool collides = false;  ///< in the likeliest future, like the next
   bool grazes = false;
   bool leaves_road = false;
-  double distance_cm = 0.0;  ///< whole ones, at most `enough_distance_m`
-  double time_gap_cs = 0.0;  ///< whole hundredths of a second, at most `enough_time_gap_s`
-  double first_s = 0.0;      ///< of the first contact; of candidates that collide
+  double distance_cm = 0.0;  ///< whole centimetres, at most `enough_distance_m`
+  double time_gap_cs = 0.0;  ///< hundredths of a second, at most `enough_time_gap_s`
+  double first_s = 0.0;      ///< time of the first contact; only for candidates that collide
   double closing_mps = 0.0;
-  double end_speed_mps = 0.0;  ///< at the horizon; of candidates that do not
+  double end_speed_mps = 0.0;  ///< speed at the horizon; only for candidates that do not collide
 
-  /// To what both are exact: less must not decide.
+  /// Rounds both to their accuracy, so that smaller differences do not decide.
   void set_clearance(double least_m, double least_s) noexcept;
-  /// No other stands before it at the same score.
+  /// Returns true if no candidate with the same score can precede it.
   bool is_best_of_its_score() const noexcept;
 };
 
-/// -1: `a` stands before `b`; 1: behind it; 0: only the order of the candidates decides.
+/// Returns -1 if `a` precedes `b`, 1 if it follows, 0 if only the order of the candidates decides.
 int compare(const OrderKey& a, const OrderKey& b) noexcept;
 
-/// Orders the ranking, leaves out what is dropped, and says how sure its first place is.
+/// Sorts the ranking, drops infeasible candidates if requested, and computes which candidates can
+/// be first and how stable the places are.
 void sort_ranking(RankResult& result);
 
-/// Leaves what the vehicle cannot follow out of a ranking in order, where that is asked for and
-/// something is left.
+/// Removes infeasible candidates from a sorted ranking, if that is requested and at least one
+/// candidate remains.
 void drop_infeasible(RankResult& result);
 
-/// Fills the places of a ranking that is in order, and says how stable they are over the samples.
+/// Assigns the places of a sorted ranking and computes their stability over the samples.
 void compute_stability(RankResult& result);
 
-/// Fills `place` and `sharing` of a ranking that is in order.
+/// Sets `place` and `sharing` of a sorted ranking.
 void assign_places(RankResult& result);
 
 }  // namespace crashrank::detail

@@ -10,16 +10,16 @@
 namespace crashrank::detail {
 namespace {
 
-/// Segments of a chain.
+/// Number of segments in a chain.
 constexpr std::uint32_t chain_segments = 4;
 
-/// Pieces that lie so near to one line are one segment, m. Faces of vehicles have hundreds of
-/// pieces, and so few corners that distances are found several times sooner.
+/// Pieces are merged into one segment if they deviate from it by at most this, m. Faces of vehicles
+/// have hundreds of pieces but few corners, so distances are computed several times faster.
 constexpr double straight_m = 0.002;
 
 constexpr double infinity_m = std::numeric_limits<double>::infinity();
 
-/// Of a point to a piece from its begin, all relative to that begin.
+/// Squared distance from a point to a piece, both relative to the begin of the piece.
 double distance2(double x, double y, double along_x, double along_y, double per_length2) {
   const double share = std::clamp((x * along_x + y * along_y) * per_length2, 0.0, 1.0);
   const double dx = x - share * along_x;
@@ -27,8 +27,8 @@ double distance2(double x, double y, double along_x, double along_y, double per_
   return dx * dx + dy * dy;
 }
 
-/// Corners of a rectangle, relative to the middle of another and in its axes; the least distance of
-/// any of them to that other.
+/// Smallest squared distance of the corners of a rectangle to another rectangle. The first is given
+/// relative to the centre of the other, in its axes.
 double corners_distance2(double x, double y, double cosine, double sine, double half_x,
                          double half_y, double other_half_x, double other_half_y) {
   double least = infinity_m;
@@ -73,7 +73,8 @@ OutlineSegment segment_of(const OutlinePiece& piece) {
   return {middle - half, middle + half};
 }
 
-/// Whether all ends of the pieces but the last lie near the line from the first's begin to its end.
+/// Returns true if the ends of all pieces but the last are within `straight_m` of the line from the
+/// begin of the first to the end of the last.
 bool is_straight(const std::vector<OutlineSegment>& pieces, std::size_t first, std::size_t last) {
   const Eigen::Vector2d along = (pieces[last].to - pieces[first].from).normalized();
   for (std::size_t i = first; i < last; ++i) {
@@ -84,9 +85,10 @@ bool is_straight(const std::vector<OutlineSegment>& pieces, std::size_t first, s
   return true;
 }
 
-/// The pieces of a band in as few segments as their shape allows.
+/// Merges the pieces of a band into as few segments as the tolerance allows.
 std::vector<OutlineSegment> merge_straight_pieces(const std::vector<OutlineSegment>& pieces) {
-  constexpr std::size_t most_pieces = 512;  // of a segment: what is checked grows with its square
+  // of a segment; the cost of checking grows with its square
+  constexpr std::size_t most_pieces = 512;
   std::vector<OutlineSegment> segments;
   for (std::size_t first = 0, last = 0; first < pieces.size(); first = last + 1) {
     last = first;
@@ -110,7 +112,8 @@ std::vector<OutlineSegment> profile_segments(const Profile& profile, std::size_t
 
 using Ring = std::vector<Eigen::Vector2d>;
 
-/// Points of a mesh by height band, those where edges pass from one band to another included.
+/// Points of a mesh by height band, including the intersections of edges with the limits of the
+/// bands.
 std::array<Ring, profile_bands> points_by_band(const TriangleMesh& mesh, double ground_m) {
   std::array<Ring, profile_bands> points;
   const auto height = [ground_m](const Eigen::Vector3f& vertex) {
@@ -140,7 +143,7 @@ std::array<Ring, profile_bands> points_by_band(const TriangleMesh& mesh, double 
   return points;
 }
 
-/// The hull of a band as segments.
+/// Convex hull of a band as segments.
 std::vector<OutlineSegment> hull_of(Ring points) {
   std::vector<OutlineSegment> segments;
   const Ring hull = convex_hull(std::move(points));
@@ -188,7 +191,7 @@ BodyOutline::BodyOutline(const Profile& profile, const TriangleMesh* convex_mesh
   first_chain_[profile_bands] = static_cast<std::uint32_t>(chains_.size());
   middle_x_ = 0.5 * (low_x + high_x);
   middle_y_ = 0.5 * (low_y + high_y);
-  // Ends within the tolerance of a straight line are left out.
+  // The merged outlines can be inside the exact ones by the tolerance.
   half_x_ = 0.5 * (high_x - low_x) + straight_m;
   half_y_ = 0.5 * (high_y - low_y) + straight_m;
   radius_m_ += straight_m;
@@ -212,7 +215,7 @@ void BodyOutline::add_chain(std::uint32_t first, std::uint32_t end) {
 
 double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
                           const PlanarPose& pose_b, double cutoff_m, NearestChains& nearest) {
-  // b in a's frame.
+  // Pose of b in the frame of a.
   const double cosine = pose_a.cosine * pose_b.cosine + pose_a.sine * pose_b.sine;
   const double sine = pose_a.cosine * pose_b.sine - pose_a.sine * pose_b.cosine;
   const double dx = pose_b.x - pose_a.x;
@@ -235,7 +238,7 @@ double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const 
         const BodyOutline::Piece& of_a = a.pieces_[i];
         const double apart_x = bx - of_a.x;
         const double apart_y = by - of_a.y;
-        // No point of a piece is further from its begin than its length.
+        // A piece extends from its begin by at most its length.
         const double reach = before + of_a.length_m + of_b.length_m;
         if (apart_x * apart_x + apart_y * apart_y >= reach * reach) continue;
         const double per_a2 = of_a.per_length2;
@@ -261,7 +264,7 @@ double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const 
       const BodyOutline::Chain& q = b.chains_[k];
       const double qx = x + cosine * q.x - sine * q.y;
       const double qy = y + sine * q.x + cosine * q.y;
-      // Beyond the rectangle around all of a by more than the best.
+      // Skip chains that are farther from the bounding rectangle of a than the best distance.
       const double out_x = std::abs(qx - a.middle_x_) - a.half_x_ - q.radius;
       const double out_y = std::abs(qy - a.middle_y_) - a.half_y_ - q.radius;
       if (std::max(out_x, out_y) >= least) continue;
@@ -281,7 +284,7 @@ double rectangle_distance_m(const BodyOutline& a, const PlanarPose& pose_a, cons
                             const PlanarPose& pose_b) noexcept {
   const double cosine = pose_a.cosine * pose_b.cosine + pose_a.sine * pose_b.sine;
   const double sine = pose_a.cosine * pose_b.sine - pose_a.sine * pose_b.cosine;
-  // From the middle of a's to that of b's, world.
+  // Vector between the centres of the rectangles, world.
   const double dx = pose_b.x + pose_b.cosine * b.middle_x() - pose_b.sine * b.middle_y() -
                     (pose_a.x + pose_a.cosine * a.middle_x() - pose_a.sine * a.middle_y());
   const double dy = pose_b.y + pose_b.sine * b.middle_x() + pose_b.cosine * b.middle_y() -
@@ -290,7 +293,7 @@ double rectangle_distance_m(const BodyOutline& a, const PlanarPose& pose_a, cons
   const double in_a_y = pose_a.cosine * dy - pose_a.sine * dx;
   const double in_b_x = -(pose_b.cosine * dx + pose_b.sine * dy);
   const double in_b_y = -(pose_b.cosine * dy - pose_b.sine * dx);
-  // Rectangles that overlap have no axis of either along which they are apart.
+  // Separating-axis test on the sides of both rectangles.
   const double c = std::abs(cosine);
   const double s = std::abs(sine);
   const bool apart = std::abs(in_a_x) > a.half_x() + c * b.half_x() + s * b.half_y() ||

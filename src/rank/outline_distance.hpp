@@ -11,58 +11,58 @@
 
 namespace crashrank::detail {
 
-/// Where a body is seen from above.
+/// Pose of a body in plan view.
 struct PlanarPose {
-  double x = 0.0;  ///< of the body's origin, world, m
+  double x = 0.0;  ///< position of the origin of the body, world, m
   double y = 0.0;
-  double cosine = 1.0;  ///< of the heading
+  double cosine = 1.0;  ///< of the heading, like `sine`
   double sine = 0.0;
 };
 
 PlanarPose planar_pose(const Pose& pose) noexcept;
 
-/// Chains of two outlines that were nearest to each other: where the next search for the distance
-/// of the same two bodies, moved a little, begins.
+/// Nearest chains of two outlines in the last search. The next search for the same bodies, moved a
+/// little, starts from them.
 struct NearestChains {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   bool known = false;
 };
 
-/// A body's outlines prepared for distances: segments that follow them to 2 mm, in short chains
-/// with circles around them.
+/// Outlines of a body prepared for distance queries: line segments that approximate them to 2 mm,
+/// in short chains with bounding circles.
 class BodyOutline {
 public:
   BodyOutline() = default;
-  /// As the profile cuts it. With a mesh: its convex hull in each height band, which leaves out no
-  /// mirror, handlebar or arm; of a body without deep bays.
+  /// Uses the outlines of the profile or, if a mesh is given, its convex hull in each height band.
+  /// The hull contains mirrors, handlebars and arms, and suits bodies without deep concavities.
   explicit BodyOutline(const Profile& profile, const TriangleMesh* convex_mesh = nullptr);
 
-  /// Middle of the rectangle around all outlines, body coordinates, m.
+  /// Centre of the bounding rectangle of all outlines, body coordinates, m.
   double middle_x() const noexcept { return middle_x_; }
   double middle_y() const noexcept { return middle_y_; }
-  /// Half its sides, m.
+  /// Half the sides of that rectangle, m.
   double half_x() const noexcept { return half_x_; }
   double half_y() const noexcept { return half_y_; }
-  /// No point of an outline is further from the body's origin, m.
+  /// Upper bound on the distance of an outline point from the origin of the body, m.
   double radius_m() const noexcept { return radius_m_; }
 
 private:
   friend double outline_distance_m(const BodyOutline&, const PlanarPose&, const BodyOutline&,
                                    const PlanarPose&, double, NearestChains&);
   struct Piece {
-    double x = 0.0;  ///< from
+    double x = 0.0;  ///< begin
     double y = 0.0;
-    double along_x = 0.0;  ///< to its end
+    double along_x = 0.0;  ///< vector from begin to end
     double along_y = 0.0;
     double length_m = 0.0;
     double per_length2 = 0.0;  ///< 1 / length²
   };
   struct Chain {
-    double x = 0.0;  ///< middle of its circle
+    double x = 0.0;  ///< centre of its bounding circle
     double y = 0.0;
     double radius = 0.0;
-    std::uint32_t first = 0;  ///< piece
+    std::uint32_t first = 0;  ///< index of the first piece
     std::uint32_t end = 0;
   };
 
@@ -70,7 +70,7 @@ private:
 
   std::vector<Piece> pieces_;
   std::vector<Chain> chains_;
-  std::array<std::uint32_t, profile_bands + 1> first_chain_{};  ///< of each band, then their number
+  std::array<std::uint32_t, profile_bands + 1> first_chain_{};  ///< by band, plus the end
   double middle_x_ = 0.0;
   double middle_y_ = 0.0;
   double half_x_ = 0.0;
@@ -78,16 +78,17 @@ private:
   double radius_m_ = 0.0;
 };
 
-/// Distance of the outlines of two bodies that stand on the same ground, seen from above: the least
-/// over the height bands that both have, m. A number of at least `cutoff_m` where they are no
-/// nearer than it, infinity without a common band. Bodies in each other are as far apart as their
-/// outlines are. Exact to 4 mm. Allocates nothing. O(chains²) a band and the segments of the
-/// nearest; `nearest`, of the same two bodies, changes what that takes and is changed.
+/// Distance between the outlines of two bodies on the same ground in plan view, m: the smallest
+/// over the height bands that both have. Returns a value of at least `cutoff_m` if they are no
+/// nearer than that, and infinity without a common band. For a body inside another it is the
+/// distance between their outlines. Accuracy 4 mm. Does not allocate. O(chains²) for each band,
+/// plus the segments of the nearest chains. `nearest` belongs to the same two bodies; it changes
+/// only the time that the search takes, and is updated.
 double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
                           const PlanarPose& pose_b, double cutoff_m, NearestChains& nearest);
 
-/// Distance of the rectangles around the outlines, seen from above: no outline distance is less.
-/// 0 where they overlap. Constant time.
+/// Distance between the bounding rectangles in plan view, m: a lower bound on the outline distance;
+/// 0 if they overlap. Constant time.
 double rectangle_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,
                             const PlanarPose& pose_b) noexcept;
 

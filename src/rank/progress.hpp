@@ -9,13 +9,13 @@
 namespace crashrank::detail {
 
 /// Counts evaluated candidates and calls RankOptions::on_progress. Shared by the workers of one
-/// ranking; it and the options must outlive the scratch memory that refers to them.
+/// ranking. It and the options must outlive the scratch memory that refers to them.
 class RankProgress {
 public:
   RankProgress(const RankOptions& options, std::size_t candidates)
       : options_(options), candidates_(candidates) {}
 
-  /// Evaluations with this scratch memory stop once the ranking is cancelled.
+  /// Makes evaluations with this scratch memory stop once the ranking is cancelled.
   void attach_to(Scratch& scratch) {
     if (!options_.on_progress) return;
     scratch.stop = {[](void* self) { return static_cast<RankProgress*>(self)->is_cancelled(); },

@@ -17,7 +17,7 @@
 namespace crashrank {
 namespace {
 
-/// Evaluates all candidates. `needs_left_out` becomes true as Scratch's does.
+/// Evaluates all candidates. Sets `needs_left_out` if an evaluation sets Scratch::needs_left_out.
 Status evaluate_all(const detail::Scene& scene, const RankOptions& options, RankResult& result,
                     bool& needs_left_out) {
   const std::size_t count = result.candidates.size();
@@ -35,8 +35,8 @@ Status evaluate_all(const detail::Scene& scene, const RankOptions& options, Rank
   return Success{};
 }
 
-/// The same in futures that leave out who is far away; where a crash reaches one of these, once
-/// more in those that leave out nobody.
+/// Evaluates all candidates in futures that leave out distant actors. If a crash reaches one of
+/// these, evaluates all again with every actor included.
 Status evaluate_in_futures(detail::Scene& scene, const RankOptions& options, RankResult& result) {
   std::vector<char> reached(scene.actors.size());
   detail::leave_out_distant_actors(scene, {result.candidates.data(), result.candidates.size()},

@@ -6,14 +6,15 @@
 namespace crashrank::detail {
 namespace {
 
-/// Further than most crashes throw bodies beyond where the ego could have gone, m.
+/// Margin around the area of the candidates, m: most crashes throw bodies less far beyond it.
 constexpr float throw_distance_m = 50.0F;
-/// Plans are followed for so long after the horizon, s: a scene goes on after its last contact.
+/// Plans are followed for this time after the horizon, s, since a simulation continues after the
+/// last contact.
 constexpr double after_horizon_s = 3.0;
-/// Boxes are swept over about this time, s.
+/// Approximate duration over which one box is swept, s.
 constexpr double interval_s = 1.0;
 
-/// The box of a motion over [0, until].
+/// Bounding box of a motion over [0, until].
 Box swept_box_until(const Body& body, const Motion& motion, double until_s,
                     std::uint64_t& box_tests) {
   Box whole;
@@ -47,7 +48,7 @@ bool leave_out_distant_actors(Scene& scene, View<const Candidate> candidates,
     if (reached[actor] != 0 || futures.is_certain(actor)) continue;
     const Box box = swept_box_until(scene.actors[actor], futures.plans[p].motion,
                                     horizon_s + after_horizon_s, box_tests);
-    // A crash is in the plane of the road, whatever the height.
+    // Crashes are simulated in the plane of the road, so heights do not matter.
     const bool apart = (box.min.head<2>().array() > near.max.head<2>().array()).any() ||
                        (box.max.head<2>().array() < near.min.head<2>().array()).any();
     reached[actor] = apart ? 0 : 1;

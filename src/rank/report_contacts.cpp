@@ -29,12 +29,12 @@ void fill_outcome(const ContactBody& body, const Model& model, const BodyContact
   if (from.damaged.empty()) return;
   const Box bounds = model.mesh.bounds();
   const double damage_m = damage_depth_m(from.damaged, bounds);
-  // What ploughs along a flank is deep below the front, but damage is no deeper than its bounds.
+  // Penetration along a flank can exceed the depth of the damaged region, which limits the crush.
   to.crush_m = std::min(from.crush_depth_m, damage_m);
   to.cdc = cdc_code({to.pdof_deg, from.damaged, bounds, damage_m, slides});
 }
 
-/// The second body of a contact; of joined ones the one in or next to which the force acts.
+/// Actor that is the second body of a contact; of joined bodies the member nearest to the force.
 std::size_t second_body(const Scene& scene, const CrashChain& chain, const SceneContact& contact) {
   const std::size_t body = chain.body(contact.b);
   const std::size_t joined = scene.joined_of[body];
@@ -47,7 +47,8 @@ std::size_t second_body(const Scene& scene, const CrashChain& chain, const Scene
                            [&](std::size_t p, std::size_t q) { return away_m(p) < away_m(q); });
 }
 
-/// A contact of the ego's that the exact search did not find: bodies are deformed by then.
+/// A later contact of the ego, found by the simulation and not by the exact search. The bodies are
+/// already deformed then.
 Contact later_contact(const Scene& scene, const CrashChain& chain, const SceneContact& from) {
   Contact contact;
   contact.actor = second_body(scene, chain, from);
@@ -55,7 +56,8 @@ Contact later_contact(const Scene& scene, const CrashChain& chain, const SceneCo
   contact.point_m = from.outcome.point_m;
   contact.closing = closing_of(from);
   contact.closing_speed_mps = contact.closing.norm();
-  // Where surfaces already intersect, no facet tells a direction that means something.
+  // The undeformed surfaces already intersect, so no facet defines a normal: use the closing
+  // direction.
   if (contact.closing_speed_mps > 0.0) contact.normal = contact.closing.normalized();
   contact.normal_speed_mps = contact.closing_speed_mps;
   contact.closing_energy_j = closing_energy_j(
@@ -94,7 +96,7 @@ void fill_severity(const Scene& scene, const SceneContact& from, Contact& contac
                severity.other);
 }
 
-/// The actors that pressed on the first body in a contact, joined ones with those beside them.
+/// Actors that pressed on the first body in a contact; joined bodies count with all their members.
 std::vector<std::size_t> pressed_actors(const Scene& scene, const CrashChain& chain,
                                         const SceneContact& from) {
   std::vector<std::size_t> pressed;
@@ -131,8 +133,8 @@ Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor, 
   if (impact.triangle_a >= 0 && impact.triangle_b >= 0) {
     contact.point_m = 0.5 * (impact.point_a_m + impact.point_b_m);
   } else {
-    // One lies inside the other: the middle of the smaller one stands for the place, of equal ones
-    // the middle between theirs.
+    // One body contains the other: the point is the centre of the smaller one, or the mean of both
+    // centres if they are equal.
     const Vector3d own = ego_pose.rotation * scene.ego.center_m + ego_pose.translation;
     const Vector3d theirs = other_pose.rotation * other.center_m + other_pose.translation;
     contact.point_m = scene.ego.radius_m < other.radius_m   ? own
@@ -164,7 +166,7 @@ std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChai
                                              std::vector<DamagePlan>& plans) {
   std::vector<ReportedContact> reported;
   std::vector<DamagePlan> further_plans;
-  plans.emplace_back();  // the first contact's
+  plans.emplace_back();  // damage plan of the first contact
   bool first_acts = false;
   for (const std::size_t k : order) {
     if (k == CrashChain::without_force) {

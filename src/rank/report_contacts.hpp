@@ -9,29 +9,28 @@
 
 namespace crashrank::detail {
 
-/// The first contact of a candidate as the two bodies meet; damage and severity are still to be
-/// reported.
+/// First contact of a candidate with the states of both bodies at that time. Damage and severity
+/// are not filled in.
 Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor, const Motion& plan,
                       const Impact& impact);
 
-/// Where in a result a simulated contact is reported.
+/// Place of a simulated contact in a result.
 struct ReportedContact {
-  bool is_further = false;  ///< in `further`, else in `contacts`
+  bool is_further = false;  ///< index into `further`, otherwise into `contacts`
   std::size_t index = 0;
 };
 
-/// Adds the contacts of a chain that is over to a result whose only contact so far is the first,
-/// with what they do to both bodies; `order` is theirs, see `CrashChain::effects`;
-/// `ego` and `other` are the poses at the first. Returns where
-/// each of that order is reported. `plans` gets where their damage is to be read: of the result's
-/// contacts, then of the further ones.
+/// Adds the contacts of a finished simulation to a result that holds only the first contact, with
+/// their effects on both bodies. `order` is that of CrashChain::effects; `ego` and `other` are the
+/// poses at first contact. Returns the place of each contact, in that order. `plans` gets the poses
+/// at which damage is to be evaluated, of the contacts of the result and then of the further ones.
 std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChain& chain,
                                              const std::vector<std::size_t>& order,
                                              const Impact& impact, const Pose& ego,
                                              const Pose& other, CandidateResult& result,
                                              std::vector<DamagePlan>& plans);
 
-/// The two outcomes of a contact.
+/// References to the outcomes of a contact for its two bodies.
 struct OutcomePair {
   BodyOutcome& a;
   BodyOutcome& b;

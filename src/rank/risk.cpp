@@ -12,12 +12,12 @@ double mean_of(const std::vector<WeightedScore>& scores) {
   return sum;
 }
 
-/// The least score that is not exceeded with probability `level`. Sorts.
+/// Smallest score that is not exceeded with probability `level`. Sorts the scores.
 double quantile_of(double level, std::vector<WeightedScore>& scores) {
   std::sort(scores.begin(), scores.end(), [](const WeightedScore& p, const WeightedScore& q) {
     return p.score != q.score ? p.score < q.score : p.probability < q.probability;
   });
-  // Sums of probabilities round.
+  // Tolerance for the rounding of sums of probabilities.
   constexpr double rounding = 1e-12;
   double reached = 0.0;
   double last = 0.0;
@@ -50,15 +50,15 @@ double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores) {
     case RiskKind::quantile:
       return quantile_of(risk.level, scores);
     case RiskKind::cvar: {
-      // Rockafellar & Uryasev 2002: the quantile and the mean excess over it, which splits a future
-      // at the border.
+      // Rockafellar & Uryasev 2002: the quantile plus the mean excess over it. This splits the
+      // future at the border of the tail.
       const double quantile = quantile_of(risk.level, scores);
       double excess = 0.0;
       for (const WeightedScore& s : scores) {
         excess += s.probability * std::max(s.score - quantile, 0.0);
       }
-      // Where the rounding of the quantile leaves out the worst, the excess is of less than
-      // nothing.
+      // If the probability of the tail is below the rounding tolerance of the quantile, the
+      // quantile plus the mean excess can exceed the worst score: limit it.
       return std::min(quantile + excess / (1.0 - risk.level), worst_of(scores));
     }
   }
@@ -76,7 +76,7 @@ std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<Weight
   const auto value = [&](const WeightedScore& s) {
     return tail ? std::max(s.score - from, 0.0) / (1.0 - risk.level) : s.score;
   };
-  // Scores that do not differ tell nothing of those that were not drawn.
+  // Equal scores say nothing about the variance of futures that were not drawn.
   double least = worst_of(scores);
   for (const WeightedScore& s : scores) {
     if (s.probability > 0.0) least = std::min(least, s.score);

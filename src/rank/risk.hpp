@@ -8,20 +8,20 @@
 
 namespace crashrank::detail {
 
-/// The score of some futures and their probability.
+/// Score of a set of futures and their probability.
 struct WeightedScore {
   double score = 0.0;
   double probability = 0.0;
 };
 
-/// The risk measure of scores whose probabilities sum to 1; sorts them but for the mean. Monotone
-/// in every score. Those with probability 0 count nowhere.
+/// Risk measure of scores whose probabilities sum to 1. Non-decreasing in every score. Scores with
+/// probability 0 have no effect. Sorts the scores, except for the mean.
 double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores);
 
-/// Standard error of `risk_of` where the scores are those of so many futures drawn alike. Of the
-/// mean: from the scores' variance; of cvar: from that of their excess over the quantile. Absent
-/// for worst and quantile, for cvar with fewer than 10 drawn futures in its tail, and where the
-/// scores do not differ: what was not drawn may.
+/// Standard error of `risk_of` if the scores are those of `sampled` futures drawn with equal
+/// probability. Mean: from the variance of the scores. CVaR: from the variance of their excess over
+/// the quantile. Absent for worst and quantile, for cvar with fewer than 10 drawn futures in the
+/// tail, and if all scores are equal, since futures that were not drawn may differ.
 std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
                                      std::size_t sampled);
 

@@ -9,10 +9,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Wheels that are nearer to a border than this are looked at every so often, m.
+/// Smallest step of the search, m: used while a wheel is nearer to a border than this.
 constexpr double least_step_m = 0.05;
 
-/// Gaps between areas that are no wider than this each side are seams of a map, m.
+/// Half the widest gap between two areas that counts as a seam of the map, m.
 constexpr double seam_m = 0.05;
 
 std::array<Vector2d, 4> wheels_of(const Body& body, const Pose& pose) {

@@ -10,10 +10,10 @@
 
 namespace crashrank::detail {
 
-/// When a plan takes the first wheel of a body off the road, up to a time; absent where it does
-/// not. A body without wheels has patches on the ground in place of them (Footing). A wheel that is
-/// off for less than 5 cm of its way may be missed. O(way / distance to the border · corners), no
-/// allocation. Asks `stop` at every step.
+/// First moment until `until_s` at which a wheel of a body on its plan is off the road; absent if
+/// there is none. A body without wheels has contact patches in their place (Footing). A wheel that
+/// is off the road for less than 5 cm of its path can be missed. O(path length / distance to the
+/// border · corners); does not allocate. Checks `stop` at every step.
 std::optional<RoadLeaving> find_leaving(const Road& road, const Body& body, const Motion& plan,
                                         double until_s, const StopCheck& stop = {});
 

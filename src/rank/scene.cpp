@@ -55,8 +55,8 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
                     !model.mass_kg.has_value()};
 }
 
-/// The error of `describe_vehicle` as callers get it: at the scenario's key where the scenario is
-/// at fault, else at the mesh.
+/// Adds the place to an error of `describe_vehicle`: the key of the scenario if its value is wrong,
+/// otherwise the mesh.
 Error error_of_model(Error error, const ScenarioModel& model) {
   const std::string path = "models." + model.name;
   if (error.place == "centre of mass") {
@@ -85,7 +85,7 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
   return vehicle;
 }
 
-/// A body that nothing moves has one place.
+/// Checks that fixed bodies have one pose without errors.
 Status check_fixed(const Scene& scene, const Scenario& scenario) {
   for (std::size_t i = 0; i < scene.actors.size(); ++i) {
     const ScenarioActor& actor = scenario.actors[i];
@@ -93,7 +93,7 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
     return Error{ErrorCode::bad_input,
                  {},
                  "actors." + actor.name + ".perception",
-                 "is of a body that nothing moves",
+                 "belongs to a fixed body",
                  "state ego.uncertainty in its place, or give its model a mass"};
   }
   const std::vector<Plan>& plans = scene.futures.plans;
@@ -103,13 +103,13 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
     return Error{ErrorCode::bad_input,
                  {},
                  "actors." + scenario.actors[actor].name,
-                 "has several motions, and nothing moves it",
+                 "has several motions, but it is fixed",
                  "give it one pose, or its model a mass"};
   }
   return Success{};
 }
 
-/// Puts the bodies that nothing moves where they are.
+/// Sets the poses of the fixed bodies.
 void set_fixed_poses(Scene& scene) {
   for (const Plan& plan : scene.futures.plans) {
     Body& body = scene.actors[plan.actor];
@@ -127,7 +127,8 @@ Box swept_box(const Body& body, const Motion& motion, double from_s, double unti
   const Eigen::Vector3d half = (pose.rotation * body.half_axes_m).cwiseAbs().rowwise().sum();
   const double moved = std::max(motion.reach(body.radius_m, from_s, middle_s),
                                 motion.reach(body.radius_m, middle_s, until_s));
-  // Rotations may be off by 1e-6, and sums round: a millionth of all lengths covers both.
+  // Covers rotation matrices that are off by 1e-6 and the rounding of sums: a millionth of all
+  // lengths.
   const double margin =
       moved + tolerance_m + 2e-6 * (1.0 + body.radius_m + center.cwiseAbs().maxCoeff());
   Box box;
@@ -173,7 +174,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
         "give the ego's model a mass"};
   }
   scene.ego = make_body(models[ego->model], ego->mass_kg);
-  // By model: its outline takes milliseconds to cut, and many actors share one.
+  // Cached by model: cutting the outlines takes milliseconds, and many actors share a model.
   std::vector<std::optional<Vehicle>> described(models.size());
   std::vector<std::shared_ptr<const BodyOutline>> outlines(models.size());
   const auto describe = [&](std::size_t model, Body& body) -> Status {
@@ -241,7 +242,8 @@ void update_plans(Scene& scene, ImpactWorkspace& workspace) {
     if (!actor.vehicle.movable()) continue;
     const MotionBound bound =
         plan.motion.bound(0.0, scene.slice_s.back() + SceneOptions{}.longest_s);
-    // About a centre of mass, which lies within the radius, too.
+    // Points rotate about the centre of mass, which is within one radius of the origin and within
+    // two radii of any point.
     scene.fastest_plan_mps = std::max(scene.fastest_plan_mps,
                                       bound.speed_mps + 3.0 * actor.radius_m * bound.angular_radps);
   }

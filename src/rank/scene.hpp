@@ -24,64 +24,69 @@
 
 namespace crashrank::detail {
 
-/// A body with what the search for contacts needs to know of its size.
+/// A body with the geometry and the properties that the search for contacts and the crash model
+/// need.
 struct Body {
   const Model* model = nullptr;
   double mass_kg = 0.0;
-  Pose fixed_pose;                                        ///< of what nothing moves
-  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();     ///< of the root box, body coordinates
-  Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();  ///< its half extents along its axes
-  double radius_m = 0.0;                       ///< no point of the body is further from its origin
-  Vehicle vehicle;                             ///< what it is in a crash
-  Footing footing;                             ///< of what moves
-  std::shared_ptr<const BodyOutline> outline;  ///< for distances, never null
-  std::optional<double> occupants;             ///< persons; absent: the kind's
+  Pose fixed_pose;  ///< pose of a fixed body
+  /// centre of the root box, body coordinates
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+  /// half extents of the root box along its axes
+  Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();
+  double radius_m = 0.0;  ///< upper bound on the distance of a point of the body from its origin
+  Vehicle vehicle;        ///< mechanical properties for the crash model
+  Footing footing;        ///< contact patches on the road; movable bodies only
+  std::shared_ptr<const BodyOutline> outline;  ///< for distance queries; never null
+  std::optional<double> occupants;             ///< persons; absent: the default of its kind
 };
 
-/// A box in world coordinates that holds every point of the body at every time of [from, until],
-/// with a margin that covers contact at the tolerance and rounding.
+/// Bounding box in world coordinates of all points of the body during [from, until], widened by the
+/// contact tolerance and by more than all rounding errors.
 Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
               double tolerance_m);
 
-/// Bodies that nothing moves and that adjoin each other: one body in a contact.
+/// Fixed bodies that adjoin each other and act as one body in a contact.
 struct JoinedBodies {
-  std::vector<std::size_t> members;  ///< actors, rising; the first one's pose is that of all
-  Vehicle vehicle;                   ///< their common outline, in its body coordinates
+  /// indices of actors, ascending; the pose of the first is that of all
+  std::vector<std::size_t> members;
+  Vehicle vehicle;  ///< their common outline, in the body coordinates of the first member
 };
 
-/// What all candidates of a scenario share, prepared once and then only read.
+/// Everything that the candidates of a scenario share, prepared once and then read only.
 struct Scene {
   Body ego;
   Pose ego_start;
   std::vector<Body> actors;
   std::vector<JoinedBodies> joined;
-  std::vector<std::size_t> joined_of;  ///< by actor: its place in `joined`, or `alone`
+  std::vector<std::size_t> joined_of;  ///< by actor: index into `joined`, or `not_joined`
   static constexpr std::size_t not_joined = static_cast<std::size_t>(-1);
-  /// By actor: fixed bodies that it adjoins but is not joined with, since one of the two may not
-  /// exist. The first member of joined bodies stands for all of them.
+  /// By actor: fixed bodies that adjoin it but are not joined with it, because one of the two may
+  /// be absent. Joined bodies are represented by their first member.
   std::vector<std::vector<std::uint32_t>> adjoining;
-  /// Time is cut into slices; in each the swept boxes of the actors' plans are ready to be asked.
-  std::vector<double> slice_s;  ///< ends of the slices, from 0 to the horizon
+  /// Time is divided into slices, each with a broad phase over the swept boxes of all plans.
+  std::vector<double> slice_s;  ///< limits of the slices, from 0 to the horizon
   Futures futures;
-  double fastest_plan_mps = 0.0;   ///< no point of an actor that follows a plan is faster
-  std::vector<BroadPhase> slices;  ///< of the plans
-  std::vector<Box> boxes;          ///< of the plans, while slices are built
-  /// Whether the ego at its start is known to be clear of an actor on a plan, by plan.
+  /// upper bound on the speed of any point of an actor on its plan
+  double fastest_plan_mps = 0.0;
+  std::vector<BroadPhase> slices;  ///< broad phase over the plans, by slice
+  std::vector<Box> boxes;          ///< swept boxes of the plans in one slice, while it is built
+  /// By plan: the ego at its start is known to be clear of the actor on that plan.
   std::vector<char> apart_at_start;
   Measure measure = Measure::polygons;
   HarmOptions harm;
-  HarmSample nominal;               ///< in which nothing varies
-  std::vector<HarmSample> samples;  ///< in which the score is evaluated, too; may be empty
+  HarmSample nominal;               ///< the sample with all parameters at their nominal values
+  std::vector<HarmSample> samples;  ///< further samples of the unknown parameters; may be empty
   EgoLimits limits;
   Infeasible infeasible = Infeasible::demote;
   Road road;
-  double grip = 0.8;  ///< of tyres on the road
+  double grip = 0.8;  ///< friction of the tyres on the road
   PlanTrajectories trajectories;
   ImpactOptions impact;
-  RankWork work;  ///< spent on preparing
+  RankWork work;  ///< work of the preparation
 };
 
-/// The body that an index stands for: an actor, or the ego.
+/// The body of an index: an actor, or the ego for `ego_body`.
 inline const Body& body_of(const Scene& scene, std::size_t index) {
   return index == ego_body ? scene.ego : scene.actors[index];
 }
@@ -89,8 +94,8 @@ inline const Body& body_of(const Scene& scene, std::size_t index) {
 Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
                          const RankOptions& options, RankResult& result);
 
-/// Reads the plans: sweeps their boxes, and finds which the ego at its start is clear of. Allocates
-/// only to grow beyond what was held before.
+/// Updates everything that depends on the motions of the plans: swept boxes, trajectories, and
+/// which plans the ego at its start is clear of. Allocates only when memory has to grow.
 void update_plans(Scene& scene, ImpactWorkspace& workspace);
 
 }  // namespace crashrank::detail

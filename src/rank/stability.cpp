@@ -11,8 +11,7 @@
 namespace crashrank::detail {
 namespace {
 
-/// Whether the vehicle can follow a candidate, as far as that decides its place: those that are
-/// demoted stand behind all that are not.
+/// Feasibility of a candidate as far as it decides the place: demoted candidates follow all others.
 enum Tier : std::uint8_t { followable, undecided, demoted, tiers };
 
 Tier tier_of(const CandidateResult& c, Infeasible infeasible) {
@@ -24,7 +23,7 @@ Tier tier_of(const CandidateResult& c, Infeasible infeasible) {
 double lowest_of(const CandidateResult& c) { return c.score.value_or(c.score_interval.lowest); }
 double highest_of(const CandidateResult& c) { return c.score.value_or(c.score_interval.highest); }
 
-/// Whether `a` stands before `b` by tier and score, whatever is found out.
+/// Returns true if `a` precedes `b` by tier and score, whatever the unknown values are.
 bool is_certainly_before(const CandidateResult& a, const CandidateResult& b,
                          Infeasible infeasible) {
   const Tier p = tier_of(a, infeasible);
@@ -33,7 +32,7 @@ bool is_certainly_before(const CandidateResult& a, const CandidateResult& b,
   return p <= q && !(p == undecided && q == undecided) && highest_of(a) < lowest_of(b);
 }
 
-/// Ends of the intervals of those in a tier, rising.
+/// Ends of the score intervals of the candidates of a tier, ascending.
 struct TierEnds {
   std::vector<double> lowest;
   std::vector<double> highest;
@@ -52,7 +51,7 @@ struct TierEnds {
   }
 };
 
-/// How many stand before a candidate, and how many do not, by `is_certainly_before`.
+/// Counts the candidates that certainly precede `c` and those that certainly follow it.
 void count_by_tiers(const std::array<TierEnds, tiers>& ends, Tier tier, CandidateResult& c,
                     std::size_t& before, std::size_t& behind) {
   for (const Tier other : {followable, undecided, demoted}) {
@@ -71,8 +70,8 @@ void count_by_tiers(const std::array<TierEnds, tiers>& ends, Tier tier, Candidat
   }
 }
 
-/// Where scores are open, a candidate stands behind those that stand before it whatever is found
-/// out, and before those behind it.
+/// Places of a partial answer: bounded by the numbers of candidates that certainly precede or
+/// follow.
 void places_by_intervals(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   std::array<TierEnds, tiers> ends;
@@ -83,7 +82,7 @@ void places_by_intervals(RankResult& result) {
   }
   for (TierEnds& each : ends) each.sort();
   for (std::size_t first = 0, end = 0; first < ranking.size(); first = end) {
-    // What is known of those with equal scores decides between them.
+    // Candidates with equal known scores are ordered by the tie-breaks, which are known too.
     end = first + 1;
     const Tier tier = tier_of(ranking[first], result.infeasible);
     const std::optional<double>& score = ranking[first].score;
@@ -109,7 +108,7 @@ void places_by_intervals(RankResult& result) {
 void compute_stability(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   assign_places(result);
-  // What the vehicle cannot follow stands behind in every sample.
+  // Infeasible candidates follow the others in every sample.
   const auto is_demoted = [&](const CandidateResult& c) {
     return tier_of(c, result.infeasible) == demoted;
   };
@@ -126,7 +125,7 @@ void compute_stability(RankResult& result) {
     return;
   }
   const std::size_t samples = result.samples.size();
-  // Without a score there is nothing to put in order; those come last.
+  // A candidate without scores in the samples cannot be sorted.
   const auto known = static_cast<std::size_t>(
       std::count_if(ranking.begin(), ranking.end(), [samples](const CandidateResult& c) {
         return c.score.has_value() && c.sample_scores.size() == samples;
@@ -136,7 +135,7 @@ void compute_stability(RankResult& result) {
   for (std::size_t sample = 0; sample < samples; ++sample) {
     if (is_numerical(result.samples[sample])) continue;
     std::iota(order.begin(), order.end(), std::size_t{0});
-    // Where a sample tells no difference, the ranking's own order stands.
+    // The sort is stable: candidates that score equally in a sample keep the order of the ranking.
     std::stable_sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
       if (is_demoted(ranking[p]) != is_demoted(ranking[q])) return is_demoted(ranking[q]);
       return ranking[p].sample_scores[sample] < ranking[q].sample_scores[sample];
@@ -144,7 +143,8 @@ void compute_stability(RankResult& result) {
     std::size_t place = 0;
     for (std::size_t i = 0; i < known; ++i) {
       CandidateResult& c = ranking[order[i]];
-      // The sort is stable: candidates that tie in the ranking and in the sample stand together.
+      // Candidates that are tied in the ranking and score equally in the sample are neighbours,
+      // because the sort is stable.
       const bool shared = i > 0 && ranking[order[i - 1]].place == c.place &&
                           ranking[order[i - 1]].sample_scores[sample] == c.sample_scores[sample];
       if (!shared) place = i;

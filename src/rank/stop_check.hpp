@@ -2,11 +2,11 @@
 
 namespace crashrank::detail {
 
-/// Tells work that it has to end: time is up, or the ranking is cancelled. Once it says so it says
-/// so for good. What ends for it returns at once, and what it returns is score nothing: whoever
-/// called asks again before using it.
+/// Callback by which long computations check whether to stop: the deadline has passed or the
+/// ranking is cancelled. Once it returns true it keeps returning true. A function that was stopped
+/// returns at once with a meaningless result; the caller must check again before using it.
 struct StopCheck {
-  bool (*ask)(void* context) = nullptr;  ///< none: nothing ends it
+  bool (*ask)(void* context) = nullptr;  ///< null: never stops
   void* context = nullptr;
 
   bool operator()() const { return ask != nullptr && ask(context); }

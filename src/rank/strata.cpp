@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t sample_seed = 0x6372617368;
 constexpr std::uint64_t fnv_prime = 0x100000001b3;
 
-/// One number of the sequence that a state stands for (splitmix64, Steele, Lea & Flood 2014).
+/// Next number of the sequence that `state` represents (splitmix64; Steele, Lea & Flood 2014).
 std::uint64_t next_word(std::uint64_t& state) {
   state += 0x9e3779b97f4a7c15U;
   std::uint64_t word = state;
@@ -21,7 +21,7 @@ std::uint64_t next_word(std::uint64_t& state) {
   return word ^ (word >> 31U);
 }
 
-/// In [0, 1).
+/// Next number in [0, 1).
 double next_share(std::uint64_t& state) {
   return static_cast<double>(next_word(state) >> 11U) * 0x1.0p-53;
 }
@@ -32,7 +32,7 @@ std::uint64_t fnv1a(const std::string& name) {
   return hash;
 }
 
-/// Ratio of two polynomials, the constant first.
+/// Ratio of two polynomials; coefficients in ascending order.
 double ratio(const std::array<double, 8>& above, const std::array<double, 8>& below, double x) {
   double p = 0.0;
   double q = 0.0;
@@ -73,8 +73,8 @@ const std::vector<double>& Strata::draw(std::uint64_t seed) {
 void Strata::draw(std::uint64_t seed, const StateUncertainty& uncertainty, StateError* errors) {
   std::uint64_t dimension = seed;
   const auto draw_one = [&](double deviation, double StateError::*error) {
-    // A word, not a step of the seed's own sequence, begins each dimension: sequences that are
-    // steps apart would hold the same numbers.
+    // Each dimension starts from a hashed word and not from a later state of the sequence of the
+    // seed: sequences with shifted starts would contain the same numbers.
     std::uint64_t state = ++dimension;
     const std::vector<double>& shares = draw(next_word(state));
     constexpr double least = 0x1.0p-53;

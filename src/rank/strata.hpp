@@ -10,16 +10,18 @@
 
 namespace crashrank::detail {
 
-/// Draws the dimensions of a Latin hypercube (McKay, Beckman & Conover 1979): [0, 1) is cut into as
-/// many equal strata as there are samples, and each sample takes a number of one.
+/// Draws the dimensions of a Latin hypercube sample (McKay, Beckman & Conover 1979): [0, 1) is
+/// divided into as many equal strata as there are samples, and each sample gets a number from a
+/// different stratum.
 class Strata {
 public:
-  /// Room for so many samples: nothing allocates after it.
+  /// Allocates for a number of samples; no other member allocates.
   void prepare(std::size_t samples);
   std::size_t samples() const noexcept { return order_.size(); }
   /// One number in [0, 1) for each sample, valid until the next draw.
   const std::vector<double>& draw(std::uint64_t seed);
-  /// The errors of a body's state, one for each sample: of four dimensions of that seed.
+  /// Draws the errors of the state of a body, one for each sample: four dimensions derived from the
+  /// seed.
   void draw(std::uint64_t seed, const StateUncertainty& uncertainty, StateError* errors);
 
 private:
@@ -27,14 +29,13 @@ private:
   std::vector<double> shares_;
 };
 
-/// Seed of what has that name.
+/// Seed of an actor, from its name.
 std::uint64_t seed_of(const std::string& name);
-/// Seed of something that is no actor: differs from that of every name.
+/// Seed of something that is not an actor: differs from the seed of every name.
 std::uint64_t reserved_seed(const std::string& name);
 
-/// The number that a normally distributed one of mean 0 and standard deviation 1 stays below with
-/// that probability, in (0, 1); relative error about 1e-16 (Wichura 1988, Algorithm AS 241,
-/// PPND16).
+/// Quantile of the standard normal distribution at a probability in (0, 1); relative error about
+/// 1e-16 (Wichura 1988, Algorithm AS 241, PPND16).
 double normal_deviate(double probability);
 
 }  // namespace crashrank::detail

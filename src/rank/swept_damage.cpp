@@ -9,7 +9,8 @@
 namespace crashrank::detail {
 namespace {
 
-// Far above the rounding of coordinates below a kilometre, far below anything that matters.
+// Margin far above the rounding of coordinates below a kilometre, and far below any relevant
+// length.
 constexpr double margin_m = 1e-6;
 
 struct BoxD {
@@ -23,7 +24,8 @@ BoxD to_double(const Box& box) {
   return {0.5 * (low + high), 0.5 * (high - low)};
 }
 
-// The boxes of one tree, whose points move on chords between two poses, in the frame of another.
+// Swept boxes of the nodes of one tree, whose points move along chords between two poses, in the
+// frame of another tree.
 class SweptBoxes {
 public:
   SweptBoxes(const AabbTree& tree, const Pose& first, const Pose& last, const AabbTree& other)
@@ -47,7 +49,7 @@ private:
   static BoxD at(const Pose& pose, const BoxD& box) {
     return {pose.rotation * box.center + pose.translation, pose.rotation.cwiseAbs() * box.half};
   }
-  // Outwards by the margin and by more than a conversion rounds.
+  // Rounds outwards by the margin and by more than the error of the conversion.
   static Eigen::Vector3f rounded(const Eigen::Vector3d& x, double sign) {
     constexpr double rounding = 1e-7;
     const Eigen::Array3d out = margin_m + rounding * x.cwiseAbs().array();
@@ -63,10 +65,10 @@ bool overlap(const Box& a, const Box& b) {
          b.min.y() <= a.max.y() && a.min.z() <= b.max.z() && b.min.z() <= a.max.z();
 }
 
-// A segment in the frame of a tree's boxes.
+// A line segment in the frame of the boxes of a tree.
 struct Segment {
   Eigen::Vector3d center;
-  Eigen::Vector3d half;  // from the centre to one end
+  Eigen::Vector3d half;  // vector from the centre to one end
 };
 
 bool may_touch(const Segment& s, const Box& node) {
@@ -81,7 +83,8 @@ bool may_touch(const Segment& s, const Box& node) {
          across.z() <= half.x() * reach.y() + half.y() * reach.x();
 }
 
-// A path that only slides along a triangle, in its plane, crosses nothing.
+// Exact test of a path against a triangle. A path within the plane of the triangle does not cross
+// it.
 bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const TriangleD& t) {
   std::uint64_t exact = 0;
   const auto& [a, b, c] = t.corner;
@@ -102,8 +105,8 @@ bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree&
   return false;
 }
 
-// Whether a path crosses a triangle below one of the nodes from `begin` on, which it takes from the
-// list.
+// Returns true if a path crosses a triangle below one of the nodes from index `begin` on. Removes
+// these nodes from the list.
 bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree& tree,
              std::size_t begin, std::vector<std::uint32_t>& nodes) {
   const Segment segment{tree.axes.transpose() * (0.5 * (p + q)),
@@ -123,8 +126,8 @@ bool crosses(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const AabbTree&
   return false;
 }
 
-// Behind `near`: of the nodes in [begin, end) those that a box overlaps, in place of larger ones
-// their children.
+// Appends to `near` the nodes in its range [begin, end) that overlap a box; nodes larger than the
+// box are replaced by their children.
 void list_overlapping(const AabbTree& tree, const Box& box, std::uint32_t begin, std::uint32_t end,
                       std::vector<std::uint32_t>& near) {
   const auto size = [](const Box& b) { return (b.max - b.min).squaredNorm(); };
@@ -143,7 +146,7 @@ void list_overlapping(const AabbTree& tree, const Box& box, std::uint32_t begin,
   }
 }
 
-// Whether all triangles of a leaf are in the set.
+// Returns true if the set contains all triangles of a leaf.
 bool contains_leaf(const TriangleSet& set, const AabbTree& tree, const Node& leaf) {
   const auto* const first = tree.order.data() + leaf.first;
   return std::all_of(first, first + leaf.count,
@@ -163,8 +166,8 @@ std::uint64_t add_swept_triangles(const Body& moving, const Pose& first, const P
   std::uint64_t followed = 0;
   std::size_t begin = 0;
   std::size_t end = 0;
-  // A path lies in the swept boxes of all leaves that hold its corner: it crosses no triangle but
-  // below the nodes that any one of them overlaps.
+  // The path of a corner lies in the swept boxes of all leaves that contain the corner. So it is
+  // enough to search below the nodes that overlap the box of any one of them.
   const auto crossing = [&](std::uint32_t vertex) {
     Path& path = scratch.path[vertex];
     if (path == Path::unknown) {
@@ -183,7 +186,7 @@ std::uint64_t add_swept_triangles(const Body& moving, const Pose& first, const P
     scratch.visits.pop_back();
     if (set.is_full(visit.node)) continue;
     const Node& node = tree.nodes[visit.node];
-    // Most of what is near was passed at an earlier pose.
+    // Most triangles nearby were already added at an earlier pose.
     const bool is_full = node.is_leaf() ? contains_leaf(set, tree, node)
                                         : set.is_full(node.first) && set.is_full(node.first + 1);
     if (is_full) set.note_full(visit.node);

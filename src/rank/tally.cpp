@@ -22,7 +22,7 @@ double struck_speed_of(const Body& body, double closing_mps, double delta_v_mps,
   return struck_speed_mps(closing_mps, delta_v_mps, body.mass_kg, reduced_kg);
 }
 
-/// Adds a side of a contact to an event.
+/// Adds one side of a contact to an event.
 void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect& effect,
                       std::size_t side) {
   const SideEffect& own = effect.sides[side];
@@ -32,7 +32,7 @@ void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect&
   event.greatest_mps = std::max(event.greatest_mps, own.delta_v_mps.norm());
   event.impulse_ns += own.impulse_ns;
   event.yaw_radps += own.yaw_radps;
-  // A contact's intrusion is what it adds to that of earlier ones of the two.
+  // The intrusion of a contact is the increase over earlier contacts of the same two bodies.
   const std::size_t intruder = effect.sides[1 - side].body;
   if (own.intrusion_m > 0.0 || intruder == event.intruder) {
     if (intruder != event.intruder) event.intruded_m = 0.0;
@@ -142,7 +142,7 @@ void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSa
   sum_ += row.of_contact(effect);
 }
 
-/// Risk of a body's people, or the ego's summed delta-v, over all events.
+/// Term of a body over all events: the risk of its people, or the summed delta-v of the ego.
 double Tally::term(const Scene& scene, const Entry& e) const {
   if (e.open.number == 0) return e.closed;
   return measure_row(scene.measure).of_body(e.closed, e.open, e.body == ego_body);

@@ -13,95 +13,98 @@
 
 namespace crashrank::detail {
 
-/// Contacts of one body that begin within this time of the end of one before are one event: it has
-/// one delta-v, the sum of theirs, s.
+/// A contact of a body that begins less than this after the end of an earlier one belongs to the
+/// same event, s. The delta-v of an event is the sum over its contacts.
 inline constexpr double same_event_s = 0.1;
 
-/// What a contact does to one of its two bodies.
+/// Effect of a contact on one of its two bodies.
 struct SideEffect {
-  std::size_t body = ego_body;                            ///< an actor, or the ego
+  std::size_t body = ego_body;                            ///< index of an actor, or `ego_body`
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();  ///< world axes
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();   ///< world axes
-  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();     ///< its x axis as it begins
-  double yaw_radps = 0.0;                                 ///< change of its yaw rate
-  double road_mps = 0.0;                                  ///< its speed before
+  /// forward axis of the body at the begin of the contact
+  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();
+  double yaw_radps = 0.0;  ///< change of the yaw rate
+  double road_mps = 0.0;   ///< speed over ground before the contact
   double intrusion_m = 0.0;
   double crush_j = 0.0;
 };
 
-/// What a simulated contact adds to a score.
+/// Contribution of a simulated contact to a score.
 struct ContactEffect {
   double begin_s = 0.0;
   double end_s = 0.0;
-  bool is_apart = false;     ///< an event of its own, however soon it follows
-  double closing_mps = 0.0;  ///< as it begins
-  double restitution = 0.0;  ///< of the simulation
+  bool is_apart = false;     ///< starts a new event, however soon it follows
+  double closing_mps = 0.0;  ///< closing speed at the begin
+  double restitution = 0.0;  ///< as simulated
   double dissipated_j = 0.0;
-  double closing_energy_j = 0.0;  ///< see Contact; 0 but in the first contact of the two
+  double closing_energy_j = 0.0;  ///< see Contact; 0 except in the first contact of the pair
   std::array<SideEffect, 2> sides;
 };
 
-/// The effect with the restitution multiplied by `factor`, without another simulation: exact as far
-/// as one rebound gives back part of the impulse.
+/// Returns the effect with the restitution multiplied by `factor`, without a new simulation. Exact
+/// if the impulse of the restitution phase is a fraction of that of the compression phase.
 ContactEffect scale_restitution(const ContactEffect& effect, double factor);
 
-/// Depth of the middle of the passenger compartment: no intrusion is greater, m.
+/// Upper bound on the intrusion: the depth of the middle of the passenger compartment, m.
 double max_intrusion_m(const Vehicle& v);
 
-/// A body's contacts of one event taken together.
+/// The contacts of one event of a body, taken together.
 struct BodyEvent {
-  std::size_t number = 0;  ///< counted from 1; 0: none yet
+  std::size_t number = 0;  ///< from 1; 0: none yet
   double end_s = 0.0;
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();
-  double greatest_mps = 0.0;  ///< delta-v of one of its contacts
+  double greatest_mps = 0.0;  ///< largest delta-v of one of its contacts
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();
-  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< at its begin
+  Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< forward axis at its begin
   double yaw_radps = 0.0;
-  double road_mps = 0.0;     ///< before it
-  double closing_mps = 0.0;  ///< greatest
-  double reduced_kg = 0.0;   ///< of the contact with that
+  double road_mps = 0.0;     ///< speed over ground before it
+  double closing_mps = 0.0;  ///< largest closing speed of a contact
+  double reduced_kg = 0.0;   ///< reduced mass of the contact with the largest closing speed
   double leading_edge_m = 0.0;
-  double intrusion_m = 0.0;         ///< greatest of one other body
-  std::size_t intruder = ego_body;  ///< body of the last contact that intruded
-  double intruded_m = 0.0;          ///< by that one since it last took turns
-  /// Greatest of its contacts, each alone and after those before it: a further contact that takes
-  /// delta-v back heals nobody.
+  double intrusion_m = 0.0;         ///< largest intrusion by one other body
+  std::size_t intruder = ego_body;  ///< other body of the last contact with intrusion
+  double intruded_m = 0.0;          ///< intrusion by `intruder` since another body last intruded
+  /// Largest risk over its contacts, each taken alone and together with those before it. A later
+  /// contact that reduces the delta-v does not reduce the risk.
   double risk = 0.0;
 
-  /// Contacts on opposite sides cancel in the sum: no less than that of one of them.
+  /// Delta-v of the event, m/s. Contacts on opposite sides cancel in the sum, so it is at least
+  /// that of any single contact.
   double size_mps() const { return std::max(greatest_mps, delta_v_mps.norm()); }
 };
 
-/// Exposure of the people on a body to an event.
+/// Inputs of the harm model for the people on a body in an event.
 HarmExposure exposure_of(const Scene& scene, std::size_t body, const BodyEvent& event);
 
-/// The score of one candidate in one sample: contact by contact in the order of their begins. The
-/// same sums in the same order wherever it is used.
+/// Computes the score of one candidate in one sample from its contacts in the order of their begin
+/// times. All callers get the same sums in the same order.
 class Tally {
 public:
-  /// Room for so many bodies.
+  /// Allocates for a number of bodies.
   void prepare(std::size_t bodies) { bodies_.reserve(bodies); }
-  /// Forgets all contacts.
+  /// Removes all contacts.
   void begin();
-  /// Adds a contact that was simulated.
+  /// Adds a simulated contact.
   void add(const Scene& scene, const ContactEffect& simulated, const HarmSample& sample);
-  /// The score of all added so far.
+  /// Score of the contacts added so far.
   double score(const Scene& scene) const;
-  /// No score that has these contacts and any others is lower, in whatever order they come.
+  /// Lower bound on the score of any sequence of contacts that includes those added so far.
   double lower_bound(const Scene& scene) const;
-  /// The share of a body's people in the score; measures but harm: of the ego's delta-v.
+  /// Contribution of the people of a body to the score; for other measures than harm, contribution
+  /// of the delta-v of the ego.
   double people_score(const Scene& scene, std::size_t body) const;
-  /// What the people of every body with contacts risk, the ego first; measure harm only.
+  /// Risk of the people of every body with contacts, the ego first; measure harm only.
   std::vector<PersonRisk> people(const Scene& scene) const;
-  /// The event of a body that its last contact belongs to.
+  /// Current event of a body: that of its last contact.
   BodyEvent event(std::size_t body) const;
 
 private:
   struct Entry {
     std::size_t body = 0;
     BodyEvent open;
-    double closed = 0.0;         ///< events before the open one: risk, or m/s
-    double greatest_risk = 0.0;  ///< of one contact
+    double closed = 0.0;         ///< term of the events before the open one: a risk, or m/s
+    double greatest_risk = 0.0;  ///< largest risk of one contact
   };
   Entry& entry(std::size_t body);
   const Entry* find(std::size_t body) const;
@@ -109,7 +112,7 @@ private:
                 const HarmSample& sample);
   double term(const Scene& scene, const Entry& entry) const;
 
-  double sum_ = 0.0;  ///< all but people and the ego's delta-v
+  double sum_ = 0.0;  ///< all terms except those of people and of the delta-v of the ego
   std::vector<Entry> bodies_;
 };
 

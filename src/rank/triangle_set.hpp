@@ -7,11 +7,11 @@
 
 namespace crashrank::detail {
 
-/// A set of triangle indices that is emptied at no cost and lists its members in order. Nodes of
-/// the triangles' tree below which all are members can be noted.
+/// Set of triangle indices with constant-time clearing and sorted output. Nodes of the tree of the
+/// triangles can be marked as full: all triangles below are members.
 class TriangleSet {
 public:
-  /// Empties it for indices below `size`, of triangles and of nodes below `nodes`.
+  /// Clears the set for triangle indices below `size` and node indices below `nodes`.
   void clear(std::size_t size, std::size_t nodes) {
     if (stamps_.size() < size) stamps_.resize(size, 0);
     if (full_.size() < nodes) full_.resize(nodes, 0);
@@ -28,11 +28,11 @@ public:
     stamps_[triangle] = stamp_;
     members_.push_back(triangle);
   }
-  /// All triangles below a node are members.
+  /// Marks a node as full.
   void note_full(std::uint32_t node) { full_[node] = stamp_; }
-  /// Whether that was noted.
+  /// Returns true if the node is marked as full.
   bool is_full(std::uint32_t node) const { return full_[node] == stamp_; }
-  /// Rising.
+  /// The members in ascending order.
   const std::vector<std::uint32_t>& sorted() {
     std::sort(members_.begin(), members_.end());
     return members_;

@@ -23,14 +23,14 @@ inline constexpr std::array<BodyKind, 9> all_kinds{
     BodyKind::car,        BodyKind::truck,   BodyKind::bus,
     BodyKind::motorcycle, BodyKind::bicycle, BodyKind::pedestrian,
     BodyKind::barrier,    BodyKind::pole,    BodyKind::building};
-/// Place of a building among those.
+/// Index of the building in `all_kinds`.
 inline constexpr std::size_t wall = 8;
 
-/// Measures that the tally scores.
+/// Measures that Tally computes.
 inline constexpr std::array<Measure, 4> tallied{Measure::delta_v, Measure::energy,
                                                 Measure::intrusion, Measure::harm};
 
-/// A car that is the ego and one actor of each kind.
+/// A scene of a car as the ego and one actor of each kind.
 inline Scene scene_of(Measure measure) {
   Scene scene;
   scene.measure = measure;
@@ -40,7 +40,7 @@ inline Scene scene_of(Measure measure) {
   return scene;
 }
 
-/// What the contacts come to in the plain variant.
+/// Tally of the contacts in the nominal sample.
 inline Tally tally_of(const Scene& scene, const std::vector<ContactEffect>& effects) {
   Tally tally;
   for (const ContactEffect& e : effects) tally.add(scene, e, scene.nominal);

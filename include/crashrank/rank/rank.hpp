@@ -30,10 +30,11 @@ inline constexpr std::size_t max_sampled_futures = 10'000;
 
 /// Treatment of candidates that the vehicle cannot follow.
 enum class Infeasible {
-  demote,  ///< they rank behind all feasible ones
-  /// They are left out of a complete ranking, unless there is no feasible one; else as `demote`.
+  demote,  ///< they follow all feasible ones
+  /// They are removed from a complete ranking, unless no candidate is feasible; a partial ranking
+  /// treats them as `demote`.
   drop,
-  keep,  ///< they are ranked like all others
+  keep,  ///< they are ranked like all other candidates
 };
 
 /// The name on the command line: "demote", "drop", "keep".
@@ -44,19 +45,19 @@ CRASHRANK_API Result<Infeasible> infeasible_from_name(const std::string& name);
 /// How candidates are ranked.
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
-  /// Threads that share the work, 64 at most; 0 or 1: the calling thread does all. They share the
-  /// candidates when looking for contacts, and one dispatch holds the damage queries of every 16
-  /// candidates a thread. The answer has the same bits for every number, policy and depth.
+  /// Number of threads, 64 at most; 0 or 1: the calling thread does all the work. Threads share the
+  /// candidates when they simulate; one dispatch holds the damage queries of every 16 candidates a
+  /// thread. The answer has the same bits for every number of workers, policy and depth.
   unsigned workers = 1;
-  Policy policy = Policy::late_match;  ///< how the dispatch's jobs find their workers
+  Policy policy = Policy::late_match;  ///< policy by which the dispatcher assigns jobs to workers
   std::uint32_t depth = auto_depth;    ///< its distribution depth, 1 to `max_distribution_depth`
   std::optional<HarmOptions> harm;     ///< absent: the scenario's
   std::optional<RiskMeasure> risk;     ///< absent: the scenario's
-  /// Futures that are drawn where combinations of predictions are too many or states have errors, 1
-  /// to `max_sampled_futures`.
+  /// Number of futures to draw if there are too many combinations of predictions or if states have
+  /// errors, 1 to `max_sampled_futures`.
   std::size_t sampled_futures = 64;
   Infeasible infeasible = Infeasible::demote;  ///< of candidates that the ego cannot follow
-  ImpactOptions impact;                        ///< `start_is_apart` is decided inside
+  ImpactOptions impact;                        ///< `start_is_apart` is set internally
   /// Called before each simulation and after each candidate with the number of candidates evaluated
   /// and of all, by all workers, also concurrently; must return within microseconds and not throw.
   /// Returning false cancels the ranking: candidates not evaluated yet get bounds on their scores.
@@ -66,12 +67,13 @@ struct RankOptions {
 
 /// Damage of a crash to one body.
 struct BodyDamage {
-  /// Triangles that intersect the other body, or pass through its surface, while the two move as
-  /// the simulated contact moves them, in mesh order, rising: see `rank`. A body that lies inside
-  /// the other at the start counts whole.
+  /// Damaged triangles in ascending order of their indices: those that intersect the other body or
+  /// pass through its surface while the two move as in the simulated contact, see `rank`. If a body
+  /// is inside the other at the start, all of its triangles are damaged.
   std::vector<std::uint32_t> triangles;
-  std::vector<std::uint32_t> parts;  ///< indices of the mesh's parts that those belong to, rising
-  double area_m2 = 0.0;              ///< of those triangles
+  /// indices of the parts of the mesh with damaged triangles, ascending
+  std::vector<std::uint32_t> parts;
+  double area_m2 = 0.0;  ///< of those triangles
   Box region;  ///< where the surfaces intersect, in body coordinates; empty if they do not
   Pose pose;   ///< body to world at first contact
 };
@@ -89,28 +91,29 @@ struct BodyOutcome {
   double delta_v_x_mps = 0.0;          ///< forward, m/s
   double delta_v_y_mps = 0.0;          ///< to the left, m/s
   double yaw_rate_change_radps = 0.0;  ///< to the left, rad/s
-  /// Of the event that the contact belongs to: contacts of one body that overlap in time or lie
-  /// less than 0.1 s apart change its velocity together. Harm reads the greatest that it reached.
+  /// Of the event of the contact: contacts of one body that overlap in time or are less than 0.1 s
+  /// apart. Harm uses the largest value that the event reached.
   double event_delta_v_mps = 0.0;
   double event_yaw_rate_change_radps = 0.0;  ///< of the event, to the left, rad/s
   double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
   int clock = 12;               ///< the PDOF as an hour, 12 ahead
-  double crush_energy_j = 0.0;  ///< turned into its deformation, J
+  double crush_energy_j = 0.0;  ///< work done in deforming the body, J
   double ees_mps = 0.0;         ///< energy-equivalent speed, m/s
-  double crush_m = 0.0;         ///< deepest, m
-  double intrusion_m = 0.0;     ///< into the compartment, beyond earlier ones of the two, m
-  double harm = 0.0;            ///< persons, as weighted; measure harm only
-  std::string cdc;              ///< collision deformation classification, SAE J224
+  double crush_m = 0.0;         ///< crush depth, m
+  /// into the compartment, in excess of earlier intrusion by the same body, m
+  double intrusion_m = 0.0;
+  double harm = 0.0;  ///< persons, as weighted; measure harm only
+  std::string cdc;    ///< collision deformation classification, SAE J224
 };
 
-/// Result of a contact for its two bodies, each in the state that earlier contacts left it in.
+/// Result of a contact for its two bodies, starting from the states after earlier contacts.
 struct ContactSeverity {
-  /// Harm was evaluated (measures that need it). The changes of velocity are the simulation's in
-  /// any case: the same numbers under every measure.
+  /// Harm was evaluated, since the measure needs it. Changes of velocity are those of the
+  /// simulation under every measure.
   bool simulated = false;
-  bool slides = false;        ///< the surfaces slide past each other
+  bool slides = false;        ///< the surfaces slide along each other
   double duration_s = 0.0;    ///< of the crush phase, s
-  double dissipated_j = 0.0;  ///< turned into damage and heat, J
+  double dissipated_j = 0.0;  ///< energy turned into damage and heat, J
   BodyOutcome ego;            ///< result for the ego
   BodyOutcome other;          ///< result for the other
   double harm = 0.0;          ///< persons, as weighted
@@ -122,65 +125,69 @@ struct ContactSeverity {
 struct Contact {
   /// Index into Scenario::actors; of joined fixed bodies the one touched first, later the one hit.
   std::size_t actor = 0;
-  ImpactState state = ImpactState::contact;  ///< relation of the bodies
+  ImpactState state = ImpactState::contact;  ///< contact, grazing or contained
   double time_of_impact_s = 0.0;             ///< from the decision, s
   double gap_m = 0.0;                        ///< between the surfaces then, at most the tolerance
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< point of contact, world, m
   /// Unit, from the ego towards the other; zero for a body that lies inside another.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  Eigen::Vector3d closing = Eigen::Vector3d::Zero();  ///< ego's velocity less the other's there
-  /// Its length.
+  /// velocity of the ego relative to the other body at the point, m/s
+  Eigen::Vector3d closing = Eigen::Vector3d::Zero();
+  /// Magnitude of `closing`, m/s.
   double closing_speed_mps = 0.0;
-  /// Its component along the normal, m/s. Depends on the facet that is touched first.
+  /// Component of `closing` along the normal, m/s. Depends on the facet that is touched first.
   double normal_speed_mps = 0.0;
-  /// ½·m₁m₂/(m₁+m₂)·closing_speed²: all that the crash could turn into damage if the bodies stuck
-  /// together and their velocities passed through the common centre of mass.
+  /// ½·m₁m₂/(m₁+m₂)·closing_speed²: the energy that would be dissipated if the bodies stuck
+  /// together and their relative velocity passed through the common centre of mass.
   double closing_energy_j = 0.0;
-  /// Duration of the simulated motion along which the damage was read, from the contact's begin to
-  /// the end of its force, s: `severity.duration_s`. 0 where the bodies do not press on each other.
+  /// Duration of the simulated motion along which damage was evaluated, from the begin of the
+  /// contact to the end of its force, s: `severity.duration_s`. 0 if the bodies do not press on
+  /// each other.
   double crush_s = 0.0;
-  /// Greatest distance in that motion of the ego's point at `point_m` from where it was at first
-  /// contact, in the other body's frame, m. Both bodies' crush together in a square hit; more where
-  /// they slide past each other.
+  /// Largest displacement during that motion of the point of the ego at `point_m`, in the frame of
+  /// the other body, m. The sum of both crush depths in a perpendicular impact; more if the
+  /// surfaces slide.
   double crush_m = 0.0;
-  /// Damage to the ego, including that by fixed bodies that adjoin `actor` and that the ego presses
-  /// on in the same contact.
+  /// Damage to the ego, including damage by fixed bodies that adjoin `actor` and that the ego
+  /// presses on in the same contact.
   BodyDamage ego;
   BodyDamage other;          ///< damage to `actor`
-  ContactSeverity severity;  ///< the crash that begins with it
-  std::size_t event = 0;     ///< number of the ego's event that it belongs to, from 1; 0: no force
+  ContactSeverity severity;  ///< mechanical result of the contact
+  /// number of the event of the ego that it belongs to, from 1; 0: no force
+  std::size_t event = 0;
 };
 
-/// Stands for the ego where a body is named by an index into Scenario::actors.
+/// Index of the ego, used where a body is identified by an index into Scenario::actors.
 inline constexpr std::size_t ego_body = static_cast<std::size_t>(-1);
 
-/// A contact between two bodies that are not the ego, one of which was hit before by the ego or by
-/// what it had hit. World axes.
+/// A contact between two bodies other than the ego, at least one of which was hit earlier in the
+/// same crash. World axes.
 struct FurtherContact {
-  std::size_t a = 0;    ///< index into Scenario::actors; it moves, as b may
-  std::size_t b = 0;    ///< and the other
+  std::size_t a = 0;    ///< index into Scenario::actors; it is movable, b may be fixed
+  std::size_t b = 0;    ///< index of the other body
   double time_s = 0.0;  ///< from the decision, s
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< mean point of the force, m
-  Eigen::Vector3d closing = Eigen::Vector3d::Zero();  ///< a's velocity less b's there, m/s
-  double closing_speed_mps = 0.0;                     ///< its length
-  double closing_energy_j = 0.0;                      ///< as in Contact
-  bool slides = false;                                ///< past each other rather than into
-  double duration_s = 0.0;                            ///< of the force, s
-  double dissipated_j = 0.0;                          ///< turned into damage and heat, J
-  double harm = 0.0;                                  ///< persons, as weighted
-  BodyOutcome outcome_a;                              ///< what it does to a
-  BodyOutcome outcome_b;                              ///< and to b
-  BodyDamage damage_a;                                ///< triangles of a
-  BodyDamage damage_b;                                ///< and of b
+  /// velocity of a relative to b at the point, m/s
+  Eigen::Vector3d closing = Eigen::Vector3d::Zero();
+  double closing_speed_mps = 0.0;  ///< magnitude of `closing`
+  double closing_energy_j = 0.0;   ///< as in Contact
+  bool slides = false;             ///< the surfaces slide along each other
+  double duration_s = 0.0;         ///< of the force, s
+  double dissipated_j = 0.0;       ///< energy turned into damage and heat, J
+  double harm = 0.0;               ///< persons, as weighted
+  BodyOutcome outcome_a;           ///< result for a
+  BodyOutcome outcome_b;           ///< result for b
+  BodyDamage damage_a;             ///< triangles of a
+  BodyDamage damage_b;             ///< triangles of b
 };
 
-/// A pass closer than the tolerance that touches nothing.
+/// An approach within the tolerance without intersection.
 struct Graze {
   std::size_t actor = 0;  ///< index into Scenario::actors
   double time_s = 0.0;    ///< s
 };
 
-/// Where the futures of a ranking come from.
+/// Method by which the futures of a ranking are chosen.
 enum class FutureMethod {
   certain,  ///< every actor exists and follows one motion: there is one future
   joint,    ///< the scenario lists joint futures
@@ -190,66 +197,70 @@ enum class FutureMethod {
 
 /// The futures of a ranking.
 struct FutureSummary {
-  FutureMethod method = FutureMethod::certain;  ///< where they come from
-  std::size_t futures = 1;    ///< evaluated; with `sampled`, the likeliest is one more
-  std::size_t sampled = 0;    ///< of these drawn, each with the same probability
-  double combinations = 1.0;  ///< that the scenario allows
-  /// Actors with several choices that no candidate, nor what follows from its crash, comes near:
-  /// they multiply no futures, all of which have their likeliest choice.
+  FutureMethod method = FutureMethod::certain;  ///< how they were chosen
+  /// number of evaluated futures; with `sampled` the likeliest one is added
+  std::size_t futures = 1;
+  std::size_t sampled = 0;    ///< number of drawn futures, all with the same probability
+  double combinations = 1.0;  ///< number of combinations that the scenario allows
+  /// Number of actors with several choices that no candidate or crash comes near. They have their
+  /// likeliest choice in every future and do not multiply the number of futures.
   std::size_t left_out = 0;
-  RiskMeasure risk;               ///< how their scores become one
-  bool has_state_errors = false;  ///< drawn with errors of positions, headings and speeds
+  RiskMeasure risk;               ///< measure that combines the scores of all futures
+  bool has_state_errors = false;  ///< positions, headings and speeds are drawn with errors
 };
 
-/// Outcome of a candidate in futures that do not differ for it: all bodies that act in its crash,
-/// or might have, move alike in them.
+/// Outcome of a candidate in futures that are equivalent for it: all bodies that act in its crash,
+/// or could have, move alike in them.
 struct FutureOutcome {
-  double probability = 0.0;        ///< of these futures together; 0: the likeliest, beside a sample
-  std::size_t futures = 1;         ///< how many
-  bool is_likeliest = false;       ///< the likeliest future is one of them
-  double score = 0.0;              ///< in the measure's unit
-  bool collides = false;           ///< the ego has a contact
-  std::size_t actor = 0;           ///< if it collides: the first body, index into Scenario::actors
+  /// of these futures together; 0 for the likeliest future next to a sample
+  double probability = 0.0;
+  std::size_t futures = 1;    ///< number of these futures
+  bool is_likeliest = false;  ///< the likeliest future is one of them
+  double score = 0.0;         ///< in the measure's unit
+  bool collides = false;      ///< the ego has a contact
+  /// if it collides: first body that the ego hits, index into Scenario::actors
+  std::size_t actor = 0;
   double time_of_impact_s = 0.0;   ///< from the decision
-  double closing_speed_mps = 0.0;  ///< of the points that touch first
-  std::size_t contacts = 0;        ///< with a force, those between others included
+  double closing_speed_mps = 0.0;  ///< of the points that touch first, m/s
+  /// number of contacts with a force, including those between other bodies
+  std::size_t contacts = 0;
 };
 
 /// Risk of the people in or on one body.
 struct PersonRisk {
   std::size_t body = ego_body;  ///< `ego_body`, or an index into Scenario::actors
-  double persons = 0.0;         ///< in or on it
-  /// Of the risk model's outcome (`risk_outcome`) for one of them, without weights: the mean over
-  /// all futures, whatever the risk measure.
+  double persons = 0.0;         ///< number of people in or on it
+  /// Probability of the outcome of the risk model (`risk_outcome`) for one of them, without
+  /// weights: the mean over all futures, whatever the risk measure.
   double probability = 0.0;
 };
 
 /// The first moment at which a wheel leaves the road.
 struct RoadLeaving {
   double time_s = 0.0;                                ///< from the decision
-  double speed_mps = 0.0;                             ///< of the ego then
-  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();  ///< where the wheel is, world, m
+  double speed_mps = 0.0;                             ///< speed of the ego at that time
+  Eigen::Vector2d point_m = Eigen::Vector2d::Zero();  ///< position of the wheel, world, m
 };
 
-/// Where the ego is at the horizon, if nothing was hit.
+/// State of the ego at the horizon, for a candidate without contact.
 struct HorizonState {
   double speed_mps = 0.0;                                ///< >= 0
   double heading_rad = 0.0;                              ///< world, left positive, from x
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< of the body's origin, world, m
 };
 
-/// Largest distance that is searched for, m.
+/// Largest distance that is computed, m.
 inline constexpr double farthest_clearance_m = 50.0;
 
-/// Distances and time gaps beyond these are no safer: in the order they count alike. A choice.
+/// Larger distances and time gaps are equally safe in the order of candidates. A design choice.
 inline constexpr double enough_distance_m = 5.0;
 inline constexpr double enough_time_gap_s = 3.0;  ///< s
 
-/// A first contact of which no crash is known yet.
+/// A first contact whose crash was not simulated.
 struct FirstTouch {
   std::size_t actor = 0;           ///< index into Scenario::actors
   double time_of_impact_s = 0.0;   ///< from the decision
-  double closing_speed_mps = 0.0;  ///< of the points that meet
+  double closing_speed_mps = 0.0;  ///< of the points that touch, m/s
 };
 
 /// Outcome of a candidate. Contacts, damage and grazes are those of the likeliest
@@ -258,38 +269,39 @@ struct CandidateResult {
   std::size_t candidate = 0;    ///< index into RankResult::candidates
   std::optional<double> score;  ///< in the measure's unit; absent where only the interval is known
   ScoreInterval
-      score_interval;  ///< contains the score; range over the samples without numerical ones
+      /// contains the score; if it is known, its range over the samples without numerical ones
+      score_interval;
   /// Estimate of an absent score, see RankedCandidate::estimate; absent before the first contact is
   /// known.
   std::optional<double> score_estimate;
-  /// Least and greatest of the score and its numerical samples (`is_numerical`); the score alone
-  /// where there are none, the score's interval where the score is not known.
+  /// Range of the score and its numerical samples (`is_numerical`); the score alone without such
+  /// samples, the score interval if the score is not known.
   ScoreInterval numerical_interval;
   /// The first contacts of all futures are known: so are `collides`, `collision_probability` and,
   /// unless it does not count (Infeasible::keep), `feasible`, also where the score is not.
   bool searched = false;
-  bool collides = false;  ///< it has a contact in the likeliest future
-  /// The first contact in the likeliest future, where it is all that is known of the crash.
+  bool collides = false;  ///< the ego has a contact in the likeliest future
+  /// The first contact in the likeliest future if the crash was not evaluated.
   std::optional<FirstTouch> first_touch;
-  /// The ego's, in the order of their begins: the first, which the exact search found, then those
-  /// of the simulated scene that follows from it.
+  /// Contacts of the ego in the order of their begin times: the first, from the exact search, then
+  /// those of the simulated scene.
   std::vector<Contact> contacts;
-  /// Those between others that follow from it, in the order of their begins.
+  /// Contacts between other bodies in the same scene, in the order of their begin times.
   std::vector<FurtherContact> further;
-  /// The scene had more bodies close together, or more contacts, than it follows or reports: 64
-  /// contacts in all, 64 pairs of bodies, 40 contacts at once, of a body the 32 nearest within 5 m.
+  /// The simulation reached a limit: 64 contacts in all, 64 pairs of bodies, 40 simultaneous
+  /// contacts, for each body the 32 nearest within 5 m.
   bool crowded = false;
   std::vector<Graze> grazes;  ///< before the first contact, in time order
-  /// The ego's damage from all contacts together; a triangle hit twice counts once.
+  /// Damage of the ego from all contacts together; a triangle that is hit twice counts once.
   BodyDamage ego;
   std::vector<double> sample_scores;  ///< by RankResult::samples; empty where there are none
-  /// Where the score is known: what the futures lead to, the likeliest first, then by probability.
+  /// If the score is known: the outcomes of the futures, the likeliest first, then by probability.
   std::vector<FutureOutcome> futures;
-  double collision_probability = 0.0;  ///< of a contact of the ego's
-  /// Where the measure is harm: of every body with people that has a contact in some future, the
-  /// ego first, then in the actors' order.
+  double collision_probability = 0.0;  ///< probability that the ego has a contact
+  /// If the measure is harm: risk of the people of every body that has a contact in some future,
+  /// the ego first, then in the order of the actors.
   std::vector<PersonRisk> people;
-  ManoeuvreDemand demand;  ///< as far as it is followed in any future
+  ManoeuvreDemand demand;  ///< demand of the plan as far as it is followed in any future
   bool feasible = true;    ///< the vehicle can follow it so far
   /// Before its first contact in the likeliest future, a wheel leaves the road.
   std::optional<RoadLeaving> leaves_road;
@@ -303,7 +315,7 @@ struct CandidateResult {
   /// by the rectangles around their outlines, along the plans of all futures until the horizon, s;
   /// 0 if it has a contact in one of them, absent if no two paths cross.
   std::optional<double> least_time_gap_s;
-  /// The actor that is there so soon before or after; absent as `nearest` is.
+  /// The actor with that time gap; absent as `nearest` is.
   std::optional<std::size_t> soonest;
   std::optional<HorizonState>
       at_horizon;  ///< state at the horizon, if it has no contact in the likeliest future
@@ -325,9 +337,9 @@ struct CandidateResult {
   /// Share of the samples, numerical ones left out, in which the next in the ranking scores lower
   /// than this one.
   double overtaken = 0.0;
-  /// Numerical error may turn the order of this candidate and the next: their numerical intervals
-  /// meet. The errors of two candidates are independent, so they are not compared sample by sample.
-  /// False without numerical samples, and between candidates that are tied.
+  /// Numerical errors can reverse the order of this candidate and the next: their numerical
+  /// intervals overlap. The errors of two candidates are independent, so they are not compared
+  /// sample by sample. False without numerical samples, and between candidates that are tied.
   bool within_numerical_error = false;
   /// The scores of this candidate and the next in the ranking differ (where one is not known: their
   /// intervals are disjoint), not `within_numerical_error`, and `overtaken` is at most
@@ -335,26 +347,26 @@ struct CandidateResult {
   bool separable = true;
 };
 
-/// Two places are separable while their order reverses in no more than this share of the
-/// samples. Since a sample holds for all candidates alike, what is wrong in the same way for both
-/// does not count against them, as it would if their intervals were compared.
+/// Two places are separable if their order reverses in at most this share of the samples. A sample
+/// applies to all candidates alike, so errors that affect both in the same way do not count, as
+/// they would if intervals were compared.
 inline constexpr double separable_share = 0.05;
 
-/// A body as it was ranked with.
+/// Properties of a body that the ranking used.
 struct RankedBody {
   std::size_t model = 0;      ///< index into Scenario::models
-  double mass_kg = 0.0;       ///< infinity: does not move
-  bool mass_guessed = false;  ///< from kind and size
+  double mass_kg = 0.0;       ///< infinity: the body is fixed
+  bool mass_guessed = false;  ///< the mass was derived from kind and size
 };
 
-/// Work done, the same for every number of workers but for `damage`, which also counts the box
-/// tests that share it out.
+/// Work of a ranking. It is the same for every number of workers, except `damage`, which includes
+/// the box tests that distribute it.
 struct RankWork {
   std::uint64_t box_tests = 0;       ///< of the broad phase
-  std::uint64_t body_pairs = 0;      ///< bodies that came near enough for a closer look
-  ImpactWork impact;                 ///< looking for first contacts
+  std::uint64_t body_pairs = 0;      ///< pairs of bodies whose first contact was searched for
+  ImpactWork impact;                 ///< of the search for first contacts
   std::uint64_t damage_queries = 0;  ///< poses at which intersecting triangles were listed
-  CollideWork damage;                ///< done by those
+  CollideWork damage;                ///< of these queries
   std::uint64_t paths = 0;           ///< corners whose path through the other body was traced
   std::uint64_t crash_steps = 0;     ///< of simulated scenes
   std::uint64_t crash_pieces = 0;    ///< pieces of outlines moved in them
@@ -373,38 +385,42 @@ struct RankWork {
   }
 };
 
-/// What a Ranker's call did and how long it took.
+/// Work and times of a call of a Ranker.
 struct RankerEffort {
-  std::uint64_t work = 0;           ///< boxes, triangles, outline pieces: what a budget cuts
-  std::size_t without_search = 0;   ///< scores known from the swept boxes alone
-  std::size_t without_crash = 0;    ///< and from the search for contacts, no crash simulated
-  std::size_t fully_evaluated = 0;  ///< scores known from simulated crashes
-  std::size_t left_early = 0;  ///< bounds showed that they cannot be first; not evaluated fully
-  double prepare_s = 0.0;      ///< of Ranker::prepare, wall time, before the call
-  double bounds_s = 0.0;       ///< in the swept boxes' round
-  double refining_s = 0.0;     ///< in all rounds after it
+  /// tests of boxes and triangles, and outline pieces: the unit of a work budget
+  std::uint64_t work = 0;
+  std::size_t without_search = 0;  ///< number of scores known from the swept boxes alone
+  /// number of scores known from the search for contacts, without a simulation
+  std::size_t without_crash = 0;
+  std::size_t fully_evaluated = 0;  ///< number of scores known from simulated crashes
+  /// number of candidates that bounds proved not to be first, without full evaluation
+  std::size_t left_early = 0;
+  double prepare_s = 0.0;   ///< of Ranker::prepare, wall time, before the call
+  double bounds_s = 0.0;    ///< in the first round, with swept boxes
+  double refining_s = 0.0;  ///< in all later rounds
 };
 
-/// The answer, least harmful first.
+/// Result of a ranking, least harmful candidate first.
 struct RankResult {
-  Measure measure = Measure::polygons;  ///< what was compared
-  HarmOptions harm;                     ///< as it was counted with
-  /// In which harm, delta-v and energy were evaluated, the first where nothing varies; empty for
-  /// other measures and without HarmOptions::intervals. Numerical ones come last.
+  Measure measure = Measure::polygons;  ///< the measure that was compared
+  HarmOptions harm;                     ///< harm options that were used
+  /// Samples in which harm, delta-v and energy were evaluated, the nominal one first, numerical
+  /// ones last; empty for other measures and without HarmOptions::intervals.
   std::vector<HarmSample> samples;
   std::vector<Candidate> candidates;           ///< in the order of `make_candidates`
-  std::vector<CandidateResult> ranking;        ///< every candidate but the dropped once, best first
-  Infeasible infeasible = Infeasible::demote;  ///< as it was ranked with
-  std::vector<std::size_t> dropped;  ///< indices into `candidates`, rising; Infeasible::drop only
-  bool complete = true;              ///< every score is known
-  bool proved = true;                ///< no other candidate can still take the first place
-  /// Candidates that can be first, best guess first. Of known scores the first in the ranking
-  /// stands for those that are tied with it.
+  std::vector<CandidateResult> ranking;        ///< every candidate except dropped ones, best first
+  Infeasible infeasible = Infeasible::demote;  ///< as requested
+  /// indices into `candidates`, ascending; Infeasible::drop only
+  std::vector<std::size_t> dropped;
+  bool complete = true;  ///< every score is known
+  bool proved = true;    ///< no other candidate can still take the first place
+  /// Candidates that can be first, most promising first. Of tied candidates with known scores only
+  /// the first in the ranking is listed.
   std::vector<std::size_t> in_race;
   RankedBody ego;                      ///< the ego
   std::vector<RankedBody> actors;      ///< in the scenario's order
-  FutureSummary futures;               ///< that the candidates were evaluated in
-  RankWork work;                       ///< done for all
+  FutureSummary futures;               ///< the futures in which candidates were evaluated
+  RankWork work;                       ///< total work
   double elapsed_s = 0.0;              ///< wall time of the call
   std::optional<RankerEffort> effort;  ///< of a Ranker's answer
 };
@@ -458,7 +474,7 @@ struct RankResult {
 CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
                                       const RankOptions& options = {});
 
-/// Number of an answer's samples of what is not known: without the numerical ones.
+/// Number of samples of unknown parameters, without the numerical ones.
 CRASHRANK_API std::size_t range_sample_count(const RankResult& result) noexcept;
 
 /// Indices into RankResult::candidates of those that share the place of `ranking[index]`, in their

@@ -10,8 +10,8 @@ bool CandidateQueue::goes_first(const std::vector<CandidateState>& states, std::
   const ScoreInterval& p = states[a].result.interval;
   const ScoreInterval& q = states[b].result.interval;
   if (p.lowest != q.lowest) return p.lowest < q.lowest;
-  // Candidates whose contact was not searched for can be first until they are searched, and a
-  // search that finds none settles the score: it comes before all simulations.
+  // Candidates that were not searched for contacts can be first until they are searched, and a
+  // search without contact gives the exact score. So searches come before all simulations.
   const bool unsearched = states[a].result.stage < RankStage::searched;
   if (unsearched != (states[b].result.stage < RankStage::searched)) return unsearched;
   if (p.highest != q.highest) return p.highest < q.highest;
@@ -47,8 +47,8 @@ bool CandidateQueue::can_be_first(const CandidateState& state,
   if (candidate.interval.lowest != limit || best_known_ == none) {
     return candidate.interval.lowest <= limit;
   }
-  // At the same score a candidate that touches nothing stands before all that touch or graze; how
-  // far one stays from all others is known only once it is searched.
+  // At equal scores a candidate without contact precedes all with a contact or graze. Its distance
+  // from others is known only after its search.
   const OrderKey best = key_of(states[best_known_].result, false);
   const bool clean = !(best.collision_probability > 0.0) && !best.collides && !best.grazes;
   const bool touches =

@@ -10,9 +10,10 @@
 
 namespace crashrank::detail {
 
-/// Who can still be first, and whose turn it is to be looked at more closely. Candidates wait in a
-/// heap, the most promising on top: those of the lowest possible score, of these that of the lowest
-/// certain one, then in their own order; last those that are demoted as not feasible.
+/// Decides which candidates can still be first and in which order candidates are refined. Waiting
+/// candidates form a heap with the most promising on top: the lowest lower bound; among equal ones
+/// candidates before the search for contacts, then the lowest upper bound, then the order of the
+/// candidates. Candidates that are demoted as infeasible come last.
 class CandidateQueue {
 public:
   void prepare(std::size_t most) {
@@ -21,30 +22,31 @@ public:
     tiers_.reserve(most);
   }
 
-  /// All begin.
+  /// Starts a call with all candidates.
   void begin(std::size_t count);
 
-  /// Takes up to `most` from the waiting into `chosen`; 0 when none that waits has a part in what
-  /// is to be decided.
+  /// Moves up to `most` waiting candidates that can still be first into `chosen` and returns their
+  /// number; 0 if no waiting candidate can change the first place. After `requeue_beaten` all
+  /// waiting candidates are eligible.
   std::size_t choose(const std::vector<CandidateState>& states, std::size_t most,
                      std::uint32_t* chosen);
 
-  /// One that was chosen, or has been looked at for the first time, comes back.
+  /// Inserts a candidate after a refinement step, or after its first evaluation.
   void insert(std::uint32_t candidate, const std::vector<CandidateState>& states);
 
-  /// The first place is decided: those who cannot have it get their turn for the others. False when
-  /// there are none.
+  /// Called once the first place is decided: makes the candidates that cannot be first eligible, so
+  /// that the remaining places are decided. Returns false if there are none.
   bool requeue_beaten(const std::vector<CandidateState>& states);
 
   bool decided() const noexcept { return resumed_; }
-  /// The best candidate's score is at most this.
+  /// Upper bound on the score of the best candidate.
   double limit() const noexcept { return limit_of(first_tier()); }
 
-  /// Says of everybody whether he is in the race.
+  /// Sets `in_race` of every candidate.
   void mark_in_race(std::vector<CandidateState>& states);
 
 private:
-  /// Whether the vehicle can follow it: the first place goes to the first tier that has anybody.
+  /// Feasibility: the first place goes to the first tier that is not empty.
   enum Tier : std::uint8_t { feasible, undecided, demoted };
 
   static Tier tier(const CandidateState& state) noexcept {
@@ -55,7 +57,7 @@ private:
     if (counts_[feasible] > 0) return feasible;
     return counts_[undecided] > 0 ? undecided : demoted;
   }
-  /// Of those yet undecided none knows whether their scores count.
+  /// Infinite for undecided candidates, because it is not known whether their scores count.
   double limit_of(Tier tier) const noexcept {
     if (tier == undecided) return std::numeric_limits<double>::infinity();
     return limits_[tier];
@@ -65,13 +67,13 @@ private:
   bool can_be_first(const CandidateState& state, const std::vector<CandidateState>& states) const;
   void push(const std::vector<CandidateState>& states, std::uint32_t candidate);
 
-  std::vector<std::uint32_t> waiting_;  ///< a heap
+  std::vector<std::uint32_t> waiting_;  ///< heap
   std::vector<std::uint32_t> beaten_;
   std::size_t count_ = 0;
   bool resumed_ = false;
   std::vector<Tier> tiers_;              ///< by candidate
-  std::array<std::size_t, 3> counts_{};  ///< of candidates, by tier
-  std::array<double, 3> limits_{};       ///< the least of their highest scores
+  std::array<std::size_t, 3> counts_{};  ///< number of candidates, by tier
+  std::array<double, 3> limits_{};       ///< smallest upper bound on a score, by tier
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t best_known_ = none;
 };

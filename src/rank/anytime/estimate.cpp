@@ -9,19 +9,20 @@
 namespace crashrank::detail {
 namespace {
 
-/// Half its square times the ego's mass is the energy of a first contact whose crash is taken to
-/// harm at least the people in one of the two bodies, m/s: what a light first contact leaves of the
-/// speed goes on to further ones. Together with the shares below a choice: with the normal's energy
-/// alone first choices were worse (Estimate tests), with all of it a scrape came behind a person.
+/// Speed at which the energy of a first contact, ½·m·v² with the mass of the ego, is estimated to
+/// harm the people in one of the two bodies with certainty, m/s. A light first contact leaves most
+/// of the speed for later ones. This value and the energy shares below are design choices: with the
+/// energy along the normal alone the first choices were worse (Estimate tests); with all of the
+/// closing energy a scrape ranked behind a collision with a person.
 constexpr double one_person_mps = 30.0;
 
-/// Share of the closing velocity that a body of this mass takes on from one of the other.
+/// Fraction of the closing velocity that a body takes on from another.
 double share_of(double own_kg, double other_kg) {
   if (std::isinf(own_kg)) return 0.0;
   return std::isinf(other_kg) ? 1.0 : other_kg / (own_kg + other_kg);
 }
 
-/// The weighted people in or on a body.
+/// Weight of the people in or on a body.
 double people_weight_of(const Scene& scene, std::size_t body) {
   return people_weight(exposure_of(scene, body, {}), scene.harm.weights);
 }
@@ -42,8 +43,9 @@ SideEffect side_of(const Scene& scene, std::size_t body, const Motion& motion, d
   return side;
 }
 
-/// How much of the closing velocity the two bodies lose against each other: all that is along the
-/// normal, of the rest what friction takes. Without a normal one lies inside the other: all.
+/// Part of the closing velocity that the two bodies lose: the component along the normal, and as
+/// much of the tangential one as friction stops. Without a normal one body is inside the other, and
+/// all is lost.
 Eigen::Vector3d stopped_part(const Contact& first, double friction) {
   const double normal_mps = first.closing.dot(first.normal);
   if (!(normal_mps > 0.0)) return first.closing;
@@ -76,7 +78,8 @@ double estimate_score(const Scene& scene, const Motion& ego, const Motion& other
   tally.add(scene, effect, scene.nominal);
   const double score = tally.score(scene);
   if (!measure_row(scene.measure).counts_people) return score;
-  // Half of what the normal stops, and a quarter of all: what glances off may catch later.
+  // Half of the stopped energy plus a quarter of all closing energy: a body that glances off can
+  // collide again.
   const double energy_j = 0.5 * effect.dissipated_j + 0.25 * first.closing_energy_j;
   const double one_person_j = 0.5 * own_kg * one_person_mps * one_person_mps;
   const double people =

@@ -5,10 +5,11 @@
 
 namespace crashrank::detail {
 
-/// What a crash that is not simulated yet is taken for: the score of its first contact alone, as if
-/// both bodies were points that stop each other along the normal and rub on each other across it;
-/// harm is no less than in proportion to energies of that and of the closing speed. A guess, no
-/// bound: further contacts come on top. 0 for what points do not have, intrusion.
+/// Estimate of the score of a crash that is not simulated yet: the score of its first contact
+/// alone, as if both bodies were point masses that stop each other along the normal and rub with
+/// friction across it. Harm is at least proportional to energies of the stopped and of the closing
+/// velocity. Not a bound, since later contacts add to the score. 0 for intrusion, which point
+/// masses do not have.
 double estimate_score(const Scene& scene, const Motion& ego, const Motion& other,
                       const Contact& first, Tally& tally);
 

@@ -8,7 +8,7 @@ namespace crashrank {
 Result<RankResult> rank_within(const Scenario& scenario, View<const Model> models,
                                const RankOptions& options, const RankBudget& budget) {
   if (scenario.ego.model >= models.size()) {
-    return make_error(ErrorCode::usage, "there is not one model for each of the scenario's");
+    return make_error(ErrorCode::usage, "the number of models differs from that of the scenario");
   }
   const double ego_length_m =
       static_cast<double>(models[scenario.ego.model].mesh.bounds().extent().x());

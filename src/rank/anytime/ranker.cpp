@@ -31,7 +31,7 @@ using detail::CandidateState;
 using detail::Deadline;
 using detail::StepRounds;
 
-/// As many as wait in a queue are refined together.
+/// Number of waiting candidates that are refined in one round.
 constexpr std::size_t refined_per_round = 16;
 
 double seconds_between(Deadline::Clock::time_point from, Deadline::Clock::time_point to) {
@@ -39,7 +39,7 @@ double seconds_between(Deadline::Clock::time_point from, Deadline::Clock::time_p
 }
 
 std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
-  // FNV-1a over words, then a shift so that high bits reach low ones.
+  // FNV-1a over words, plus a shift so that high bits affect low ones.
   constexpr std::uint64_t prime = 0x100000001b3;
   hash = (hash ^ word) * prime;
   return hash ^ (hash >> 32U);
@@ -67,22 +67,22 @@ struct CRASHRANK_HIDDEN Ranker::State {
   detail::ScoreBounds bounds;
   StepRounds rounds;
   RankerLimits limits;
-  RankResult bodies;  ///< what `explain` begins with
-  /// Those of a complete answer; the scene has none, since no step evaluates them.
+  RankResult bodies;  ///< the part of the result that `explain` copies: bodies and options
+  /// Samples of a complete answer. The scene has none during `rank`, since no step evaluates them.
   std::vector<HarmSample> samples;
   double prepare_s = 0.0;
   std::vector<CandidateState> states;
   std::vector<RankedCandidate> ranking;
   CandidateQueue queue;
   std::array<std::uint32_t, StepRounds::max_steps> chosen{};
-  std::vector<Motion> new_motions;  ///< of the actors, while they are copied
-  Motion displaced;                 ///< of a displaced candidate
-  std::size_t known = 0;            ///< candidates whose score is known, of this call
-  std::vector<char> reached;        ///< by actor, while those far away are left out
-  bool needs_left_out = false;      ///< a crash reaches one of these
+  std::vector<Motion> new_motions;  ///< motions of the actors while they are checked and copied
+  Motion displaced;                 ///< working memory for a displaced motion
+  std::size_t known = 0;            ///< number of candidates with a known score in this call
+  std::vector<char> reached;        ///< by actor: may be reached by a candidate
+  bool needs_left_out = false;      ///< a crash reaches an actor that was left out
 
-  /// Takes over what a round did, in its order, as far as the work allows. Returns false at the end
-  /// of work or time.
+  /// Stores the results of a round in the order of its steps, as far as the work budget allows.
+  /// Returns false if work or time is used up.
   bool collect_results(std::size_t steps, const RankBudget& budget, std::uint64_t& work) noexcept {
     bool in_time = true;
     for (std::size_t i = 0; i < steps; ++i) {
@@ -101,14 +101,14 @@ struct CRASHRANK_HIDDEN Ranker::State {
     return in_time && !needs_left_out && !rounds.expired();
   }
 
-  /// Everything until time, work or questions run out.
+  /// Refines candidates until time or work is used up or all is decided.
   void refine_all(const RankBudget& budget, RankerEffort& effort) noexcept {
     const auto start = Deadline::Clock::now();
     const auto all = static_cast<std::uint32_t>(rounds.candidates().size());
     bool going = budget.work > 0;
     std::uint32_t begin = 0;
     if (going && all > 1) {
-      // Where the ego may be elsewhere, too, its plans do not tell.
+      // Not valid if the ego can be displaced, because the swept boxes are those of its plans.
       if (!scene.futures.displaces_ego() &&
           detail::all_are_clear(scene, rounds.candidates(), rounds.deadline(), effort.work)) {
         for (std::uint32_t i = 0; i < all; ++i) detail::bound_as_clear(scene, states[i]);
@@ -140,8 +140,8 @@ struct CRASHRANK_HIDDEN Ranker::State {
     effort.refining_s = seconds_between(seen, Deadline::Clock::now());
   }
 
-  /// All that time and work allow, in futures that leave out who is far away; where a crash reaches
-  /// one of these, once more in those that leave out nobody.
+  /// Refines candidates in futures that leave out distant actors. If a crash reaches one of these,
+  /// starts again with every actor included.
   void refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
                          RankerEffort& effort) noexcept {
     const bool leaves = budget.work > 0 && !rounds.expired();
@@ -154,7 +154,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
     refine_all(budget, effort);
   }
 
-  /// Nothing is known of any candidate but what none can exceed. Touches nothing that workers do.
+  /// Resets all candidates to their upper bounds. Does not touch what running workers use.
   void begin(View<const Candidate> candidates) noexcept {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       detail::begin_refining(scene, bounds, candidates[i], i, displaced, states[i]);
@@ -164,8 +164,8 @@ struct CRASHRANK_HIDDEN Ranker::State {
     needs_left_out = false;
   }
 
-  /// Evaluates what is known of an answer. True where a crash reaches an actor that is left out of
-  /// the futures.
+  /// Evaluates the candidates of an answer in full. Returns true if a crash reaches an actor that
+  /// was left out of the futures.
   bool explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
                    const Deadline& deadline, RankResult& result) {
     detail::Scratch scratch;
@@ -193,7 +193,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
     return scratch.needs_left_out;
   }
 
-  /// Of the first `all` states. Touches nothing that workers do.
+  /// Writes the answer from the first `all` states. Does not touch what running workers use.
   void write_answer(RankerAnswer& answer, std::size_t all) noexcept {
     queue.mark_in_race(states);
     bool searched = true;
@@ -201,7 +201,8 @@ struct CRASHRANK_HIDDEN Ranker::State {
       ranking[i] = states[i].result;
       searched = searched && (ranking[i].known || ranking[i].stage >= RankStage::searched);
     }
-    // Estimates of some, from their contacts, say nothing beside bounds of others.
+    // Estimates after a search cannot be compared with upper bounds before it: use estimates only
+    // if all candidates are searched.
     std::sort(ranking.begin(), ranking.begin() + static_cast<std::ptrdiff_t>(all),
               [searched](const RankedCandidate& a, const RankedCandidate& b) {
                 return detail::ranks_before(a, b, searched);
@@ -272,12 +273,13 @@ Status check_call(View<const Candidate> candidates, const RankBudget& budget,
     if (!detail::begins_at(candidate.motion.pose_at(0.0), scene.ego_start)) {
       Error error = refused_motion_of("candidates", i,
                                       "begins more than 1 m or 30 degrees from the ego's pose");
-      error.remedy = "make the candidates anew after each move_actors";
+      error.remedy = "make the candidates again after each move_actors";
       return error;
     }
-    // They decide between equals.
+    // These values break ties.
     if (!std::isfinite(candidate.acceleration_mps2) || !std::isfinite(candidate.curvature_per_m)) {
-      return refused_motion_of("candidates", i, "is told with numbers that are not finite");
+      return refused_motion_of("candidates", i,
+                               "has an acceleration or curvature that is not finite");
     }
   }
   return Success{};
@@ -353,7 +355,7 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
       }
       new_motions[i] = actors[i];
     }
-    // From here on nothing can fail.
+    // Nothing can fail from here on.
     for (std::size_t i = 0; i < actors.size(); ++i) std::swap(plans[i].motion, new_motions[i]);
     scene.futures.displace_plans();
     scene.ego_start = ego_start;
@@ -405,7 +407,7 @@ Status Ranker::weigh_plans(View<const double> probabilities) noexcept {
                      {},
                      "probabilities[" + std::to_string(i) + "]",
                      "is not above 0, or those of its actor do not sum to 1",
-                     "let them be positive and sum to 1 within 1e-6"};
+                     "give positive numbers that sum to 1 within 1e-6"};
       }
       if (is_last) sum = 0.0;
     }
@@ -425,7 +427,7 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   answer.status =
       detail::guarded([&] { return check_call(candidates, budget, s.scene, s.limits.candidates); });
   if (!answer.status) return answer;
-  // What is left to do after the last look at the clock: an order and a hash.
+  // Reserve for the work after the last check of the clock: sorting and hashing.
   const auto count = static_cast<double>(candidates.size());
   const double finishing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);
   Deadline deadline(budget.cancel);
@@ -453,7 +455,7 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     State& s = *state_;
     if (!answer.status) return answer.status.error();
     RankResult result = s.bodies;
-    /// The scene has samples while a complete answer is evaluated.
+    /// Gives the scene its samples while a complete answer is evaluated.
     struct WithSamples {
       detail::Scene& scene;
       ~WithSamples() { scene.samples.clear(); }
@@ -468,7 +470,7 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     result.ranking.resize(answer.ranking.size());
     const Deadline deadline(cancel);
     if (s.explain_all(candidates, answer, deadline, result)) {
-      // The samples' crashes reach further than the nominal ones.
+      // Crashes of the samples can reach further than the nominal ones.
       detail::include_all_actors(s.scene, s.reached);
       s.explain_all(candidates, answer, deadline, result);
     }

@@ -35,11 +35,12 @@ std::uint64_t work_units(const RankWork& work) {
 }
 
 constexpr double never_s = std::numeric_limits<double>::infinity();
-/// Pieces of outlines that the first simulation of a crash in a race moves: about the first contact
-/// of two cars.
+/// Limit for the first simulation of a crash while the first place is open, in outline pieces
+/// moved: about the first contact of two cars.
 constexpr std::uint64_t first_quota = 20'000;
 
-/// Tells what is to be said besides the crash. False when time was up.
+/// Fills in demand, feasibility, clearances and the speed at the horizon. Returns false if time was
+/// up.
 bool fill_manoeuvre(const RefineQuery& q, const FollowedPlan& followed, CandidateState& state,
                     Scratch& scratch) {
   const ManoeuvreFacts facts =
@@ -55,7 +56,8 @@ bool fill_manoeuvre(const RefineQuery& q, const FollowedPlan& followed, Candidat
   return true;
 }
 
-/// Narrows the interval to what is known of the futures; settles it where all that count are known.
+/// Narrows the interval by what is known of the futures; sets the exact score if all futures with a
+/// probability above 0 are known.
 void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   const Futures& futures = q.scene.futures;
   bool known = true;
@@ -63,7 +65,7 @@ void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
     known = known && (state.futures[f].known() || !(futures.probability(f) > 0.0));
   }
   const auto risk_with = [&](auto of_unknown) {
-    std::vector<double>& scores = scratch.first_s;  // displaced that is free between searches
+    std::vector<double>& scores = scratch.first_s;  // not used between searches
     scores.clear();
     for (const FutureScore& each : state.futures) {
       scores.push_back(each.known() ? each.score : of_unknown(each));
@@ -78,7 +80,7 @@ void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   } else if (futures.size() == 1) {
     narrow(state, state.futures.front().lower_bound, state.result.interval.highest);
   } else {
-    // Sums round.
+    // Covers the rounding of sums.
     constexpr double rounding = 1e-12;
     narrow(state, (1.0 - rounding) * risk_with(lower_bound_of),
            (1.0 + rounding) * risk_with([&](const FutureScore&) { return state.upper_bound; }));
@@ -87,7 +89,7 @@ void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   state.result.estimate = std::clamp(estimate, interval.lowest, interval.highest);
 }
 
-/// The future whose crash is simulated next: that in which the least has been simulated for its
+/// Selects the future to simulate next: the one with the least simulated work relative to its
 /// probability.
 std::size_t next_future(const Futures& futures, const CandidateState& state) {
   std::size_t next = futures.size();
@@ -103,26 +105,26 @@ std::size_t next_future(const Futures& futures, const CandidateState& state) {
   return next;
 }
 
-/// Leaving of the road by the ego on its motion in a future.
+/// First moment off the road of the ego on its motion in a future.
 std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const CandidateState& state,
                                       const Motion& ego, const Scratch& scratch) {
   if (&ego == &q.candidate.motion) return state.leaving;
   return find_leaving(q.scene.road, q.scene.ego, ego, q.scene.slice_s.back(), scratch.stop);
 }
 
-/// Whether an actor may come near the ego in any future.
+/// Returns true if an actor may come near the ego in any future.
 bool comes_near(const RefineQuery& q, Scratch& scratch, RankWork& work) {
   const Futures& futures = q.scene.futures;
   for (std::size_t f = 0; f < futures.size(); f = futures.group(f).end) {
     const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
     find_nearby_actors(q.scene, ego, futures.group(f), 0.0, q.scene.slice_s.back(), scratch, work);
-    // Where time is up, nothing is settled: what was not looked at may come near.
+    // After the deadline the search may be incomplete: assume that an actor is near.
     if (!scratch.near.empty() || (f > 0 && q.deadline.expired())) return true;
   }
   return false;
 }
 
-/// No future has a contact: all scores are known. False when time was up.
+/// Sets the scores of a candidate without contact in any future. Returns false if time was up.
 bool settle_without_contact(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   const Futures& futures = q.scene.futures;
   if (!futures.displaces_ego()) {
@@ -139,7 +141,8 @@ bool settle_without_contact(const RefineQuery& q, CandidateState& state, Scratch
   return true;
 }
 
-/// False when time was up.
+/// First step: finds whether an actor is near the swept boxes of the candidate. Returns false if
+/// time was up.
 bool find_nearby(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
   const double horizon_s = q.scene.slice_s.back();
   const auto leaving =
@@ -155,7 +158,7 @@ bool find_nearby(const RefineQuery& q, CandidateState& state, Scratch& scratch, 
     return true;
   }
   state.result.stage = RankStage::near;
-  // What can be followed to the horizon can be followed to any contact.
+  // A plan that is feasible until the horizon is feasible until any contact.
   state.demand_known =
       q.scene.infeasible == Infeasible::keep ||
       is_feasible(q.candidate, demand_until(q.scene, q.candidate, horizon_s, state.leaving));
@@ -166,19 +169,19 @@ Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch:
   return first_contact(q.scene, ego, hit.actor, q.scene.futures.plans[hit.plan].motion, hit.impact);
 }
 
-/// What the crash that begins with a contact is taken for; `most` where a first contact alone says
-/// nothing of the measure.
-double estimate_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit, double most,
-                   Scratch& scratch) {
-  if (scored_by_damage(q.scene.measure)) return most;
+/// Estimate of the score of the crash that begins with a contact; `upper_bound` if the first
+/// contact alone says nothing about the measure.
+double estimate_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit,
+                   double upper_bound, Scratch& scratch) {
+  if (scored_by_damage(q.scene.measure)) return upper_bound;
   const double estimate = estimate_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
                                          first_contact_of(q, ego, hit), scratch.tally);
   const bool says_nothing = !(estimate > 0.0) && !measure_row(q.scene.measure).counts_people;
-  return says_nothing ? most : estimate;
+  return says_nothing ? upper_bound : estimate;
 }
 
-/// Keeps the contacts of the last search that are the first of a future of the group, in their
-/// order, and what the crashes that begin with them are taken for.
+/// Stores the hits of the last search that are the first contact of a future of the group, in their
+/// order, and the estimates of their crashes.
 void store_first_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
                       CandidateState& state, Scratch& scratch) {
   const Futures& futures = q.scene.futures;
@@ -199,7 +202,7 @@ void store_first_hits(const RefineQuery& q, const FutureGroup& group, const Moti
   }
 }
 
-/// Notes what the search of a group of futures found.
+/// Stores the results of the search in a group of futures.
 void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
                 CandidateState& state, FollowedPlan& followed, Scratch& scratch) {
   const std::size_t likeliest = q.scene.futures.likeliest();
@@ -231,7 +234,7 @@ void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& eg
   }
 }
 
-/// Finds the first contacts of the ego in all futures. False when time was up.
+/// Second step: finds the first contacts of the ego in all futures. Returns false if time was up.
 bool search(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
   const Futures& futures = q.scene.futures;
   const auto restore = [&state, before = state.result] {
@@ -266,8 +269,8 @@ bool search(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankW
   return true;
 }
 
-/// What a simulation of one future's crash has found holds for all that do not differ from it as
-/// far as it went. False where it reaches an actor that was left out: then it holds for none.
+/// Copies the result of a simulation to all futures that have the same relevant plans so far.
+/// Returns false if the crash reaches an actor that was left out: then the result is invalid.
 bool share_score(const Scene& scene, std::size_t future, CandidateState& state, Scratch& scratch) {
   const FutureScore found = state.futures[future];
   const FutureGroup group = scene.futures.group(future);
@@ -293,12 +296,13 @@ bool share_score(const Scene& scene, std::size_t future, CandidateState& state, 
   return true;
 }
 
-/// Simulates what follows from the first contact in one future. False when time was up.
+/// Third step: simulates the scene after the first contact in one future. Returns false if time was
+/// up.
 ///
-/// To find the first place, candidates and their futures take turns, each with several times the
-/// work of its last turn: most candidates are beaten by first contacts alone. A simulation begins
-/// anew with each turn, for there is no displaced for one of each future; all turns before the last
-/// cost half of it together.
+/// While the first place is open, candidates and their futures alternate, each time with a multiple
+/// of the work before, because first contacts alone suffice to reject most candidates. A simulation
+/// starts anew each time, since there is no memory for one simulation per future; all runs before
+/// the last cost half as much as the last together.
 bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
   constexpr int steps_at_a_time = 4;
   constexpr std::uint64_t quota_growth = 3;
@@ -358,7 +362,7 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
 
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Motion& displaced, CandidateState& state) {
-  // They keep their memory.
+  // Keep the memory of the vectors.
   std::vector<FutureScore> futures = std::move(state.futures);
   std::vector<Scratch::Hit> first_hits = std::move(state.first_hits);
   state = {};
@@ -367,7 +371,7 @@ void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candida
   state.futures.assign(scene.futures.size(), {});
   state.first_hits.clear();
   state.result.candidate = index;
-  // Whether it leaves the road is looked for later.
+  // Whether it leaves the road is determined in the first step.
   state.upper_bound = bounds.upper_bound_displaced(scene, candidate.motion, displaced);
   if (scene.road.ends()) state.upper_bound += leaving_score(scene, RoadLeaving{}, never_s);
   state.result.interval = {0.0, state.upper_bound};
@@ -398,7 +402,7 @@ StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch)
       if (!scored_by_damage(q.scene.measure)) {
         end.finished = simulate_crash(q, state, scratch, work);
       } else {
-        // No stop within: what is begun is score finishing.
+        // Not stopped once it has started: its result is needed.
         scratch.stop = {};
         try {
           scratch.needs_left_out = false;
@@ -410,7 +414,7 @@ StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch)
             state.unresolved = true;
           }
         } catch (const std::exception&) {
-          state.unresolved = true;  // no memory: the interval stands
+          state.unresolved = true;  // out of memory: the interval remains valid
         }
       }
       if (state.result.known) state.result.stage = RankStage::scored;

@@ -14,76 +14,81 @@
 
 namespace crashrank::detail {
 
-/// What is known of a candidate's score in one future.
+/// What is known of the score of a candidate in one future.
 struct FutureScore {
   static constexpr double unknown = -1.0;
   static constexpr std::uint32_t no_contact = static_cast<std::uint32_t>(-1);
 
   double score = unknown;
-  double lower_bound = 0.0;  ///< it is not below, where it is not known
-  double estimate = 0.0;     ///< what it is taken for, where it is not known: see estimate_score
-  /// Pieces of outlines that the longest simulation of its crash so far has moved.
+  double lower_bound = 0.0;  ///< lower bound while the score is not known
+  double estimate = 0.0;     ///< estimate while the score is not known, see estimate_score
+  /// Work of the longest simulation of its crash so far, in outline pieces moved.
   std::uint64_t simulated = 0;
   std::uint32_t first = no_contact;  ///< index of its first contact in CandidateState::first_hits
 
   bool known() const noexcept { return score >= 0.0; }
 };
 
-/// A candidate on its way to its score, between two steps.
+/// State of a candidate between two refinement steps.
 struct CandidateState {
   RankedCandidate result;
-  bool unresolved = false;             ///< a question about it stayed undecided: no step follows
-  double upper_bound = 0.0;            ///< no future's score is above
-  bool demand_known = false;           ///< `result.feasible` is final
-  bool needs_left_out = false;         ///< its crash reaches an actor left out of the futures
-  std::optional<RoadLeaving> leaving;  ///< of its plan; from the stage `near` on
-  std::vector<FutureScore> futures;    ///< what is known of each
-  /// First contacts of the futures, those of a group by their times; from the stage `searched` on.
+  bool unresolved = false;    ///< a test stayed undecided: the candidate cannot be refined further
+  double upper_bound = 0.0;   ///< upper bound on the score in any future
+  bool demand_known = false;  ///< `result.feasible` is final
+  bool needs_left_out = false;  ///< its crash reaches an actor that was left out of the futures
+  /// leaving the road on its plan; valid from the stage `near` on
+  std::optional<RoadLeaving> leaving;
+  std::vector<FutureScore> futures;  ///< by future
+  /// First contacts of the futures, within a group in order of time; valid from the stage
+  /// `searched` on.
   std::vector<Scratch::Hit> first_hits;
 
-  /// Room for any scene of so many plans and futures: nothing allocates after it.
+  /// Allocates for any scene with these plans and at most as many futures; no step allocates
+  /// afterwards.
   void reserve(const Futures& all) {
     const std::size_t count = all.max_future_count();
     futures.reserve(count);
-    // Every one is some future's, and no plan has two in one group.
+    // Each is the first contact of some future, and within a group a plan has at most one.
     first_hits.reserve(all.displaces_ego() ? count : std::min(count, all.plans.size()));
   }
 
   bool needs_refinement() const noexcept { return !result.known && !unresolved; }
 };
 
-/// What a step needs to know.
+/// Inputs of a refinement step.
 struct RefineQuery {
   const Scene& scene;
   const ScoreBounds& bounds;
   const Candidate& candidate;
-  /// The step may end once the score is proved to exceed this. If it is finite, who is first is to
-  /// be decided, and a crash is simulated a part at a time.
+  /// The step may stop once the score is proved to exceed this. If it is finite, the first place is
+  /// still to be decided, and a crash is simulated in limited portions.
   double stop_above;
   const Deadline& deadline;
 };
 
-/// What came of a step.
+/// Result of a refinement step.
 struct StepResult {
   std::uint64_t work = 0;
-  bool finished = true;  ///< false: time was up first; the interval may be narrower all the same
+  bool finished = true;  ///< false: the deadline passed first; the interval may still be narrower
 };
 
-/// Begins with a candidate of which nothing is known yet. `displaced` is for a motion.
+/// Initialises the state of a candidate of which only the upper bound is known. `displaced` is
+/// working memory for a motion.
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Motion& displaced, CandidateState& state);
 
-/// The candidate is known to come near nobody: what it scores is that of leaving the road at most.
+/// For a candidate whose swept boxes overlap no actor: its score is at most the harm of leaving the
+/// road.
 void bound_as_clear(const Scene& scene, CandidateState& state);
 
-/// Takes an open candidate one stage further. Depends on the query and the candidate's own state
-/// alone. The interval only ever narrows.
+/// Refines a candidate by one stage. Depends on the query and the state of the candidate alone. The
+/// interval never widens. Requires `needs_refinement`.
 StepResult refine(const RefineQuery& query, CandidateState& state, Scratch& scratch);
 
-/// What decides the place, for what is known of a candidate so far. Where the score is not known,
-/// by its estimate or by the worst that may come.
+/// Sort key from what is known of a candidate. If its score is not known, the estimate or the upper
+/// bound takes its place.
 OrderKey key_of(const RankedCandidate& candidate, bool by_estimate) noexcept;
-/// Whether `a` stands before `b`, for what is known of both.
+/// Returns true if `a` precedes `b` by what is known of both.
 bool ranks_before(const RankedCandidate& a, const RankedCandidate& b, bool by_estimate) noexcept;
 
 }  // namespace crashrank::detail

@@ -8,8 +8,8 @@
 namespace crashrank::detail {
 namespace {
 
-/// How much goes_first time is up for workers, so that what they know by then still counts: most
-/// stretches of work between two looks at the clock are shorter (bench/rank: clock_looks).
+/// The deadline of the workers is earlier by this, so that their results still count: most
+/// stretches of work between two checks of the clock are shorter (bench/rank: clock_looks).
 constexpr std::chrono::microseconds worker_lead{30};
 
 void prepare_scratch(const Scene& scene, Scratch& scratch) {
@@ -17,8 +17,8 @@ void prepare_scratch(const Scene& scene, Scratch& scratch) {
   for (const Body& actor : scene.actors) {
     scratch.damage.collide.prepare(*scene.ego.model, *actor.model);
   }
-  // Poses at which surfaces meet list their pairs; twice as many as crash poses of dense meshes
-  // have been seen to have.
+  // Capacity for the intersecting pairs at one pose: twice the largest number seen at crash poses
+  // of dense meshes.
   constexpr std::size_t pairs = std::size_t{1} << 17U;
   scratch.damage.pairs.reserve(pairs);
 }
@@ -76,7 +76,7 @@ void StepRounds::run(const std::vector<CandidateState>& states, const std::uint3
   }
   const std::size_t wanted = std::min(helpers_.size(), steps > 0 ? steps - 1 : 0);
   std::size_t posted = 0;
-  // Waking many takes long, and whose time is up need not be woken.
+  // Waking many workers takes long; do not wake them after their deadline.
   for (; posted < wanted && !workers_deadline_.expired(); ++posted) {
     const WorkerPool::Task task{[](void* context, std::uint32_t) {
                                   const Helper& helper = *static_cast<Helper*>(context);
@@ -88,7 +88,7 @@ void StepRounds::run(const std::vector<CandidateState>& states, const std::uint3
     pool_.post(static_cast<std::uint32_t>(posted), task);
   }
   run_steps(caller_scratch(), deadline_);
-  // All steps are begun by now: whoever has not woken yet need not.
+  // All steps have started: cancel workers that have not woken yet.
   for (std::size_t i = 0; i < posted; ++i) {
     WorkerPool::Task unneeded;
     pool_.recall(static_cast<std::uint32_t>(i), unneeded);

@@ -14,58 +14,60 @@
 
 namespace crashrank::detail {
 
-/// Steps of a Ranker, shared by the calling thread and its workers in rounds.
+/// Rounds of refinement steps of a Ranker, shared by the calling thread and its workers.
 ///
-/// At the end of time a round returns without the workers that are still at a step: what they read
-/// and write is in here, in the scene and in the bounds, and none of it may change before `await`.
+/// At the deadline a round returns without waiting for workers in the middle of a step. They read
+/// and write only this object, the scene and the bounds, none of which may change before `await`.
 class StepRounds {
 public:
-  /// Steps that are begun together at most, whatever the number of workers: answers cut by work
-  /// depend on it.
+  /// Largest number of steps in a round. It does not depend on the number of workers, because
+  /// answers that are limited by work depend on it.
   static constexpr std::size_t max_steps = 64;
 
-  /// Both have to outlive it.
+  /// `scene` and `bounds` must outlive the object.
   StepRounds(const Scene& scene, const ScoreBounds& bounds, WorkerPool&& pool)
       : scene_(scene), bounds_(bounds), pool_(std::move(pool)) {}
   StepRounds(const StepRounds&) = delete;
   StepRounds& operator=(const StepRounds&) = delete;
   ~StepRounds() { await(); }
 
-  /// Sets aside memory for as many candidates.
+  /// Allocates for a number of candidates.
   void prepare(std::size_t candidates);
 
-  /// Waits for workers that an earlier call has left.
+  /// Waits for workers that are still running from an earlier call.
   void await() noexcept;
-  /// The same until time is up at the latest; false where they are still at it.
+  /// Waits until the deadline at the latest; returns false if workers are still running.
   bool await(const Deadline& limit) noexcept;
 
-  /// The candidates of a call and its time. Workers are left behind where they look at the clock
-  /// all along, and where candidates can be kept without memory.
+  /// Starts a call with its candidates and deadline. The call will not wait for running workers at
+  /// its deadline if the workers check the clock often enough and the candidates can be copied
+  /// without allocation.
   void begin(View<const Candidate> candidates, const Deadline& deadline) noexcept;
   View<const Candidate> candidates() const noexcept { return candidates_; }
   bool expired() const noexcept { return deadline_.expired(); }
   const Deadline& deadline() const noexcept { return deadline_; }
 
-  /// Takes the chosen candidates one stage further, on all threads. Each may be left as soon as its
-  /// score is proved to exceed `stop_above`.
+  /// Refines the chosen candidates by one stage, on all threads. A step may stop once the score is
+  /// proved to exceed `stop_above`.
   void run(const std::vector<CandidateState>& states, const std::uint32_t* chosen,
            std::size_t steps, double stop_above) noexcept;
 
-  /// What came of one of these; null where none is through with it. Stands until the next round.
+  /// Result of a step of the last round; null state if it was not finished. Valid until the next
+  /// round.
   struct Done {
     const CandidateState* state = nullptr;
     StepResult end;
   };
   Done done(std::size_t step) const noexcept;
 
-  /// The calling thread's memory.
+  /// Working memory of the calling thread.
   Scratch& caller_scratch() noexcept { return scratch_.front(); }
 
 private:
   struct Slot {
     CandidateState state;
     StepResult end;
-    std::atomic<bool> done{false};  ///< the other two are whole
+    std::atomic<bool> done{false};  ///< the other two members are complete
   };
   struct Helper {
     StepRounds* rounds = nullptr;
@@ -77,11 +79,12 @@ private:
   const Scene& scene_;
   const ScoreBounds& bounds_;
   WorkerPool pool_;
-  std::vector<Scratch> scratch_;  ///< the calling thread's first
+  std::vector<Scratch> scratch_;  ///< that of the calling thread first
   std::vector<Helper> helpers_;
-  std::vector<Candidate> copies_;  ///< copies for workers that may be left, without names
+  /// copies without names, for workers that may outlast the call
+  std::vector<Candidate> copies_;
 
-  // Set by the calling thread, read by all.
+  // Written by the calling thread, read by all threads.
   View<const Candidate> candidates_;
   Deadline deadline_;
   Deadline workers_deadline_;
@@ -91,8 +94,9 @@ private:
   std::atomic<std::size_t> next_{0};
   std::array<Slot, max_steps> slots_;
 
-  bool returns_at_deadline_ = false;  ///< the call returns at its time, whatever the workers are at
-  bool workers_running_ = false;      ///< it did so: they may still be at it
+  /// the call returns at its deadline even if workers are running
+  bool returns_at_deadline_ = false;
+  bool workers_running_ = false;  ///< workers may still be running from the last call
 };
 
 }  // namespace crashrank::detail

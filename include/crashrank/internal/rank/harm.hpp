@@ -55,41 +55,41 @@ struct HarmExposure {
   std::optional<double> occupants;
 };
 
-/// Share of the road speed at which a fallen rider's curve is read: he slides rather than strikes.
-/// A choice.
+/// Fraction of the road speed that is used as impact speed of a fallen rider, who slides instead of
+/// striking an obstacle. A design choice.
 inline constexpr double fall_share = 0.3;
 
-/// Delta-v of a two-wheeler from which its rider is certain to fall, m/s. A choice.
+/// Delta-v of a two-wheeler above which its rider falls with certainty, m/s. A design choice.
 inline constexpr double fall_delta_v_mps = 1.0;
 
-/// Impact speed that stands for a rider's fall, m/s: `fall_share` times the road speed, times a
+/// Impact speed equivalent to the fall of a rider, m/s: `fall_share` times the road speed, times a
 /// ramp in the delta-v of the machine from 0 at 0 to 1 at `fall_delta_v_mps`. Negative values count
 /// as 0.
 CRASHRANK_API double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept;
 
-/// Delta-v of a person on foot from which he is certain to fall, m/s. A choice: the half of it
-/// already moves the centre of mass 0.3 m beyond the feet before it turns back (an inverted
-/// pendulum of 0.9 m), more than a stance is wide.
+/// Delta-v of a person on foot above which the person falls with certainty, m/s. A design choice:
+/// half of it already moves the centre of mass 0.3 m beyond the feet before it turns back (an
+/// inverted pendulum of 0.9 m), which is more than the width of a stance.
 inline constexpr double topple_delta_v_mps = 2.0;
 
-/// Impact speed that stands for the fall of a person on foot, m/s: 4.2, the speed at which a centre
-/// of mass 0.9 m high reaches the ground, times a ramp in his delta-v from 0 at 0 to 1 at
-/// `topple_delta_v_mps`. Negative values count as 0.
+/// Impact speed equivalent to the fall of a person on foot, m/s: 4.2, the speed at which a centre
+/// of mass 0.9 m high reaches the ground, times a ramp in the delta-v of the person from 0 at 0 to
+/// 1 at `topple_delta_v_mps`. Negative values count as 0.
 CRASHRANK_API double standing_fall_mps(double delta_v_mps) noexcept;
 
 /// Harm to the people in or on one body in one contact: their number times the risk times their
 /// weight, and the property's share. Unit: persons with the model's outcome, as weighted.
 CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& options);
 
-/// The largest `harm_of` over all PDOF and leading edges, and over all exposures that are nowhere
-/// larger than this one (the number of people being the same). The pure directions front, side and
-/// rear have the extreme risks, see injury.hpp.
+/// Upper bound on `harm_of` over all PDOF, all leading edges and all exposures whose members do not
+/// exceed those of this one, for the same number of people. The directions front, side and rear
+/// have the extreme risks, see injury.hpp.
 CRASHRANK_API double most_harm(const HarmExposure& exposure, const HarmOptions& options);
 
-/// The samples of a set of options: first what is taken when nothing varies, then every corner of
-/// the ranges (2 frictions, 2 strengths, 2 restitutions, 4 models, 2 × 2 speeds: 128; ends that
-/// coincide count once), then three `is_numerical` ones in which nothing else varies: half the
-/// steps, and the ego 1 mm to the left and to the right. Always the same order.
+/// The samples of a set of options, always in the same order: first the nominal one, then every
+/// corner of the ranges (2 frictions, 2 strengths, 2 restitutions, 4 models, 2 × 2 speeds: 128;
+/// equal ends count once), then three `is_numerical` ones with nominal parameters: half the steps,
+/// and the ego 1 mm to the left and to the right.
 CRASHRANK_API std::vector<HarmSample> harm_samples(const HarmOptions& options);
 
 /// `harm_of` in one of the samples; `exposure` is that of the contact simulated in the sample. With
@@ -109,29 +109,30 @@ CRASHRANK_API double people_weight(const HarmExposure& exposure, const HarmWeigh
 /// Harm of the damage to the body itself, in the unit of `harm_of`.
 CRASHRANK_API double property_harm(const HarmExposure& exposure, const HarmWeights& weights);
 
-/// Probability that a person is injured in at least one of two independent events of the
-/// probabilities `earlier` and `later`: 1 - (1 - earlier)·(1 - later), in the form that loses no
-/// digits of small risks. Over several events: start at 0 and combine with the next one each time;
-/// the result is 1 - prod(1 - p_i). In [0, 1]; never falls with either.
+/// Probability that a person is injured in at least one of two independent events with the
+/// probabilities `earlier` and `later`: 1 - (1 - earlier)·(1 - later), in a form that keeps the
+/// digits of small risks. For several events start at 0 and combine with each in turn: the result
+/// is 1 - prod(1 - p_i). In [0, 1]; non-decreasing in both.
 constexpr double combined_risk(double earlier, double later) noexcept {
   return earlier + later * (1.0 - earlier);
 }
 
-/// The speed at which the curve of a person outside a car is read, m/s. Curves come from people
-/// struck by a front, who take on the vehicle's speed: delta-v = closing speed · M/m. A person
-/// brushed by a flank takes on less, and has the risk of a full hit of the same delta-v:
-/// min(closing speed, delta-v · m/M), 0 at no delta-v. `reduced_kg` is M = m1·m2/(m1 + m2).
+/// Impact speed for the risk curve of a person outside a car, m/s. The curves come from people who
+/// were struck by the front of a vehicle and took on its speed: delta-v = closing speed · M/m. A
+/// person who is grazed by a flank takes on less and has the risk of a full hit with the same
+/// delta-v: min(closing speed, delta-v · m/M), 0 without delta-v. `reduced_kg` is M = m1·m2/(m1 +
+/// m2).
 CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
                                       double reduced_kg) noexcept;
 
-/// The same; the options have no effect.
+/// As above; the options have no effect.
 CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
                                       double reduced_kg, const HarmOptions& options);
 
 /// Kind of the people in or on a body of that kind; false if it has none.
 CRASHRANK_API bool carries_people(BodyKind kind, Person& person) noexcept;
 
-/// Whether bodies of that kind have a passengers' cage that crush can reach into.
+/// Returns true if bodies of that kind have a passenger cage that crush can reach into.
 CRASHRANK_API bool has_cage(BodyKind kind) noexcept;
 
 }  // namespace crashrank

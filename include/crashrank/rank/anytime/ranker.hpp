@@ -19,29 +19,29 @@
 
 namespace crashrank {
 
-/// Sizes for which a Ranker allocates memory; larger inputs are refused.
+/// Sizes for which a Ranker allocates memory; larger inputs are rejected.
 struct RankerLimits {
-  std::size_t candidates = 1024;      ///< most
-  std::size_t actors = 64;            ///< most
+  std::size_t candidates = 1024;      ///< largest number
+  std::size_t actors = 64;            ///< largest number
   std::size_t triangles = 4'000'000;  ///< of any one model
 };
 
-/// How a Ranker ranks, and how much memory it allocates.
+/// Options of a Ranker and its memory.
 struct RankerOptions {
-  /// Measure, harm, impact, and workers: the calling thread and `workers` - 1 more share the work.
-  /// Samples of the harm's ranges are not evaluated, whatever HarmOptions::intervals says.
+  /// Measure, harm, impact and workers: the calling thread and `workers` - 1 more share the work.
+  /// Samples of the harm ranges are not evaluated, whatever HarmOptions::intervals says.
   RankOptions rank;
   RankerLimits limits;        ///< sizes for which memory is allocated
   bool pinned = false;        ///< see PoolOptions
   std::int32_t spin_us = -1;  ///< see PoolOptions
 };
 
-/// When a ranking ends.
+/// Limits of a ranking.
 struct RankBudget {
-  /// Counted from the call, s; at or below 0 it returns at once. Infinity: everything is ranked.
+  /// Time from the call, s; at or below 0 it returns at once. Infinity: no deadline.
   double deadline_s = std::numeric_limits<double>::infinity();
-  /// In tests of boxes, triangles and outline pieces; the answer is the same on every machine and
-  /// for every number of workers.
+  /// Limit of the work in tests of boxes, triangles and outline pieces. The answer is the same on
+  /// every machine and for every number of workers.
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   /// Ends as soon as the first place is proved.
   bool first_place_only = false;
@@ -55,7 +55,7 @@ struct RankBudget {
 
 /// How far a candidate was evaluated.
 enum class RankStage : std::uint8_t {
-  unseen,    ///< only the bound that holds for all candidates
+  unseen,    ///< only the upper bound from the available energy is known
   near,      ///< the bodies that its swept boxes overlap are known; exact if there are none
   searched,  ///< its first contact is known; exact if there is none
   scored,    ///< its score is known
@@ -63,31 +63,31 @@ enum class RankStage : std::uint8_t {
 
 /// One candidate of an answer.
 struct RankedCandidate {
-  std::size_t candidate = 0;            ///< index into the candidates asked about
+  std::size_t candidate = 0;            ///< index into the candidates of the call
   RankStage stage = RankStage::unseen;  ///< how far it was evaluated
   bool known = false;                   ///< `score` is the final one
   bool in_race = true;                  ///< can still be first
-  double score = 0.0;                   ///< where it is known
+  double score = 0.0;                   ///< valid if `known`
   ScoreInterval interval;               ///< contains the final score at every stage
-  /// Estimate of a score that is not known, within the interval: futures that are not
-  /// simulated yet count as their first contact would if both bodies were points that stop each
-  /// other along its normal. Before the stage `searched` the upper end. No bound. Once all
-  /// candidates are searched, it decides the order among those not known, before that the upper end
-  /// does.
+  /// Estimate of a score that is not known, within the interval. Futures that are not simulated yet
+  /// count as their first contact would if both bodies were point masses that stop each other along
+  /// its normal. Before the stage `searched` it is the upper bound. Not a bound itself. Candidates
+  /// with unknown scores are ordered by it once all candidates are searched, before that by the
+  /// upper bound.
   double estimate = 0.0;
   /// From the stage `searched` on: probability that the ego has a contact.
   double collision_probability = 0.0;
   /// From the stage `searched` on: its first contact in the likeliest future.
   bool collides = false;
-  bool grazes = false;  ///< passes something within the tolerance before that
+  bool grazes = false;  ///< the ego grazes an actor before that
   /// The vehicle can follow it until its first contact, or feasibility is ignored
   /// (Infeasible::keep). This and the next four are final where the score is known, the first from
   /// the stage `searched` on; true as long as nothing else is known.
   bool feasible = true;
   bool leaves_road = false;  ///< before the first contact in the likeliest future
-  /// As in CandidateResult, infinity in place of what is absent there, 0 as long as it is open.
+  /// As in CandidateResult, but infinity if absent there, and 0 while it is not known, m.
   double least_distance_m = 0.0;
-  double least_time_gap_s = 0.0;  ///< the same, s
+  double least_time_gap_s = 0.0;  ///< likewise, s
   double end_speed_mps = 0.0;     ///< at the horizon; 0 for candidates that collide
   std::size_t actor = 0;          ///< index into Scenario::actors
   double time_of_impact_s = 0.0;  ///< from the decision
@@ -98,19 +98,19 @@ struct RankedCandidate {
 
 /// An answer, most promising first; refers to the Ranker's memory, valid until its next call.
 struct RankerAnswer {
-  Status status = Success{};            ///< why the call was refused; nothing is ranked then
+  Status status = Success{};            ///< error if the call was rejected; then nothing is ranked
   View<const RankedCandidate> ranking;  ///< every candidate once
   bool complete = false;                ///< every score is known
   bool proved = false;                  ///< no other candidate can still take the first place
-  std::size_t in_race = 0;              ///< how many can
+  std::size_t in_race = 0;              ///< number of candidates that can be first
   double elapsed_s = 0.0;               ///< from the call until just before it returns
   RankerEffort effort;                  ///< work and times
-  /// Of the ranking: order, stages and the bits of scores and intervals. The same on every machine
-  /// whenever the answer is.
+  /// Hash of the ranking: order, stages and the bits of scores and intervals. Equal answers have
+  /// equal hashes on every machine.
   std::uint64_t hash = 0;
 };
 
-/// How the ego moves at time 0.
+/// Motion of the ego at time 0.
 struct EgoMotion {
   double speed_mps = 0.0;       ///< along its forward axis; negative when reversing
   double yaw_rate_radps = 0.0;  ///< left positive
@@ -148,21 +148,21 @@ public:
   static Result<Ranker> prepare(const Scenario& scenario, View<const Model> models,
                                 const RankerOptions& options = {});
 
-  /// Moves; the workers go along.
+  /// Moves the Ranker with its workers.
   Ranker(Ranker&&) noexcept;
-  Ranker& operator=(Ranker&&) noexcept;  ///< Moves; ends the workers it had.
+  Ranker& operator=(Ranker&&) noexcept;  ///< Ends the workers of the target, then moves.
   /// Ends the workers.
   ~Ranker();
 
-  /// What moves on its own: the actors' plans by actor, of each its predictions in their order, or
-  /// the motions that joint futures give it, then its own where a future does not replace it.
-  /// Errors of states are added to each of them inside, those that were drawn for the scenario.
-  /// Stands until the next call.
+  /// A plan of an actor. Plans are ordered by actor; those of an actor are its predictions in their
+  /// order, or the motions that joint futures give it, followed by its own motion if some future
+  /// does not replace it. Errors of states are added internally, as drawn for the scenario. Number
+  /// and order of the plans never change.
   struct Plan {
     std::size_t actor = 0;     ///< index into Scenario::actors
     double probability = 1.0;  ///< that the actor follows it, if it exists; not of joint futures
   };
-  /// Allocates.
+  /// Returns the plans of all actors; allocates.
   std::vector<Plan> plans() const;
 
   /// Sets a new situation: the pose where the ego starts, and the motion of each actor on each
