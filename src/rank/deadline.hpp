@@ -36,4 +36,8 @@ private:
   const std::atomic<bool>* cancel_ = nullptr;
 };
 
+inline double seconds_between(Deadline::Clock::time_point from, Deadline::Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
 }  // namespace crashrank::detail

@@ -83,6 +83,10 @@ struct SimulatedCandidate {
 SimulatedCandidate simulate_candidate(const Scene& scene, const Candidate& candidate,
                                       Scratch& scratch, RankWork& work);
 
+/// For each sample the index of its simulation in SimulatedOutcome::effects. Samples that differ
+/// only in the risk model and its speeds share a simulation.
+std::vector<std::size_t> simulation_of_sample(const Scene& scene);
+
 /// Evaluates damage and scores of all outcomes and combines the futures. `found.first` is the query
 /// of the first pose of the first contact; those of later contacts follow it.
 CandidateResult finish(const Scene& scene, const Candidate& candidate,

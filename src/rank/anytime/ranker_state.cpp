@@ -1,0 +1,180 @@
+#include "rank/anytime/ranker_state.hpp"
+
+#include "rank/nearby_actors.hpp"
+#include "rank/order.hpp"
+#include "rank/reach.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace crashrank {
+namespace {
+
+using detail::Deadline;
+using detail::seconds_between;
+using detail::StepRounds;
+
+/// Number of waiting candidates that are refined in one round.
+constexpr std::size_t refined_per_round = 16;
+
+std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
+  // FNV-1a over words, plus a shift so that high bits affect low ones.
+  constexpr std::uint64_t prime = 0x100000001b3;
+  hash = (hash ^ word) * prime;
+  return hash ^ (hash >> 32U);
+}
+
+std::uint64_t hash_of(View<const RankedCandidate> ranking) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const RankedCandidate& c : ranking) {
+    hash = mix_hash(hash, c.candidate);
+    hash = mix_hash(hash, static_cast<std::uint64_t>(c.stage) * 2 + (c.known ? 1 : 0));
+    hash = mix_hash(hash, std::bit_cast<std::uint64_t>(c.score));
+    hash = mix_hash(hash, std::bit_cast<std::uint64_t>(c.interval.lowest));
+    hash = mix_hash(hash, std::bit_cast<std::uint64_t>(c.interval.highest));
+  }
+  return hash;
+}
+
+}  // namespace
+
+bool Ranker::State::collect_results(std::size_t steps, const RankBudget& budget,
+                                    std::uint64_t& work) noexcept {
+  bool in_time = true;
+  for (std::size_t i = 0; i < steps; ++i) {
+    const bool affordable = work < budget.work;
+    const StepRounds::Done done = rounds.done(i);
+    if (affordable && done.state != nullptr) {
+      if (done.state->result.known && !states[chosen[i]].result.known) ++known;
+      states[chosen[i]] = *done.state;
+      needs_left_out = needs_left_out || done.state->needs_left_out;
+      work += done.end.work;
+    }
+    in_time = in_time && affordable && done.state != nullptr && done.end.finished;
+    queue.insert(chosen[i], states);
+  }
+  if (budget.known != nullptr) budget.known->store(known, std::memory_order_relaxed);
+  return in_time && !needs_left_out && !rounds.expired();
+}
+
+void Ranker::State::refine_all(const RankBudget& budget, RankerEffort& effort) noexcept {
+  const auto start = Deadline::Clock::now();
+  const auto all = static_cast<std::uint32_t>(rounds.candidates().size());
+  bool going = budget.work > 0;
+  std::uint32_t begin = 0;
+  if (going && all > 1) {
+    // Not valid if the ego can be displaced, because the swept boxes are those of its plans.
+    if (!scene.futures.displaces_ego() &&
+        detail::all_are_clear(scene, rounds.candidates(), rounds.deadline(), effort.work)) {
+      for (std::uint32_t i = 0; i < all; ++i) detail::bound_as_clear(scene, states[i]);
+    }
+    going = effort.work < budget.work && !rounds.expired();
+  }
+  while (begin < all && going) {
+    const std::size_t steps = std::min<std::size_t>(StepRounds::max_steps, all - begin);
+    for (std::size_t i = 0; i < steps; ++i) {
+      chosen[i] = begin + static_cast<std::uint32_t>(i);
+    }
+    rounds.run(states, chosen.data(), steps, std::numeric_limits<double>::infinity());
+    begin += static_cast<std::uint32_t>(steps);
+    going = collect_results(steps, budget, effort.work);
+  }
+  const auto seen = Deadline::Clock::now();
+  effort.bounds_s = seconds_between(start, seen);
+  while (going) {
+    const bool deciding = !queue.decided();
+    const double limit = deciding ? queue.limit() : std::numeric_limits<double>::infinity();
+    const std::size_t steps = queue.choose(states, refined_per_round, chosen.data());
+    if (steps == 0) {
+      if (budget.first_place_only || !queue.requeue_beaten(states)) break;
+      continue;
+    }
+    rounds.run(states, chosen.data(), steps, limit);
+    going = collect_results(steps, budget, effort.work);
+  }
+  effort.refining_s = seconds_between(seen, Deadline::Clock::now());
+}
+
+void Ranker::State::refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
+                                      RankerEffort& effort) noexcept {
+  const bool leaves = budget.work > 0 && !rounds.expired();
+  if (leaves && detail::leave_out_distant_actors(scene, candidates, reached, effort.work))
+    begin(candidates);
+  refine_all(budget, effort);
+  if (!needs_left_out) return;
+  detail::include_all_actors(scene, reached);
+  begin(candidates);
+  refine_all(budget, effort);
+}
+
+void Ranker::State::begin(View<const Candidate> candidates) noexcept {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    detail::begin_refining(scene, bounds, candidates[i], i, displaced, states[i]);
+  }
+  queue.begin(candidates.size());
+  known = 0;
+  needs_left_out = false;
+}
+
+bool Ranker::State::explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
+                                const Deadline& deadline, RankResult& result) {
+  detail::Scratch scratch;
+  scratch.stop = {&Deadline::stop, const_cast<Deadline*>(&deadline)};
+  for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
+    const RankedCandidate& ranked = answer.ranking[i];
+    CandidateResult& full = result.ranking[i];
+    if (ranked.known && !deadline.expired()) {
+      full = detail::evaluate(scene, candidates[ranked.candidate], scratch, result.work);
+    } else {
+      full.feasible = ranked.feasible;
+      full.collides = ranked.collides;
+      full.score_interval = ranked.interval;
+      if (ranked.known || ranked.stage >= RankStage::searched) {
+        full.searched = true;
+        full.score_estimate = ranked.estimate;
+        full.collision_probability = ranked.collision_probability;
+        if (ranked.collides) {
+          full.first_touch = {ranked.actor, ranked.time_of_impact_s, ranked.closing_speed_mps};
+        }
+      }
+    }
+    full.candidate = ranked.candidate;
+  }
+  return scratch.needs_left_out;
+}
+
+void Ranker::State::write_answer(RankerAnswer& answer, std::size_t all) noexcept {
+  queue.mark_in_race(states);
+  bool searched = true;
+  for (std::size_t i = 0; i < all; ++i) {
+    ranking[i] = states[i].result;
+    searched = searched && (ranking[i].known || ranking[i].stage >= RankStage::searched);
+  }
+  // Estimates after a search cannot be compared with upper bounds before it: use estimates only
+  // if all candidates are searched.
+  std::sort(ranking.begin(), ranking.begin() + static_cast<std::ptrdiff_t>(all),
+            [searched](const RankedCandidate& a, const RankedCandidate& b) {
+              return detail::ranks_before(a, b, searched);
+            });
+  answer.ranking = {ranking.data(), all};
+  answer.complete = true;
+  RankerEffort& effort = answer.effort;
+  for (const RankedCandidate& c : answer.ranking) {
+    answer.complete = answer.complete && c.known;
+    answer.in_race += c.in_race ? 1 : 0;
+    if (!c.known) {
+      effort.left_early += c.in_race ? 0 : 1;
+    } else if (c.stage == RankStage::near) {
+      ++effort.without_search;
+    } else if (c.stage == RankStage::searched) {
+      ++effort.without_crash;
+    } else {
+      ++effort.fully_evaluated;
+    }
+  }
+  answer.proved = answer.in_race <= 1;
+  answer.hash = hash_of(answer.ranking);
+}
+
+}  // namespace crashrank

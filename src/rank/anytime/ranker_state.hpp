@@ -1,0 +1,63 @@
+#pragma once
+
+#include "base/hidden.hpp"
+#include "crashrank/dispatch/worker_pool.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
+#include "rank/anytime/candidate_queue.hpp"
+#include "rank/anytime/refine.hpp"
+#include "rank/anytime/step_rounds.hpp"
+#include "rank/bounds.hpp"
+#include "rank/deadline.hpp"
+#include "rank/scene.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace crashrank {
+
+/// Memory and state of a Ranker, and the rounds of refinement of a call.
+struct CRASHRANK_HIDDEN Ranker::State {
+  State(detail::Scene&& made, WorkerPool&& started)
+      : scene(std::move(made)), rounds(scene, bounds, std::move(started)) {}
+
+  detail::Scene scene;
+  detail::ScoreBounds bounds;
+  detail::StepRounds rounds;
+  RankerLimits limits;
+  RankResult bodies;  ///< the part of the result that `explain` copies: bodies and options
+  /// Samples of a complete answer. The scene has none during `rank`, since no step evaluates them.
+  std::vector<HarmSample> samples;
+  double prepare_s = 0.0;
+  std::vector<detail::CandidateState> states;
+  std::vector<RankedCandidate> ranking;
+  detail::CandidateQueue queue;
+  std::array<std::uint32_t, detail::StepRounds::max_steps> chosen{};
+  std::vector<Motion> new_motions;  ///< motions of the actors while they are checked and copied
+  Motion displaced;                 ///< working memory for a displaced motion
+  std::size_t known = 0;            ///< number of candidates with a known score in this call
+  std::vector<char> reached;        ///< by actor: may be reached by a candidate
+  bool needs_left_out = false;      ///< a crash reaches an actor that was left out
+
+  /// Stores the results of a round in the order of its steps, as far as the work budget allows.
+  /// Returns false if work or time is used up.
+  bool collect_results(std::size_t steps, const RankBudget& budget, std::uint64_t& work) noexcept;
+  /// Refines candidates until time or work is used up or all is decided.
+  void refine_all(const RankBudget& budget, RankerEffort& effort) noexcept;
+  /// Refines candidates in futures that leave out distant actors. If a crash reaches one of these,
+  /// starts again with every actor included.
+  void refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
+                         RankerEffort& effort) noexcept;
+  /// Resets all candidates to their upper bounds. Does not touch what running workers use.
+  void begin(View<const Candidate> candidates) noexcept;
+  /// Evaluates the candidates of an answer in full. Returns true if a crash reaches an actor that
+  /// was left out of the futures.
+  bool explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
+                   const detail::Deadline& deadline, RankResult& result);
+  /// Writes the answer from the first `all` states. Does not touch what running workers use.
+  void write_answer(RankerAnswer& answer, std::size_t all) noexcept;
+};
+
+}  // namespace crashrank
