@@ -27,14 +27,14 @@ Scene road() {
   scene.scenario.ego.speed_mps = speed_mps;
   scene.scenario.horizon_s = 6.0;
   scene.scenario.measure = Measure::harm;
-  // As good as ice: what bodies do on the road between contacts is tested apart.
+  // Almost no friction on the road: motion between contacts is tested separately.
   scene.scenario.grip = 0.01;
   scene.add_candidate("on", 0.0);
   return scene;
 }
 
-/// A post at the corner of the front, met just before a wall across the lane.
-TEST(Aftermath, TheForceIsTheWallsThatBearsItNotThePostsMetFirst) {
+/// A post at the corner of the front, hit just before a wall across the lane.
+TEST(Aftermath, ForceIsThatOfTheWallAndNotOfThePostTouchedFirst) {
   Scene scene = scenes::car_and_wall();
   scene.scenario.measure = Measure::delta_v;
   const std::size_t post = scene.add_model("post", box_mesh({0.05F, 0.05F, 1.0F}), BodyKind::pole);
@@ -59,9 +59,9 @@ TEST(Aftermath, TheForceIsTheWallsThatBearsItNotThePostsMetFirst) {
   EXPECT_EQ(walls, 1);
 }
 
-/// Braking and steering by a listed manoeuvre and by the same motion in poses every 50 ms: what the
-/// ego runs into after its first contact is the same.
-TEST(Aftermath, TimedPosesBrakeAndSteerOnAsTheManoeuvreDoes) {
+/// A listed manoeuvre and the same motion as poses every 50 ms: after the first contact the ego
+/// hits the same bodies.
+TEST(Aftermath, TimedPosesHoldBrakingAndSteeringLikeManoeuvres) {
   for (const double yaw_rate : {0.0, 0.15}) {
     Scene scene = road();
     scene.scenario.grip = 0.8;
@@ -99,7 +99,7 @@ TEST(Aftermath, TimedPosesBrakeAndSteerOnAsTheManoeuvreDoes) {
   }
 }
 
-TEST(Aftermath, AChainOfEqualMassesHandsTheSpeedOn) {
+TEST(Aftermath, AChainOfEqualMassesPassesTheSpeedOn) {
   Scene scene = road();
   for (const double x : {10.0, 20.0, 30.0}) {
     scene.add_actor("car at " + std::to_string(x), scene.scenario.ego.model, x, 0.0);
@@ -108,8 +108,8 @@ TEST(Aftermath, AChainOfEqualMassesHandsTheSpeedOn) {
   const CandidateResult& on = of(result, "on");
   ASSERT_GE(on.contacts.size(), 1U);
   ASSERT_GE(on.further.size(), 2U);
-  // Equal masses share their momentum, and part by a restitution of at most 0.35: what is struck
-  // takes half of the closing speed and half of the rebound, and hands that on.
+  // Equal masses share their momentum and separate with a restitution of at most 0.35: the struck
+  // car takes half of the closing speed plus half of the rebound, and passes it on.
   double closing = speed_mps;
   const BodyOutcome* struck = &on.contacts[0].severity.other;
   EXPECT_EQ(on.contacts[0].actor, 0U);
@@ -151,13 +151,13 @@ TEST(Aftermath, AStruckCarIsPushedIntoThePersonBehindIt) {
   EXPECT_FALSE(pushed.damage_a.triangles.empty());
   EXPECT_FALSE(pushed.damage_b.triangles.empty());
   EXPECT_GT(*on.score, without + 0.01);
-  // Whoever stands elsewhere is not hurt.
+  // A person elsewhere is not injured.
   scene.scenario.actors[1].pose.translation.y() = 8.0;
   EXPECT_EQ(*of(scene.ranked(), "on").score, without);
 }
 
-TEST(Aftermath, TheWayToTheNextIsBraked) {
-  // The struck car brakes with 0.45 of the grip until it meets the second one.
+TEST(Aftermath, BodiesBrakeBetweenContacts) {
+  // The struck car brakes with 0.45 of the grip until it hits the second one.
   constexpr double deceleration = 0.45 * 0.8 * 9.80665;
   Scene scene = road();
   scene.scenario.grip = 0.8;
@@ -168,10 +168,10 @@ TEST(Aftermath, TheWayToTheNextIsBraked) {
   ASSERT_GE(on.further.size(), 1U);
   const double struck = on.contacts[0].severity.other.delta_v_mps;
   const double closing = on.further[0].closing_speed_mps;
-  // Some of the 3 m between them are crushed or travelled in the crash.
+  // Part of the 3 m between them is crushed or travelled during the crash.
   EXPECT_GE(closing, std::sqrt(struck * struck - 2 * deceleration * 3.2) - 0.3);
   EXPECT_LE(closing, std::sqrt(struck * struck - 2 * deceleration * 2.0) + 0.3);
-  // Wheels that roll freely bring it there faster, locked ones slower.
+  // With free-rolling wheels it arrives faster, with locked ones slower.
   scene.scenario.harm.after_contact = AfterContact::releases;
   const RankResult rolls = scene.ranked();
   scene.scenario.harm.after_contact = AfterContact::locks;
@@ -180,13 +180,13 @@ TEST(Aftermath, TheWayToTheNextIsBraked) {
   ASSERT_GE(of(slides, "on").further.size(), 1U);
   EXPECT_GT(of(rolls, "on").further[0].closing_speed_mps, closing + 0.5);
   EXPECT_LT(of(slides, "on").further[0].closing_speed_mps, closing - 0.5);
-  // It stops before one that is further away.
+  // It stops before a car that is farther away.
   scene.scenario.harm.after_contact = AfterContact::brakes;
   scene.scenario.actors[1].pose.translation.x() = 10.0 + 4.0 + struck * struck / deceleration;
   EXPECT_TRUE(of(scene.ranked(), "on").further.empty());
 }
 
-TEST(Aftermath, EveryMeasureTellsTheSameContacts) {
+TEST(Aftermath, EveryMeasureReportsTheSameContacts) {
   Scene scene = road();
   scene.add_actor("car", scene.scenario.ego.model, 10.0, 0.3);
   scene.add_actor("second", scene.scenario.ego.model, 16.0, 0.0);
@@ -219,10 +219,10 @@ TEST(Aftermath, GlancingACarThenAPole) {
   EXPECT_EQ(stop.actor, 1U);
   EXPECT_GT(glance.severity.ego.delta_v_mps, 0.3);
   EXPECT_LT(glance.severity.ego.delta_v_mps, 0.6 * speed_mps);
-  // What the first takes off the second has not.
+  // Speed that the first contact takes is not available for the second.
   const double left =
       std::hypot(speed_mps + glance.severity.ego.delta_v_x_mps, glance.severity.ego.delta_v_y_mps);
-  // Points of a body that turns are faster or slower than its middle.
+  // Points of a rotating body are faster or slower than its centre.
   EXPECT_NEAR(stop.closing_speed_mps, left, 0.12 * speed_mps);
   EXPECT_GT(stop.severity.ego.delta_v_mps, glance.severity.ego.delta_v_mps);
   double harm = 0.0;
@@ -231,7 +231,7 @@ TEST(Aftermath, GlancingACarThenAPole) {
   EXPECT_NEAR(*on.score, harm, 1e-12);
 }
 
-TEST(Aftermath, TwoMetAtOnceTakeEqualShares) {
+TEST(Aftermath, SimultaneousContactsShareTheImpulseEqually) {
   Scene scene = road();
   scene.add_actor("left", scene.scenario.ego.model, 10.0, 0.95);
   scene.add_actor("right", scene.scenario.ego.model, 10.0, -0.95);
@@ -243,11 +243,11 @@ TEST(Aftermath, TwoMetAtOnceTakeEqualShares) {
   EXPECT_NE(p.actor, q.actor);
   EXPECT_NEAR(q.time_of_impact_s, p.time_of_impact_s, 0.02);
   EXPECT_EQ(p.event, q.event);
-  // Each crash by itself conserves momentum between equal masses.
+  // Each of the crashes alone conserves momentum between equal masses.
   for (const Contact& contact : {p, q}) {
     EXPECT_NEAR(contact.severity.ego.delta_v_mps, contact.severity.other.delta_v_mps, 0.02);
   }
-  // One of the two rebounds before the other.
+  // One of the two separates before the other.
   EXPECT_NEAR(p.severity.ego.delta_v_mps, q.severity.ego.delta_v_mps,
               0.12 * p.severity.ego.delta_v_mps);
 }
@@ -286,7 +286,7 @@ TEST(Aftermath, HarmAtTheLimitsOfTheMassRatio) {
   const double certain = injury_risk(RiskModel::tum, all);
   const ContactSeverity feather = crash(1.0, BodyKind::car);
   EXPECT_LT(feather.ego.harm, 1e-4);
-  // All of it, and the rebound.
+  // The full closing speed plus the rebound.
   EXPECT_GE(feather.other.delta_v_mps, 0.98 * speed_mps);
   EXPECT_LE(feather.other.delta_v_mps, 1.4 * speed_mps);
   const ContactSeverity truck = crash(25000.0, BodyKind::truck);
@@ -328,7 +328,7 @@ TEST(Aftermath, PeopleOutsideCarsHaveNoCage) {
   EXPECT_GT(of(into_wall, "on").contacts.front().severity.ego.intrusion_m, 0.0);
 }
 
-TEST(Aftermath, TheBonnetsHeightIsThatOfTheMesh) {
+TEST(Aftermath, LeadingEdgeHeightIsThatOfTheMesh) {
   const auto risk = [](float half_height) {
     Scene scene = road();
     const std::size_t vehicle =
@@ -342,7 +342,7 @@ TEST(Aftermath, TheBonnetsHeightIsThatOfTheMesh) {
     scene.add_actor("person", person, 10.0, 0.0);
     return of(scene.ranked(), "on").contacts.front().severity.other.harm;
   };
-  // The same speed and mass, the bonnet's edge 0.8 m and 1.1 m over the ground.
+  // Same speed and mass, leading edge of the bonnet 0.8 m and 1.1 m above the ground.
   Exposure e;
   e.person = Person::pedestrian;
   e.impact_speed_mps = 11.0;
@@ -353,8 +353,8 @@ TEST(Aftermath, TheBonnetsHeightIsThatOfTheMesh) {
   EXPECT_GT(risk(0.55F), 1.1 * risk(0.4F));
 }
 
-// Scraping along a barrier accelerates a car less than its brakes do; hitting it at an angle does
-// not.
+// Scraping along a barrier decelerates a car less than its brakes do; hitting it at an angle
+// decelerates it more.
 TEST(Aftermath, HarmOfAScrapeRisesWithTheAngle) {
   double last = 0.0;
   for (const double angle_deg : {3.0, 8.0, 15.0, 30.0}) {

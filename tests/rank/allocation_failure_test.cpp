@@ -1,5 +1,6 @@
-// Every allocation of building, saving and loading, and a dense sample of those of ranking, is made
-// to fail once: the answer is a typed error, nothing stays allocated, and the same call then works.
+// Makes every allocation of building, saving and loading, and a dense sample of those of ranking,
+// fail once. The result must be a typed error without leaks, and the same call must succeed
+// afterwards.
 
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model.hpp"
@@ -25,7 +26,7 @@
 namespace {
 
 std::atomic<long> alive{0};
-std::atomic<long> until_failure{-1};  // allocations before the one that fails; below 0: none does
+std::atomic<long> until_failure{-1};  // allocations before the failing one; negative: none fails
 
 void* allocate(std::size_t bytes, std::size_t alignment) {
   if (until_failure.load(std::memory_order_relaxed) >= 0 &&
@@ -46,7 +47,7 @@ void release(void* memory) noexcept {
 
 }  // namespace
 
-// Not inlined: a compiler that sees one of a pair alone takes them for mismatched.
+// Not inlined: a compiler that sees only one function of the pair reports them as mismatched.
 [[gnu::noinline]] void* operator new(std::size_t bytes) {
   return allocate(bytes, alignof(std::max_align_t));
 }
@@ -56,7 +57,7 @@ void release(void* memory) noexcept {
 [[gnu::noinline]] void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return allocate(bytes, static_cast<std::size_t>(alignment));
 }
-// Who asks so can do without, as std::stable_sort: that is no failure to tell of.
+// Callers of the non-throwing form handle its failure themselves, as std::stable_sort does.
 [[gnu::noinline]] void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
   const long wanted = until_failure.exchange(-1);
   void* const memory = allocate(bytes, alignof(std::max_align_t));
@@ -78,7 +79,7 @@ void release(void* memory) noexcept {
 namespace crashrank {
 namespace {
 
-/// What one attempt came to, without keeping any of it.
+/// Outcome of one attempt, without its result.
 enum class Outcome { done, out_of_memory, other };
 
 template <class T> Outcome outcome(const Result<T>& result) {
@@ -86,11 +87,11 @@ template <class T> Outcome outcome(const Result<T>& result) {
   return result.error().code == ErrorCode::out_of_memory ? Outcome::out_of_memory : Outcome::other;
 }
 
-/// Calls `attempt` with the first, second, third ... allocation failing, until none is left to
-/// fail; after the first `dense`, in steps of a sixteenth.
+/// Calls `attempt` with the first, second, third ... allocation failing until all succeed; after
+/// the first `dense` the steps are a sixteenth of the count.
 void fail_each(const char* what, const std::function<Outcome()>& attempt,
                long dense = std::numeric_limits<long>::max()) {
-  ASSERT_EQ(attempt(), Outcome::done) << what;  // what is kept from a first call is there now
+  ASSERT_EQ(attempt(), Outcome::done) << what;  // allocate caches of the first call
   long n = 0;
   long tried = 0;
   for (;; n += n < dense ? 1 : 1 + n / 16) {
@@ -129,10 +130,10 @@ TEST(AllocationFailure, BuildingATree) {
 }
 
 TEST(AllocationFailure, BuildingATreeOnThreads) {
-  const TriangleMesh mesh = sample_mesh(20);  // 4800 triangles: enough for several threads
+  const TriangleMesh mesh = sample_mesh(20);  // 4800 triangles are enough for several threads
   BuildOptions options;
   options.threads = 3;
-  // Threads decide how many allocations there are; each is failed that the run before had.
+  // The number of allocations depends on the threads: fail each that the previous run had.
   for (long n = 0; n < 200; n += 3) {
     until_failure = n;
     const Outcome result = outcome(build_tree(mesh, options));
@@ -146,7 +147,7 @@ TEST(AllocationFailure, BuildingATreeOnThreads) {
 TEST(AllocationFailure, MakingAModel) {
   const TriangleMesh mesh = sample_mesh(8);
   fail_each("make_model", [&] {
-    // The copy is the caller's, and so is what happens when it cannot be made.
+    // The caller makes the copy and handles a failure to make it.
     std::optional<TriangleMesh> copy;
     const long wanted = until_failure.exchange(-1);
     copy.emplace(mesh);
@@ -244,7 +245,7 @@ TEST(AllocationFailure, MovingTheActorsOfARankerAndRefusingACall) {
     until_failure = n;
     const Status moved = ranker.move_actors(start, soon);
     if (until_failure.exchange(-1) >= 0) {
-      ASSERT_GT(n, 0);  // something was allocated, and its failing told of
+      ASSERT_GT(n, 0);  // an allocation failed and was reported
       EXPECT_TRUE(moved.ok());
       break;
     }
@@ -263,7 +264,7 @@ TEST(AllocationFailure, MovingTheActorsOfARankerAndRefusingACall) {
     ASSERT_FALSE(answer.status.ok());
     EXPECT_EQ(answer.status.error().code, failed ? ErrorCode::out_of_memory : ErrorCode::bad_input);
     if (failed) continue;
-    ASSERT_GT(n, 0);  // the words of the error were allocated
+    ASSERT_GT(n, 0);  // the text of the error was allocated
     break;
   }
 }

@@ -26,7 +26,7 @@ using scenes::Scene;
 constexpr double half_length_m = 2.0;
 constexpr double half_width_m = 1.0;
 
-/// A car of 4 × 2 m, its origin in its middle; the second model is another one.
+/// A car of 4 × 2 m with its origin in the middle, and a second model.
 Scene two_cars(double speed_mps) {
   Scene scene;
   scene.scenario.measure = Measure::closing_energy;
@@ -48,7 +48,8 @@ std::array<Vector2d, 4> corners(const Pose& pose) {
   return all;
 }
 
-/// Of rectangles that do not overlap: a corner of one and an edge of the other are nearest.
+/// Distance of two disjoint rectangles: the nearest points are a corner of one and an edge of the
+/// other.
 double apart(const Pose& a, const Pose& b) {
   double least = 1e9;
   for (const auto& [points, edges] :
@@ -65,7 +66,7 @@ double apart(const Pose& a, const Pose& b) {
   return least;
 }
 
-TEST(Clearance, LeastDistanceIsThatOfTheOutlinesAlongThePlans) {
+TEST(Clearance, DistanceIsTheMinimumBetweenOutlinesAlongThePlans) {
   int near = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -113,7 +114,7 @@ TEST(Clearance, LeastDistanceIsThatOfTheOutlinesAlongThePlans) {
     } else if (expected == farthest_clearance_m) {
       EXPECT_FALSE(ranked.least_distance_m.has_value());
     }
-    // Whoever is listed first.
+    // The order of the actors does not matter.
     std::reverse(scene.scenario.actors.begin(), scene.scenario.actors.end());
     const CandidateResult turned = scene.ranked().ranking.front();
     EXPECT_EQ(turned.least_distance_m, ranked.least_distance_m);
@@ -122,7 +123,7 @@ TEST(Clearance, LeastDistanceIsThatOfTheOutlinesAlongThePlans) {
   EXPECT_GT(near, 60);
 }
 
-TEST(Clearance, TimeGapOfCrossingWays) {
+TEST(Clearance, TimeGapOfCrossingPaths) {
   int crossed = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -137,7 +138,7 @@ TEST(Clearance, TimeGapOfCrossingWays) {
     scene.add_candidate("keeps going", 0.0);
     const CandidateResult ranked = scene.ranked().ranking.front();
     if (ranked.collides) continue;
-    // The ego's flanks are at ±1 m, those of the other at x ± 1 m.
+    // The flanks of the ego are at ±1 m, those of the other at x ± 1 m.
     const double clear = half_length_m + half_width_m;
     const double gap = std::max((y - clear) / other_speed - (x + clear) / speed,
                                 (x - clear) / speed - (y + clear) / other_speed);
@@ -150,20 +151,20 @@ TEST(Clearance, TimeGapOfCrossingWays) {
   EXPECT_GT(crossed, 60);
 }
 
-TEST(Clearance, TimeGapBehindAnother) {
+TEST(Clearance, TimeGapToALeadingCar) {
   Scene scene = two_cars(20.0);
   scene.add_actor("ahead", 1, 24.0, 0.0, 0.0, 20.0);
   scene.add_actor("stands beside", 1, 30.0, 3.0);
   scene.add_candidate("keeps going", 0.0);
   const CandidateResult ranked = scene.ranked().ranking.front();
-  // Twenty metres of free road at twenty metres a second.
+  // 20 m of free road at 20 m/s.
   EXPECT_NEAR(*ranked.least_time_gap_s, 1.0, 0.005);
   EXPECT_NEAR(*ranked.least_distance_m, 1.0, 0.01);
   EXPECT_EQ(ranked.soonest, 0U);
   EXPECT_EQ(ranked.nearest, 1U);
 }
 
-TEST(Clearance, BodiesAboveEachOtherAreNotNear) {
+TEST(Clearance, BodiesAboveEachOtherAreIgnored) {
   Scene scene = two_cars(20.0);
   ScenarioActor& bridge = scene.add_actor("on a bridge", 1, 30.0, 0.0);
   bridge.pose.translation.z() = 6.0;
@@ -171,7 +172,7 @@ TEST(Clearance, BodiesAboveEachOtherAreNotNear) {
   EXPECT_FALSE(scene.ranked().ranking.front().least_distance_m.has_value());
 }
 
-TEST(Clearance, OverAllFutures) {
+TEST(Clearance, IsTheMinimumOverAllFutures) {
   Scene scene = two_cars(10.0);
   ScenarioActor& car = scene.add_actor("car", 1, 20.0, 5.0);
   Prediction far;
@@ -196,28 +197,29 @@ std::string order(const RankResult& result) {
   return names;
 }
 
-TEST(OrderOfHarmless, StaysOnTheRoadKeepsApartAndEndsSlow) {
+TEST(OrderOfHarmless, PrefersRoadThenDistanceThenLowSpeed) {
   Scene scene = two_cars(10.0);
   scene.add_actor("parked", 1, 25.0, 3.0);
   scene.add_candidate("on", 0.0);
   scene.add_candidate("right", 0.0, -0.01);
   scene.add_candidate("brakes", -4.0);
   scene.add_candidate("brakes, too", -4.0);
-  // "brakes" stops before the parked car; to the right is further from it than straight on.
+  // "brakes" stops before the parked car; steering to the right keeps a larger distance than
+  // straight on.
   EXPECT_EQ(order(scene.ranked()), "brakes=brakes, too right on");
   std::reverse(scene.scenario.listed.begin(), scene.scenario.listed.end());
   EXPECT_EQ(order(scene.ranked()), "brakes, too=brakes right on");
-  // A road whose border is to the right of the lane.
+  // The border of the road is to the right of the lane.
   scene.scenario.road.drivable = {{{{-20, -1.2}, {200, -1.2}, {200, 10}, {-20, 10}}, {}}};
   EXPECT_EQ(order(scene.ranked()), "brakes, too=brakes on right");
-  // Where nobody is, the slower stands first.
+  // Without actors the slower candidate is first.
   scene.scenario.actors.clear();
   scene.scenario.road = {};
   EXPECT_EQ(order(scene.ranked()), "brakes, too=brakes right=on");
 }
 
-/// Wherever time is up: what is told as known is that of the whole answer.
-TEST(OrderOfHarmless, NoHalfOfADistanceIsTold) {
+/// For any deadline the values marked as known equal those of the complete answer.
+TEST(OrderOfHarmless, InterruptedSearchesReportNoPartialClearance) {
   std::size_t cut_short = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -261,7 +263,7 @@ TEST(OrderOfHarmless, NoHalfOfADistanceIsTold) {
   EXPECT_GT(cut_short, 6U);
 }
 
-TEST(OrderOfHarmless, IsTheRankersToo) {
+TEST(OrderOfHarmless, IsTheSameInTheRanker) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     oracle::Random random(seed);

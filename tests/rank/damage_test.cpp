@@ -21,8 +21,9 @@
 #include <utility>
 #include <vector>
 
-// Damage is what the exact collider finds along the motion that the contact law simulated. Here
-// that motion comes from a simulation of its own, and triangles are tested without trees.
+// Damage consists of the triangles that the exact collider finds along the motion simulated by the
+// contact law. Here the motion comes from a separate simulation, and triangles are tested without
+// trees.
 
 namespace crashrank {
 namespace {
@@ -36,8 +37,7 @@ bool holds(const BodyDamage& damage, std::size_t triangle) {
                             static_cast<std::uint32_t>(triangle));
 }
 
-/// The simulation of what follows from the first contact of the ego on its plan with an actor, set
-/// up from the scenario.
+/// The simulation after the first contact of the ego with an actor, set up from the scenario.
 class OwnSimulation {
 public:
   OwnSimulation(const Scene& scene, const RankResult& result, const CandidateResult& c)
@@ -82,7 +82,7 @@ private:
   Vehicle other_;
 };
 
-/// A car that drives at an angle into something.
+/// A car that hits an obstacle at an angle.
 Scene car_against(TriangleMesh car, TriangleMesh other, BodyKind kind, double speed_mps, double yaw,
                   double y) {
   Scene scene;
@@ -102,9 +102,9 @@ TriangleMesh wall_box() { return box_mesh({2.0F, 20.0F, 1.5F}, 1, {0.0F, 0.0F, 1
 
 const CandidateResult& only(const RankResult& result) { return result.ranking.front(); }
 
-// Triangles with a corner inside the wall at a recorded pose are damaged; damaged ones reach the
-// wall at some pose, to within the way between two poses.
-TEST(Damage, IsWhatTheWallHoldsAlongTheSimulatedMotion) {
+// Triangles with a corner inside the wall at a recorded pose are damaged. Damaged triangles reach
+// the wall at some pose, up to the displacement between two poses.
+TEST(Damage, TrianglesInsideTheWallAlongTheMotionAreDamaged) {
   constexpr std::uint64_t seed = 401;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   oracle::Random random(seed);
@@ -160,9 +160,9 @@ TEST(Damage, IsWhatTheWallHoldsAlongTheSimulatedMotion) {
   EXPECT_GT(sliding, 5U);
 }
 
-// All pairs of triangles of two moving bodies, tested one by one at the pose at which the contact
-// point has got furthest and at the end of the force.
-TEST(Damage, HoldsAllPairsAtTheFurthestAndTheLastPose) {
+// Brute force over all pairs of triangles of two moving bodies, at the pose with the largest
+// displacement of the contact point and at the end of the force.
+TEST(Damage, ContainsAllPairsAtTheFurthestAndTheLastPose) {
   constexpr std::uint64_t seed = 402;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   oracle::Random random(seed);
@@ -223,8 +223,8 @@ TEST(Damage, HoldsAllPairsAtTheFurthestAndTheLastPose) {
   EXPECT_GT(found, 1000U);
 }
 
-// A shipped car, head-on into a wall: the damaged region reaches as deep as the crush that the law
-// states, to within an outline's piece, and deeper the faster.
+// A shipped car, head-on into a wall: the damaged region is as deep as the crush from the contact
+// law, up to the length of an outline piece, and deeper at higher speed.
 TEST(Damage, ReachesAsDeepAsTheSimulatedCrush) {
   constexpr double piece_m = 0.05;
   const TriangleMesh car = scenes::shipped_mesh("sedan");
@@ -248,7 +248,7 @@ TEST(Damage, ReachesAsDeepAsTheSimulatedCrush) {
     EXPECT_GE(contact.ego.area_m2, area_before);
     before = depth;
     area_before = contact.ego.area_m2;
-    // The wall is damaged where the car hits it.
+    // The damage of the wall is where the car hits it.
     const Box& region = contact.other.region;
     EXPECT_NEAR(region.min.x(), -2.0, 1e-3);
     EXPECT_GT(region.min.y(), 3.0 + static_cast<double>(car.bounds().min.y()) - 0.01);
@@ -257,7 +257,7 @@ TEST(Damage, ReachesAsDeepAsTheSimulatedCrush) {
   }
 }
 
-TEST(Damage, ExchangeOfEgoAndActorExchangesTheDamage) {
+TEST(Damage, ExchangingEgoAndActorExchangesTheDamage) {
   constexpr std::uint64_t seed = 403;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   oracle::Random random(seed);
@@ -275,7 +275,7 @@ TEST(Damage, ExchangeOfEgoAndActorExchangesTheDamage) {
       const auto first = scene.add_model("one", exchanged ? two : one, BodyKind::car, 1500.0);
       const auto second = scene.add_model("two", exchanged ? one : two, BodyKind::car, 1500.0);
       const auto placed = [](double yaw, double speed) {
-        // Both centres would be at the origin after a second.
+        // Without contact both centres would be at the origin after one second.
         return pose_from_angles({-speed * std::cos(yaw), -speed * std::sin(yaw), 0}, yaw, 0, 0);
       };
       scene.scenario.ego.model = first;
@@ -298,9 +298,10 @@ TEST(Damage, ExchangeOfEgoAndActorExchangesTheDamage) {
   EXPECT_GT(compared, 1000U);
 }
 
-// Where the law does not press, as over the height that it knows, only the first pair counts: a
-// tall body drives into a gantry's beam, whose post stands beside the way.
-TEST(Damage, ABrushCountsTheFirstPairAlone) {
+// If the outlines of the contact law do not press, as at heights outside its bands, only the first
+// pair of triangles counts: a tall body drives into the beam of a gantry whose post is beside its
+// path.
+TEST(Damage, WithoutForceOnlyTheFirstPairIsDamaged) {
   TriangleMesh gantry = box_mesh({0.5F, 3.0F, 0.3F}, 4, {0.0F, 0.0F, 4.5F});
   const TriangleMesh post = box_mesh({0.5F, 0.5F, 2.4F}, 1, {0.0F, 8.0F, 2.4F});
   const auto first = static_cast<std::uint32_t>(gantry.vertices.size());
@@ -321,8 +322,9 @@ TEST(Damage, ABrushCountsTheFirstPairAlone) {
   EXPECT_EQ(contact.crush_m, 0.0);
 }
 
-// A wall damages the ego alike however it is cut: the seam lies in the middle of the car's front.
-TEST(Damage, OfTheEgoIsTheSameForAWallInParts) {
+// The damage of the ego does not depend on how the wall is divided: the seam is at the middle of
+// the front of the car.
+TEST(Damage, DoesNotDependOnHowAWallIsDivided) {
   for (const double speed : {5.0, 15.0, 25.0}) {
     const Scene whole = car_against(car_box(), wall_box(), BodyKind::building, speed, 0.2, 0.3);
     Scene parts = whole;

@@ -1,4 +1,4 @@
-// What docs/guide/faults.md promises for input that makes little sense.
+// Guarantees of docs/guide/faults.md for unreasonable input.
 
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/rank/anytime/ranker.hpp"
@@ -44,7 +44,7 @@ TEST(Fault, AHundredThousandCandidatesAreRanked) {
   EXPECT_EQ(*result.ranking.back().score, 0.0);
 }
 
-/// A thousand cars, posts and walls in one pile before the ego.
+/// A thousand cars, posts and walls piled up before the ego.
 Scene thousand_in_a_pile(double around_m) {
   Scene scene = car_and_wall(0.0);
   scene.scenario.actors.clear();
@@ -77,7 +77,7 @@ TEST(Fault, AThousandActorsInOnePileAreRanked) {
         ASSERT_TRUE(on.score.has_value());
         EXPECT_TRUE(std::isfinite(*on.score));
         EXPECT_GT(*on.score, 0.0);
-        // No step is shorter than an eighth of a millisecond, no scene longer than 30 s.
+        // A step is at least 1/8 ms and a scene at most 30 s long.
         EXPECT_LE(result.work.crash_steps, 240'002U);
         EXPECT_LE(on.contacts.size() + on.further.size(), 65U);
         if (measure != Measure::harm) continue;
@@ -89,7 +89,7 @@ TEST(Fault, AThousandActorsInOnePileAreRanked) {
   }
 }
 
-TEST(Fault, ACandidateThatDoesNotMoveIsHitOrNot) {
+TEST(Fault, AnEgoAtRestCanBeHit) {
   Scene scene = car_and_wall(10.0);
   scene.scenario.horizon_s = 2.0;
   scene.add_candidate("stand", 0.0);
@@ -101,7 +101,7 @@ TEST(Fault, ACandidateThatDoesNotMoveIsHitOrNot) {
   EXPECT_NEAR(hit.contacts[0].time_of_impact_s, 1.0, 1e-4);
   EXPECT_NEAR(hit.contacts[0].closing_speed_mps, 10.0, 1e-9);
   EXPECT_GT(*hit.score, 0.0);
-  // Nothing moves and the surfaces touch: a contact at time 0 without speed, under every measure.
+  // Nothing moves and the surfaces touch: a contact at time 0 without speed, for every measure.
   Scene resting = car_and_wall(-0.5);
   resting.add_candidate("stand", 0.0);
   for (const Measure measure :
@@ -138,7 +138,7 @@ TEST(Fault, ABodyWithoutAnOutlineIsRefusedByName) {
   }
 }
 
-TEST(Fault, APoseWithoutANumberIsNoRigidPose) {
+TEST(Fault, APoseWithNaNIsRefused) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Pose pose;
   pose.rotation(1, 2) = nan;
@@ -160,7 +160,7 @@ TEST(Fault, APoseWithoutANumberIsNoRigidPose) {
   EXPECT_EQ(timeless.error().place, "candidates.listed[0].poses[1].t_s of 'poses'");
 }
 
-TEST(Fault, MoreWorkersThanThereMayBeAreRefused) {
+TEST(Fault, TooManyWorkersAreRefused) {
   Scene scene = car_and_wall(10.0);
   scene.add_candidate("keep going", 0.0);
   for (const auto& [workers, fine] : {std::pair(0U, true), {64U, true}, {65U, false}}) {

@@ -42,14 +42,14 @@ Scene ice() {
   return scene;
 }
 
-/// A pole whose edge stands 1 cm inside the way of the car's right flank.
+/// A pole whose edge is 1 cm inside the path of the right flank of the car.
 void add_pole(Scene& scene) {
   const std::size_t pole =
       scene.add_model("pole", box_mesh({0.15F, 0.15F, 2.0F}, 2, {0, 0, 2}), BodyKind::pole);
   scene.add_actor("pole", pole, pole_x_m, -(half_width_m + pole_half_m - overlap_m));
 }
 
-/// A wall of 12 m across the way, in so many parts of equal width, from right to left.
+/// A wall of 12 m across the path, divided into parts of equal width, from right to left.
 void add_wall(Scene& scene, int parts) {
   const double half_m = 6.0 / parts;
   const std::size_t part =
@@ -74,8 +74,8 @@ bool same_bits(double p, double q) {
   return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
 }
 
-// The car's flank still slides past the pole when its front reaches the wall, 2 m behind.
-TEST(FixedBodies, ThoseThatStandApartAreContactsOfTheirOwn) {
+// The flank of the car still slides along the pole when its front reaches the wall 2 m behind.
+TEST(FixedBodies, SeparateBodiesHaveSeparateContacts) {
   Scene both = ice();
   add_pole(both);
   Scene pole_alone = both;
@@ -90,12 +90,13 @@ TEST(FixedBodies, ThoseThatStandApartAreContactsOfTheirOwn) {
   ASSERT_FALSE(pole.empty());
   ASSERT_FALSE(wall.empty());
   EXPECT_EQ(pole.front(), &of(result, "on").contacts.front());
-  // Each begins when the car has driven there.
+  // Each contact begins when the car has driven there.
   EXPECT_NEAR(pole.front()->time_of_impact_s, (pole_x_m - pole_half_m - half_length_m) / driven_mps,
               1e-3);
   EXPECT_NEAR(wall.front()->time_of_impact_s, (wall_face_m - half_length_m) / driven_mps, 0.01);
   EXPECT_NEAR(wall.front()->closing_speed_mps, driven_mps, 0.02 * driven_mps);
-  // The brush is no more than it is without the wall, the crash about what it is without the pole.
+  // The scrape is no more severe than without the wall, the crash about as severe as without the
+  // pole.
   const BodyOutcome& brush = pole.front()->severity.ego;
   const BodyOutcome& crash = wall.front()->severity.ego;
   const BodyOutcome& brush_alone = of(only_pole, "on").contacts.front().severity.ego;
@@ -106,11 +107,11 @@ TEST(FixedBodies, ThoseThatStandApartAreContactsOfTheirOwn) {
   EXPECT_GT(crash.delta_v_mps, driven_mps);
   EXPECT_NEAR(crash.delta_v_mps, crash_alone.delta_v_mps, 0.02 * crash_alone.delta_v_mps);
   EXPECT_NEAR(crash.crush_m, crash_alone.crush_m, 0.05 * crash_alone.crush_m);
-  // The wall pushes from ahead over the whole front, the pole touches the right flank alone.
+  // The wall pushes from ahead over the full front, the pole touches only the right flank.
   EXPECT_LT(std::min(crash.pdof_deg, 360.0 - crash.pdof_deg), 10.0);
   EXPECT_GT(wall.front()->ego.region.max.y(), 0.8);
   EXPECT_LT(pole.front()->ego.region.max.y(), -0.5);
-  // They overlap in time: one event.
+  // The contacts overlap in time, so they are one event.
   EXPECT_EQ(pole.front()->event, 1U);
   EXPECT_EQ(wall.front()->event, 1U);
   EXPECT_EQ(brush.event_delta_v_mps, crash.event_delta_v_mps);
@@ -141,7 +142,7 @@ TEST(FixedBodies, TheOrderOfActorsChangesNoBit) {
   }
 }
 
-/// Of a wall in parts that may each be missing none is joined to the next.
+/// Parts of a wall that may each be absent are not joined.
 TEST(FixedBodies, PartsOfAWallActAsOneBesideAPole) {
   Scene whole = ice();
   add_pole(whole);
@@ -175,8 +176,8 @@ TEST(FixedBodies, PartsOfAWallActAsOneBesideAPole) {
   }
 }
 
-// The car's front reaches the middle one of five parts alone.
-TEST(FixedBodies, AWallIsNamedAfterThePartThatIsTouchedFirst) {
+// The front of the car reaches only the middle one of five parts.
+TEST(FixedBodies, AWallIsReportedAsThePartTouchedFirst) {
   Scene scene = ice();
   add_pole(scene);
   add_wall(scene, 5);
@@ -187,8 +188,8 @@ TEST(FixedBodies, AWallIsNamedAfterThePartThatIsTouchedFirst) {
   EXPECT_FALSE(wall.front()->other.triangles.empty());
 }
 
-// A pole in the corner of an L lies inside its bounding rectangle and touches neither arm.
-TEST(FixedBodies, AnAngleOfWallsDoesNotAdjoinWhatStandsBetweenItsArms) {
+// A pole in the corner of an L is inside its bounding rectangle and touches neither arm.
+TEST(FixedBodies, AnLShapedWallDoesNotAdjoinABodyBetweenItsArms) {
   TriangleMesh angle = box_mesh({0.5F, 4.0F, 1.5F}, 2, {0.0F, 0.0F, 1.5F});
   const TriangleMesh arm = box_mesh({4.0F, 0.5F, 1.5F}, 2, {-4.5F, -3.5F, 1.5F});
   const auto first = static_cast<std::uint32_t>(angle.vertices.size());
@@ -207,8 +208,8 @@ TEST(FixedBodies, AnAngleOfWallsDoesNotAdjoinWhatStandsBetweenItsArms) {
   EXPECT_GT(walls.front()->severity.ego.delta_v_mps, driven_mps);
 }
 
-// Two blocks before the car's front, as one wall and with a gap between them.
-/// How many bodies of a scene the ego touches.
+// Two blocks before the front of the car, as one wall or with a gap between them.
+/// Number of bodies of a scene that the ego touches.
 std::size_t bodies_touched(const Scene& scene) {
   std::vector<std::size_t> bodies;
   const RankResult result = scene.ranked();
@@ -235,7 +236,7 @@ TEST(FixedBodies, PartsWithAJointAreOneBody) {
   EXPECT_EQ(contacts(0.4), 2U);
 }
 
-TEST(FixedBodies, APostBeforeAWallIsNoPartOfIt) {
+TEST(FixedBodies, APostBeforeAWallIsNotJoinedWithIt) {
   const auto contacts = [](double gap_m) {
     Scene scene = ice();
     const std::size_t wall =
@@ -250,8 +251,8 @@ TEST(FixedBodies, APostBeforeAWallIsNoPartOfIt) {
   EXPECT_EQ(contacts(0.06), 2U);
 }
 
-/// A car along a rail of ten parts: no end of a part in a joint catches it.
-TEST(FixedBodies, ARailWithJointsActsAsOneWithout) {
+/// A car along a rail of ten parts: it does not catch on the end of a part in a joint.
+TEST(FixedBodies, ARailWithJointsActsLikeOneWithoutJoints) {
   const auto delta_v = [](double gap_m, double yaw_rad) {
     constexpr float half_m = 2.0F;
     Scene scene = ice();

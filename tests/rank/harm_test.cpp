@@ -13,7 +13,7 @@
 namespace crashrank {
 namespace {
 
-TEST(Harm, WeightsAreTheCallersAndCountAsSuch) {
+TEST(Harm, WeightsOfTheCallerScaleTheHarm) {
   HarmExposure e;
   e.kind = BodyKind::car;
   e.delta_v_mps = 15;
@@ -33,7 +33,7 @@ TEST(Harm, WeightsAreTheCallersAndCountAsSuch) {
   EXPECT_DOUBLE_EQ(harm_of(e, options), 0.5);
 }
 
-TEST(Harm, SomebodyOnFootCountsByTheClosingSpeed) {
+TEST(Harm, PedestrianHarmDependsOnTheClosingSpeed) {
   HarmExposure e;
   e.kind = BodyKind::pedestrian;
   e.closing_speed_mps = 8;
@@ -71,7 +71,7 @@ TEST(Harm, IsPeopleTimesRiskPlusProperty) {
   EXPECT_EQ(risk_of(e, options, sample), 0.0);
 }
 
-TEST(Harm, StatedOccupantsReplaceTheAssumedNumber) {
+TEST(Harm, StatedOccupantsReplaceTheDefaultNumber) {
   HarmExposure e;
   e.delta_v_mps = 15;
   HarmOptions options;
@@ -139,8 +139,8 @@ TEST(Harm, ATouchedRiderFallsAtRoadSpeed) {
   }
 }
 
-TEST(Harm, AToppledPedestrianFallsFromHisHeight) {
-  // A centre of mass 0.9 m high reaches the ground with sqrt(2·g·h).
+TEST(Harm, AToppledPedestrianFallsFromStandingHeight) {
+  // A centre of mass 0.9 m high reaches the ground at sqrt(2·g·h).
   EXPECT_NEAR(standing_fall_mps(100.0), std::sqrt(2.0 * 9.81 * 0.9), 0.01);
   EXPECT_EQ(standing_fall_mps(-1.0), 0.0);
   EXPECT_DOUBLE_EQ(standing_fall_mps(1.0), 0.5 * standing_fall_mps(2.0));
@@ -156,7 +156,7 @@ TEST(Harm, AToppledPedestrianFallsFromHisHeight) {
   EXPECT_EQ(risk_of(walking, options, {}), risk_of(struck, options, {}));
 }
 
-TEST(Harm, AContactThatTransfersNothingStrikesNobody) {
+TEST(Harm, AContactWithoutImpulseHarmsNobody) {
   EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0), 0.0);
   EXPECT_DOUBLE_EQ(struck_speed_mps(10.0, 1.0, 75.0, 50.0), 1.5);
   EXPECT_EQ(struck_speed_mps(10.0, 30.0, 75.0, 50.0), 10.0);
@@ -165,7 +165,7 @@ TEST(Harm, AContactThatTransfersNothingStrikesNobody) {
   EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0, options), 0.0);
 }
 
-TEST(Harm, TouchingHurtsHardlyAnybody) {
+TEST(Harm, LightContactsCauseLittleHarm) {
   const HarmOptions options;
   HarmExposure wall;
   wall.ego = true;
@@ -210,7 +210,7 @@ TEST(Harm, APedestrianOutOfRangeIsRefused) {
   EXPECT_EQ(fault(std::nullopt, std::nullopt), "");
 }
 
-TEST(Harm, IsMonotoneAndBoundedByItsMost) {
+TEST(Harm, IsMonotoneAndBelowItsUpperBound) {
   constexpr std::uint64_t seed = 33;
   test::Random random(seed);
   for (int i = 0; i < 5000; ++i) {
@@ -254,7 +254,7 @@ using scenes::box_mesh;
 using scenes::of;
 using scenes::Scene;
 
-/// At 14 m/s: somebody on foot ahead, a standing car to the left of the lane.
+/// At 14 m/s: a person on foot ahead, a parked car to the left of the lane.
 Scene street() {
   Scene scene;
   const std::size_t car =
@@ -272,7 +272,7 @@ Scene street() {
   return scene;
 }
 
-TEST(Harm, RankPutsMetalBeforeSomebodyOnFoot) {
+TEST(Harm, HittingACarRanksBeforeHittingAPedestrian) {
   const Scene scene = street();
   const RankResult energy = scene.ranked(Measure::closing_energy);
   const RankResult harm = scene.ranked(Measure::harm);
@@ -289,13 +289,13 @@ TEST(Harm, RankPutsMetalBeforeSomebodyOnFoot) {
     EXPECT_GE(candidate.score_interval.highest, *candidate.score);
     EXPECT_NEAR(crash.harm, crash.ego.harm + crash.other.harm, 1e-12);
   }
-  // 75 kg against 1500: the person takes nearly all of the change of velocity.
+  // 75 kg against 1500 kg: nearly all of the change of velocity is that of the person.
   const ContactSeverity& hit = of(harm, "straight on").contacts.front().severity;
   EXPECT_NEAR(hit.other.delta_v_mps, 14.0 * 1500 / 1575, 0.5);
   EXPECT_NEAR(hit.ego.delta_v_mps, 14.0 * 75 / 1575, 0.1);
   EXPECT_NEAR(std::fmod(hit.ego.pdof_deg + 10, 360.0), 10, 5);
   EXPECT_FALSE(of(energy, "brake").contacts.front().severity.simulated);
-  // One story of the change of velocity, whatever is ranked by.
+  // The changes of velocity are the same under every measure.
   for (const char* name : {"straight on", "brake", "into the car"}) {
     const ContactSeverity& told = of(energy, name).contacts.front().severity;
     const ContactSeverity& pulse = of(harm, name).contacts.front().severity;
@@ -305,7 +305,7 @@ TEST(Harm, RankPutsMetalBeforeSomebodyOnFoot) {
   }
 }
 
-TEST(Harm, MoreWorkersTellTheSame) {
+TEST(Harm, WorkersDoNotChangeTheResult) {
   const Scene scene = street();
   RankOptions options;
   options.measure = Measure::harm;
@@ -320,7 +320,7 @@ TEST(Harm, MoreWorkersTellTheSame) {
   }
 }
 
-TEST(Harm, TheRiskModelIsTheCallers) {
+TEST(Harm, TheRiskModelOfTheCallerIsUsed) {
   const Scene scene = street();
   RankOptions options;
   options.measure = Measure::harm;

@@ -20,7 +20,7 @@ using scenes::box_mesh;
 using scenes::of;
 using scenes::Scene;
 
-/// A car of 4 × 2 m alone on the plane.
+/// A single car of 4 × 2 m on a plane.
 Scene alone(double speed_mps) {
   Scene scene;
   scene.scenario.measure = Measure::closing_energy;
@@ -30,7 +30,7 @@ Scene alone(double speed_mps) {
   return scene;
 }
 
-/// Poses of a motion every `step_s` until `until_s`, as a planner would list them.
+/// Poses of a motion every `step_s` until `until_s`, as a planner lists them.
 std::vector<TimedPose> sampled(const Motion& motion, double step_s, double until_s) {
   std::vector<TimedPose> poses;
   const auto count = static_cast<int>(std::lround(until_s / step_s));
@@ -42,7 +42,7 @@ void add_planned(Scene& scene, const std::string& name, std::vector<TimedPose> p
   scene.add_candidate(name, 0.0).poses = std::move(poses);
 }
 
-TEST(Demand, OfPathsIsTheHardestAcceleration) {
+TEST(Demand, OfPathsIsTheLargestAcceleration) {
   double hardest_of_grids = 0.0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -74,15 +74,16 @@ TEST(Demand, OfPathsIsTheHardestAcceleration) {
   EXPECT_NEAR(hardest_of_grids, 1.0, 1e-9);
 }
 
-/// The plan that a driver can follow is that of its poses: no demand is overstated.
-TEST(Demand, OfPosesIsThatOfTheirPathAndNeverMore) {
+/// The demand of poses is that of a plan through them that a driver can follow: it is not
+/// overstated.
+TEST(Demand, OfPosesIsThatOfTheirPathAndNotMore) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     oracle::Random random(seed);
     Scene scene = alone(random.real(5.0, 40.0));
     Scenario& scenario = scene.scenario;
     scenario.horizon_s = 3.0;
-    // Of the centre of mass, which is that of a car's box: the origin moves almost as it does.
+    // Demand of the centre of mass, which for a box car moves almost like the origin.
     scenario.models[0].center_of_mass_m = Eigen::Vector3d(0.0, 0.0, 0.5);
     const double speed = scenario.ego.speed_mps;
     const double across = random.real(-9.0, 9.0);
@@ -103,9 +104,8 @@ TEST(Demand, OfPosesIsThatOfTheirPathAndNeverMore) {
       hardest = std::max(hardest, oracle::measured_acceleration(motion, t) / whole);
     }
     EXPECT_LE(ranked.demand.grip, hardest * 1.001 + 1e-9);
-    // Where it brakes to standstill, or curves more and more, the last and the first part of a
-    // second are in the mean.
-    // What a centimetre may change is taken off.
+    // For braking to a stop and for increasing curvature the mean includes a fraction of a second
+    // at the ends. The effect of 1 cm rounding is subtracted.
     constexpr double open_mps2 = 0.25;
     EXPECT_GE(ranked.demand.grip, 0.6 * hardest - open_mps2 / whole);
     if (along > 0.0) {
@@ -119,8 +119,8 @@ TEST(Demand, OfPosesIsThatOfTheirPathAndNeverMore) {
   }
 }
 
-TEST(Demand, OfPosesThatSteerFasterAndFaster) {
-  // Steering at a constant rate from straight on, at a constant speed: a clothoid.
+TEST(Demand, OfPosesWithIncreasingCurvature) {
+  // Steering at a constant rate from straight ahead at constant speed: a clothoid.
   for (const double rate : {0.05, 0.2, 0.6}) {
     Scene scene = alone(5.0);
     scene.scenario.horizon_s = 1.5;
@@ -141,7 +141,7 @@ TEST(Demand, OfPosesThatSteerFasterAndFaster) {
   }
 }
 
-TEST(Demand, OfPosesThatBeginAtAnotherSpeed) {
+TEST(Demand, OfPosesThatStartAtAnotherSpeed) {
   Scene scene = alone(20.0);
   ArcMotion slow;
   slow.speed_mps = 10.0;
@@ -155,7 +155,7 @@ TEST(Demand, OfPosesThatBeginAtAnotherSpeed) {
   EXPECT_LT(of(result, "same").demand.greatest(), 1e-6);
 }
 
-TEST(Demand, KeepsToTheBrakes) {
+TEST(Demand, IsLimitedByTheBrakes) {
   Scene scene = alone(20.0);
   scene.scenario.ego.max_deceleration_mps2 = 5.0;
   scene.scenario.grid = CandidateGrid{5, 3};
@@ -171,7 +171,7 @@ TEST(Demand, KeepsToTheBrakes) {
   }
 }
 
-/// A wall ahead that only a manoeuvre beyond the grip misses.
+/// A wall ahead that only a manoeuvre beyond the grip avoids.
 Scene wall_and_miracle() {
   Scene scene = alone(20.0);
   scene.add_actor("wall",
@@ -183,7 +183,7 @@ Scene wall_and_miracle() {
   return scene;
 }
 
-TEST(Infeasible, StandsBehindIsLeftOutOrKept) {
+TEST(Infeasible, IsDemotedDroppedOrKept) {
   const Scene scene = wall_and_miracle();
   const auto order = [](const RankResult& result) {
     std::vector<std::string> names;
@@ -231,7 +231,7 @@ TEST(Demand, CountsUpToTheFirstContact) {
 }
 
 TEST(Infeasible, CountsAsFarAsThePlanIsFollowed) {
-  // Speeding up on the curve it leaves the grip after a second; the wall comes before that.
+  // Accelerating in the curve it exceeds the grip after a second; the wall comes first.
   Scene scene = wall_and_miracle();
   scene.scenario.listed.clear();
   scene.add_candidate("swerves", 3.0, 0.03);
@@ -243,7 +243,7 @@ TEST(Infeasible, CountsAsFarAsThePlanIsFollowed) {
   EXPECT_FALSE(of(far, "swerves").feasible);
 }
 
-TEST(Infeasible, AllOfThemAreRankedAfterAll) {
+TEST(Infeasible, AllAreRankedIfNoneIsFeasible) {
   Scene scene = wall_and_miracle();
   scene.scenario.listed.erase(scene.scenario.listed.begin());
   scene.scenario.listed.pop_back();
@@ -255,7 +255,7 @@ TEST(Infeasible, AllOfThemAreRankedAfterAll) {
   EXPECT_EQ(result.in_race.size(), 1U);
 }
 
-TEST(Infeasible, StandsBehindInEverySample) {
+TEST(Infeasible, IsDemotedInEverySample) {
   Scene scene = wall_and_miracle();
   scene.scenario.measure = Measure::harm;
   const RankResult result = scene.ranked();
@@ -268,7 +268,7 @@ TEST(Infeasible, StandsBehindInEverySample) {
   EXPECT_EQ(result.ranking[1].overtaken, 0.0);
 }
 
-TEST(Infeasible, AListedBrakeBeyondTheGripDoesNotStandForBraking) {
+TEST(Infeasible, AListedBrakeBeyondTheGripDoesNotReplaceStraightBraking) {
   Scene scene = alone(20.0);
   scene.scenario.add_straight_braking = true;
   scene.add_candidate("brake 12", -12.0);
@@ -280,7 +280,7 @@ TEST(Infeasible, AListedBrakeBeyondTheGripDoesNotStandForBraking) {
 }
 
 /// Plans that no car can follow, each at 20 m/s.
-TEST(Infeasible, StandingStillInNoTimeAndDrivingSideways) {
+TEST(Infeasible, StoppingInstantlyAndDrivingSidewaysAreInfeasible) {
   const auto at = [](double time_s, double x, double y = 0.0, double yaw = 0.0) {
     return TimedPose{time_s, pose_from_angles({x, y, 0.0}, yaw, 0.0, 0.0)};
   };
@@ -303,7 +303,7 @@ TEST(Infeasible, StandingStillInNoTimeAndDrivingSideways) {
   }
 }
 
-/// Steering that is ramped up within the limit, told by poses far apart.
+/// Steering that ramps up within the limit, described by poses far apart.
 TEST(Demand, OfSparsePosesIsNotOverstated) {
   for (const double apart : {0.1, 0.3, 0.5, 1.0, 1.333, 2.0}) {
     Scene scene = alone(8.0);

@@ -16,7 +16,7 @@ using scenes::car_and_wall;
 using scenes::of;
 using scenes::Scene;
 
-/// Forty ways to hit, or to miss, a parked car before a wall.
+/// Forty candidates that hit or miss a parked car before a wall.
 Scene many_candidates() {
   Scene scene = car_and_wall();
   scene.add_actor("parked", 0, 30.0, 1.0);
@@ -47,7 +47,7 @@ TEST(RankProgress, ACancelledRankingHasExactScoresAndBounds) {
       };
       const RankResult part = scene.ranked(options);
       ASSERT_EQ(part.ranking.size(), 40U);
-      // Others may come to their end while one is asked.
+      // Other evaluations can end while one is checked.
       EXPECT_GE(known(part), enough);
       EXPECT_LT(known(part), enough + workers);
       EXPECT_FALSE(part.complete);

@@ -46,7 +46,7 @@ inline TriangleMesh round_mesh(float radius, float height, std::uint32_t sides) 
   return mesh;
 }
 
-/// Places of `add_cast`'s models in a scene.
+/// Indices of the models of `add_cast` in a scene.
 enum CastModel : std::size_t {
   ego_model,
   car_model,
@@ -57,7 +57,7 @@ enum CastModel : std::size_t {
   wall_model,
 };
 
-/// The models of random traffic: cheap bodies of 12 to 500 triangles.
+/// Models of random traffic with few triangles, 12 to 500.
 inline void add_cast(oracle::Random& random, Scene& scene) {
   const auto real = [&random](double low, double high) {
     return static_cast<float>(random.real(low, high));
@@ -80,7 +80,7 @@ inline void add_cast(oracle::Random& random, Scene& scene) {
   scene.add_model("wall", box_mesh({6.0F, 0.2F, 1.0F}, 1, {0.0F, 0.0F, 1.0F}), BodyKind::building);
 }
 
-/// Traffic of every kind around an ego, from cheap bodies of 12 to 500 triangles.
+/// Random traffic of every kind around an ego, with models of 12 to 500 triangles.
 inline Scene traffic(std::uint64_t seed) {
   oracle::Random random(seed);
   Scene scene;
@@ -103,8 +103,8 @@ inline Scene traffic(std::uint64_t seed) {
   return scene;
 }
 
-/// A queue of every kind on three lanes before a scene's fast ego: what it hits is pushed into
-/// others. The scene has the models of `CastModel`.
+/// A queue of bodies of every kind on three lanes before the fast ego of a scene: the bodies that
+/// it hits are pushed into others. The scene has the models of `CastModel`.
 inline void add_queue(oracle::Random& random, Scene& scene) {
   scene.scenario.ego.speed_mps = random.real(10, 35);
   scene.scenario.horizon_s = 4.0;
@@ -144,7 +144,7 @@ inline void add_queue(oracle::Random& random, Scene& scene) {
   }
 }
 
-/// A queue from cheap bodies, and six candidates.
+/// A queue of bodies with few triangles, and six candidates.
 inline Scene congestion(std::uint64_t seed) {
   oracle::Random random(seed);
   Scene scene;
@@ -154,11 +154,11 @@ inline Scene congestion(std::uint64_t seed) {
   return scene;
 }
 
-/// Gives up to `uncertain` actors that move two or three predictions, and some a chance not to
-/// exist. What nothing moves is always there where something like it stands beside it: a wall that
-/// may not exist adjoins no other, as it does in a scenario of its own.
+/// Gives up to `uncertain` movable actors two or three predictions, and some a probability of
+/// absence. A fixed body next to another is certain: a wall that may be absent adjoins no other,
+/// unlike in a scenario of its own.
 inline void add_predictions(oracle::Random& random, Scene& scene, int uncertain) {
-  constexpr double reach_m = 13.0;  // of two walls
+  constexpr double reach_m = 13.0;  // one of two walls
   const auto stands_alone = [&scene](const ScenarioActor& fixed) {
     for (const ScenarioActor& other : scene.scenario.actors) {
       const double distance_m = (other.pose.translation - fixed.pose.translation).norm();

@@ -22,7 +22,7 @@ namespace {
 using scenes::box_mesh;
 using scenes::Scene;
 
-// A body without any symmetry: a box with a smaller one on its left front.
+// A body without symmetry: a box with a smaller one at its left front.
 TriangleMesh lopsided_mesh(oracle::Random& random, int n) {
   const auto real = [&random](double low, double high) {
     return static_cast<float>(random.real(low, high));
@@ -39,7 +39,7 @@ TriangleMesh lopsided_mesh(oracle::Random& random, int n) {
   return mesh;
 }
 
-// A crossing with traffic from everywhere.
+// A crossing with traffic from all directions.
 Scene random_scene(std::uint64_t seed, std::size_t actors = 10) {
   oracle::Random random(seed);
   Scene scene;
@@ -97,7 +97,7 @@ Scene mirrored(const Scene& scene) {
   return image;
 }
 
-// Everything a contact says, to the last bit, the actor by name.
+// All values of a contact to the last bit, with the actor by name.
 void write(std::ostream& out, const Scenario& scenario, const Contact& c) {
   out << scenario.actors[c.actor].name << ' ' << static_cast<int>(c.state) << ' '
       << c.time_of_impact_s << ' ' << c.gap_m << ' ' << c.point_m.transpose() << ' '
@@ -172,9 +172,9 @@ TEST(RankProperty, TheOrderOfTheActorsChangesNothing) {
   }
 }
 
-// Contacts are the same. The outlines that the contact law presses are cut into pieces from one
-// end, so a simulated motion and its image differ by millimetres: triangles at the rim of the
-// damage may be in one alone.
+// Contacts are the same. The contact law divides outlines into pieces from one end, so a motion and
+// its mirror image differ by millimetres: triangles at the border of the damage can be in only one
+// of them.
 TEST(RankProperty, AMirrorImageIsRankedAlike) {
   std::size_t hits = 0;
   std::size_t triangles = 0;
@@ -211,8 +211,8 @@ TEST(RankProperty, AMirrorImageIsRankedAlike) {
       const Contact& mirror = image->contacts[0];
       EXPECT_EQ(first.actor, mirror.actor);
       EXPECT_NEAR(first.time_of_impact_s, mirror.time_of_impact_s, 1e-5);
-      // What a chain of contacts makes of outlines that are cut from the other end parts; the first
-      // contact does not.
+      // Chains of contacts diverge if outlines are divided from the other end; the first contact
+      // does not.
       delta_v.push_back(std::abs(first.severity.ego.delta_v_mps - mirror.severity.ego.delta_v_mps) /
                         first.closing_speed_mps);
       if (c.contacts.size() > 1 || image->contacts.size() > 1 || !c.further.empty() ||
@@ -233,8 +233,8 @@ TEST(RankProperty, AMirrorImageIsRankedAlike) {
   EXPECT_GT(hits, 50U);
 }
 
-// Asked of every actor over the whole horizon, without broad phase, slices or bounds.
-TEST(RankProperty, FirstContactsAreThoseOfAskingEveryBody) {
+// Brute force: every actor over the full horizon, without broad phase, slices or bounds.
+TEST(RankProperty, FirstContactsEqualBruteForce) {
   std::size_t hits = 0;
   std::size_t misses = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -261,7 +261,7 @@ TEST(RankProperty, FirstContactsAreThoseOfAskingEveryBody) {
   EXPECT_GT(misses, 50U);
 }
 
-// Stepping through time with exact collision queries never sees what the ranking has not told.
+// Exact collision queries at sampled times find no contact that the ranking missed.
 TEST(RankProperty, NoSampledPoseTouchesBeforeTheReportedTime) {
   for (std::uint64_t seed = 31; seed <= 36; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

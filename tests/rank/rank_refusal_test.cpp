@@ -14,7 +14,7 @@ namespace {
 using scenes::car_and_wall;
 using scenes::Scene;
 
-TEST(Rank, AScenarioThatLeavesNoManoeuvreIsRefused) {
+TEST(Rank, AScenarioWithoutCandidatesIsRefused) {
   Scene scene = car_and_wall();
   scene.scenario.grid.reset();
   scene.scenario.add_straight_braking = false;
@@ -24,7 +24,7 @@ TEST(Rank, AScenarioThatLeavesNoManoeuvreIsRefused) {
   EXPECT_EQ(ranked.error().place, "candidates");
 }
 
-TEST(Rank, TroubleIsAnErrorThatNamesItsPlace) {
+TEST(Rank, ErrorsNameTheirPlace) {
   Scene scene = car_and_wall();
   scene.add_candidate("keep going", 0.0);
   scene.scenario.models[0].kind = BodyKind::pole;
@@ -46,7 +46,7 @@ TEST(Rank, TroubleIsAnErrorThatNamesItsPlace) {
   EXPECT_EQ(rank(scene.scenario, scene.models).error().code, ErrorCode::bad_input);
 }
 
-TEST(Rank, WhatIsOutOfRangeIsToldWithTheRange) {
+TEST(Rank, RangeErrorsStateTheRange) {
   Scene scene = car_and_wall();
   scene.add_candidate("keep going", 0.0);
   scene.scenario.actors[0].yaw_rate_radps = 20.0;
@@ -57,13 +57,13 @@ TEST(Rank, WhatIsOutOfRangeIsToldWithTheRange) {
   EXPECT_EQ(result.error().remedy, "give a number from -720 to 720");
 }
 
-TEST(Rank, AnActorThatNobodyCanBeIsRefusedHoweverItsMotionIsTold) {
+TEST(Rank, ImpossibleMotionsOfActorsAreRefusedInEveryForm) {
   Scene scene = car_and_wall();
   scene.add_candidate("keep going", 0.0);
   ScenarioActor& actor = scene.scenario.actors[0];
   Pose away = actor.pose;
   away.translation.x() -= 400.0;
-  // 400 m in a tenth of a second: milliseconds taken for seconds, or two bodies taken for one.
+  // 400 m in 0.1 s: milliseconds used as seconds, or the tracks of two bodies merged.
   actor.poses = {{0.0, actor.pose}, {0.1, away}};
   Result<RankResult> result = rank(scene.scenario, scene.models);
   ASSERT_FALSE(result.ok());
@@ -73,7 +73,7 @@ TEST(Rank, AnActorThatNobodyCanBeIsRefusedHoweverItsMotionIsTold) {
   EXPECT_TRUE(rank(scene.scenario, scene.models).ok());
 }
 
-TEST(Rank, TwoOfOneNameAreRefusedAndThoseWithoutAreNot) {
+TEST(Rank, DuplicateNamesAreRefusedAndEmptyOnesAreNot) {
   Scene scene = car_and_wall();
   scene.add_candidate("keep going", 0.0);
   scene.add_candidate("keep going", -1.0);
@@ -89,7 +89,7 @@ TEST(Rank, TwoOfOneNameAreRefusedAndThoseWithoutAreNot) {
   EXPECT_TRUE(rank(scene.scenario, scene.models).ok());
 }
 
-TEST(Rank, NumbersThatNobodyCanComputeWithAreRefused) {
+TEST(Rank, NumbersOutOfRangeAreRefused) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double inf = std::numeric_limits<double>::infinity();
   const auto place_after = [](auto&& spoil) {

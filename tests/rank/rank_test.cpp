@@ -23,10 +23,10 @@ using scenes::Scene;
 
 using Names = std::vector<std::string>;
 
-// Contact is told when the surfaces are a tenth of a millimetre apart.
+// Contact is reported at a gap of 0.1 mm.
 constexpr double tolerance_m = 1e-4;
 
-TEST(Rank, ABoxMeetsAWallAfterDistanceOverSpeed) {
+TEST(Rank, ABoxHitsAWallAfterDistanceOverSpeed) {
   Scene scene = car_and_wall();
   scene.scenario.grip = 1.0;
   scene.add_candidate("keep going", 0.0);
@@ -78,7 +78,7 @@ TEST(Rank, ClosingEnergyUsesTheReducedMass) {
   }
 }
 
-TEST(Rank, DamageIsWhatTheCrushReaches) {
+TEST(Rank, DamageExtendsAsFarAsTheCrush) {
   Scene scene = car_and_wall();
   scene.add_candidate("keep going", 0.0);
   const RankResult result = scene.ranked(Measure::area);
@@ -86,18 +86,19 @@ TEST(Rank, DamageIsWhatTheCrushReaches) {
   const Contact& contact = result.ranking[0].contacts[0];
   const Model& car = scene.models[0];
   const Model& wall = scene.models[1];
-  // The front is inside the wall, the four sides reach into it, the rear does not.
+  // The front is inside the wall, the four sides extend into it, the rear does not.
   EXPECT_EQ(scenes::part_names(car, contact.ego),
             (Names{"front", "right", "left", "bottom", "top"}));
   EXPECT_EQ(contact.ego.triangles.size(), 10U);
   EXPECT_NEAR(contact.ego.area_m2, 2 * 1.5 + 2 * (4 * 1.5) + 2 * (4 * 2), 1e-6);
-  // The car meets the wall's near side alone.
+  // The car touches only the near side of the wall.
   EXPECT_EQ(scenes::part_names(wall, contact.other), (Names{"rear"}));
   EXPECT_GT(contact.crush_m, 0.3);
   EXPECT_LT(contact.crush_m, 0.9);
   ASSERT_TRUE(result.ranking[0].score.has_value());
   EXPECT_NEAR(*result.ranking[0].score, contact.ego.area_m2 + contact.other.area_m2, 1e-9);
-  // Where they meet: as much of the car's front, the wall's middle 2 × 1.5 m.
+  // The region of contact: the crushed part of the front of the car, and the middle 2 × 1.5 m of
+  // the wall.
   EXPECT_NEAR(contact.ego.region.min.x(), 2.0 - contact.crush_m, 1e-3);
   EXPECT_NEAR(contact.ego.region.max.x(), 2.0, 1e-3);
   EXPECT_NEAR(contact.other.region.extent().y(), 2.0, 1e-3);
@@ -122,8 +123,8 @@ TEST(Rank, HigherSpeedNeverMeansLessDamage) {
   }
 }
 
-// A pole that is pressed far into the car leaves a furrow: all from the car's front edge to the
-// pole's deepest place, not that place alone.
+// A pole that is pressed deep into the car leaves a furrow from the front edge to its deepest
+// position, not only damage at that position.
 TEST(Rank, AThinBodyLeavesAFurrow) {
   Scene scene;
   scene.scenario.ego.model =
@@ -191,7 +192,7 @@ TEST(Rank, BodiesThatOverlapAtTheStartCollideAtTimeZero) {
   }
 }
 
-TEST(Rank, WhatHitsNothingSaysSoAndRanksFirst) {
+TEST(Rank, CandidatesWithoutContactRankFirst) {
   Scene scene = car_and_wall();
   scene.scenario.horizon_s = 3.0;
   scene.scenario.grip = 1.0;
@@ -200,7 +201,7 @@ TEST(Rank, WhatHitsNothingSaysSoAndRanksFirst) {
   scene.add_candidate("stop gently", -5.0);
   const RankResult result = scene.ranked();
   ASSERT_EQ(result.ranking.size(), 3U);
-  // Equal in every respect, more than 5 m from the wall: the order of the candidates decides.
+  // Equal in all respects and more than 5 m from the wall: the order of the candidates decides.
   EXPECT_EQ(result.candidates[result.ranking[0].candidate].name, "stop");
   EXPECT_EQ(result.candidates[result.ranking[1].candidate].name, "stop gently");
   EXPECT_EQ(result.candidates[result.ranking[2].candidate].name, "hit");
@@ -236,8 +237,8 @@ TEST(Rank, TheHorizonEndsTheSearch) {
   EXPECT_TRUE(scene.ranked().ranking[0].collides);
 }
 
-TEST(Rank, TiesGoToTheLaterContactThenToTheSlower) {
-  // The same damage of a car of few triangles, at other times and speeds.
+TEST(Rank, TiesAreBrokenByLaterThenSlowerContact) {
+  // The same damage of a car with few triangles, at different times and speeds.
   Scene scene = car_and_wall();
   scene.add_candidate("as it is", 0.0);
   scene.add_candidate("later", -2.0);
@@ -249,7 +250,7 @@ TEST(Rank, TiesGoToTheLaterContactThenToTheSlower) {
   EXPECT_EQ(result.candidates[result.ranking[2].candidate].name, "sooner");
 }
 
-TEST(Rank, SeveralBodiesHitAtOnceAllCount) {
+TEST(Rank, AllBodiesHitAtOnceCount) {
   Scene scene;
   scene.scenario.ego.model = scene.add_model("car", box_mesh({2, 1, 0.75}), BodyKind::car, 1500.0);
   scene.scenario.ego.speed_mps = 20.0;
@@ -267,11 +268,11 @@ TEST(Rank, SeveralBodiesHitAtOnceAllCount) {
   EXPECT_NEAR(keep.contacts[1].time_of_impact_s - keep.contacts[0].time_of_impact_s, 0.025, 2e-3);
   const double one = 0.5 * (1500.0 * 75.0 / 1575.0) * 400.0;
   EXPECT_NEAR(keep.contacts[0].closing_energy_j, one, 1e-6 * one);
-  // The first has taken a twentieth of the speed by then.
+  // The first contact took a twentieth of the speed by then.
   EXPECT_LT(keep.contacts[1].closing_energy_j, one);
   EXPECT_GT(keep.contacts[1].closing_energy_j, 0.8 * one);
   double sum = 0.0;
-  // Of every pair the first contact.
+  // The first contact of every pair.
   std::set<std::pair<std::size_t, std::size_t>> pairs;
   for (const Contact& contact : keep.contacts) {
     if (pairs.insert({ego_body, contact.actor}).second) sum += contact.closing_energy_j;
@@ -280,7 +281,7 @@ TEST(Rank, SeveralBodiesHitAtOnceAllCount) {
     if (pairs.insert({contact.a, contact.b}).second) sum += contact.closing_energy_j;
   }
   EXPECT_NEAR(*keep.score, sum, 1e-9 * sum);
-  // The car's triangles are counted once however many bodies they meet.
+  // The triangles of the car count once for all bodies that it touches.
   std::vector<std::uint32_t> both;
   for (const Contact& contact : keep.contacts) {
     both.insert(both.end(), contact.ego.triangles.begin(), contact.ego.triangles.end());
@@ -290,7 +291,7 @@ TEST(Rank, SeveralBodiesHitAtOnceAllCount) {
   EXPECT_EQ(keep.ego.triangles, both);
 }
 
-TEST(Rank, MassesAreGivenOrGuessed) {
+TEST(Rank, MassesAreGivenOrDerivedFromSize) {
   Scene scene = car_and_wall();
   scene.scenario.models[0].mass_kg.reset();
   scene.add_candidate("keep going", 0.0);
@@ -300,7 +301,7 @@ TEST(Rank, MassesAreGivenOrGuessed) {
   EXPECT_TRUE(std::isinf(result.actors.at(0).mass_kg));
 }
 
-TEST(Rank, AQuestionLeftUndecidedIsToldAsAnInterval) {
+TEST(Rank, UndecidedSearchesGiveAnInterval) {
   Scene scene = car_and_wall();
   scene.models[0] = *make_model(box_mesh({2, 1, 0.75}, 12));
   scene.add_candidate("keep going", 0.0);
@@ -322,7 +323,7 @@ TEST(Rank, AQuestionLeftUndecidedIsToldAsAnInterval) {
       EXPECT_TRUE(std::isfinite(candidate.score_interval.highest));
       EXPECT_EQ(candidate.score.value_or(score), score);
     }
-    // Whoever is first in the full answer is still in the race.
+    // The first candidate of the complete answer is still in the race.
     const std::size_t first = full.ranking[0].candidate;
     EXPECT_NE(std::find(cut.in_race.begin(), cut.in_race.end(), first), cut.in_race.end());
   }

@@ -14,8 +14,8 @@ using scenes::box_mesh;
 using scenes::of;
 using scenes::Scene;
 
-/// A car of 4 × 2 m at the origin; its axles at a fifth and four fifths of its length, its wheels
-/// 0.86 of its width apart.
+/// A car of 4 × 2 m at the origin with axles at 1/5 and 4/5 of its length and a track of 0.86 of
+/// its width.
 constexpr double axle_m = 1.2;
 constexpr double wheel_m = 0.86;
 
@@ -45,7 +45,7 @@ TEST(RoadLeaving, BeginsWithTheFirstWheel) {
   EXPECT_NEAR(going.leaves_road->point_m.x(), 30.05, 1e-5);
   EXPECT_NEAR(std::abs(going.leaves_road->point_m.y()), wheel_m, 1e-6);
   EXPECT_FALSE(of(result, "brakes").leaves_road.has_value());
-  // Both touch nothing: who stays on the road stands first.
+  // Neither has a contact: the one that stays on the road is first.
   EXPECT_EQ(of(result, "brakes").place, 1U);
 }
 
@@ -93,7 +93,7 @@ TEST(RoadLeaving, ASeamOfTheMapIsNoEdge) {
   EXPECT_TRUE(scene.ranked().ranking.front().leaves_road.has_value());
 }
 
-TEST(RoadLeaving, CostsWhatTheScenarioSaysUnlessACrashComesFirst) {
+TEST(RoadLeaving, AddsTheStatedHarmUnlessAContactComesFirst) {
   Scene scene = on_road(20.0, rectangle(-10, -3, 30, 3));
   scene.scenario.road.harm_per_leaving = 0.125;
   scene.add_candidate("keeps going", 0.0);
@@ -105,7 +105,7 @@ TEST(RoadLeaving, CostsWhatTheScenarioSaysUnlessACrashComesFirst) {
   EXPECT_EQ(*scene.ranked(Measure::energy).ranking.back().score, 0.0);
   const std::size_t wall =
       scene.add_model("wall", box_mesh({0.5F, 8, 1}, 1, {0, 0, 1}), BodyKind::barrier);
-  // Behind the road's end and before it.
+  // Behind and before the end of the road.
   for (const auto& [wall_x, left] : {std::pair(45.0, true), std::pair(25.0, false)}) {
     scene.scenario.actors.clear();
     scene.add_actor("wall", wall, wall_x, 0.0);
@@ -119,7 +119,7 @@ TEST(RoadLeaving, CostsWhatTheScenarioSaysUnlessACrashComesFirst) {
   }
 }
 
-TEST(RoadLeaving, GripBesideTheRoadLimitsWhatTheCarCanDoThere) {
+TEST(RoadLeaving, OffRoadGripLimitsTheDemand) {
   Scene scene = on_road(20.0, rectangle(-10, -3, 20, 3));
   scene.scenario.road.off_road_grip = 0.3;
   scene.add_candidate("brakes", -7.5);

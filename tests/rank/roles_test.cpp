@@ -27,8 +27,7 @@ constexpr std::array<Kind, 4> kinds{{{"sedan", BodyKind::car},
                                      {"truck", BodyKind::truck},
                                      {"motorcycle", BodyKind::motorcycle}}};
 
-/// Poses of a body that is at (x, y) at one second and drives and turns evenly before and after, or
-/// brakes and turns.
+/// Poses of a body that is at (x, y) at 1 s and moves and turns uniformly, or brakes and turns.
 std::vector<TimedPose> drive(double x, double y, double yaw, double speed_mps, double yaw_rate,
                              double braking_mps2) {
   std::vector<TimedPose> poses;
@@ -43,7 +42,7 @@ std::vector<TimedPose> drive(double x, double y, double yaw, double speed_mps, d
   return poses;
 }
 
-/// Two bodies that meet, one of them the ego. Models once for all cases.
+/// Two bodies that collide, one of them the ego. Models are made once for all cases.
 struct Pair {
   std::array<std::size_t, 2> kind{};
   std::array<std::vector<TimedPose>, 2> poses;
@@ -109,7 +108,7 @@ TEST(Roles, ExchangingEgoAndOtherChangesNoBitOfTheFirstContact) {
                 random.uniform(8, 40), random.below(2) == 0 ? 0.0 : random.uniform(-0.5, 0.5),
                 random.below(2) == 0 ? 0.0 : random.uniform(0, 8));
     }
-    // The same car or lorry twice: only pose and motion tell them apart.
+    // Two equal cars or trucks: they differ only in pose and motion.
     if (i % 4 == 0) pair.kind[1] = pair.kind[0];
     const RankResult one = pair.ranked(models, 0);
     const RankResult two = pair.ranked(models, 1);

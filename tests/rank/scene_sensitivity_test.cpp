@@ -1,5 +1,5 @@
-// How much a score changes with what should not matter: the start moved by a millimetre, and the
-// steps of the simulation halved.
+// Sensitivity of a score to irrelevant changes: the start moved by 1 mm, and simulation steps
+// halved.
 
 #include "campaign.hpp"
 #include "rank/random_scene.hpp"
@@ -24,12 +24,12 @@ namespace {
 using scenes::Scene;
 using test::wished;
 
-/// A contact of a scene, whoever's.
+/// A contact of a scene between any two bodies.
 struct Touch {
   double begin_s = 0.0;
   std::size_t a = ego_body;
   std::size_t b = 0;
-  int again = 0;  ///< contacts of the two before it
+  int again = 0;  ///< number of earlier contacts of the pair
   double delta_v_a_mps = 0.0;
   double delta_v_b_mps = 0.0;
 };
@@ -68,7 +68,7 @@ std::string body_name(const Scenario& scenario, std::size_t body) {
   return scenario.models[actor.model].name + " of " + actor.name;
 }
 
-/// A contact in words, with what it is in the other run.
+/// Text for a contact and its counterpart in the other run.
 std::string describe(const Scenario& scenario, const Touch& t, const Touch* twin) {
   std::array<char, 300> text{};
   std::snprintf(text.data(), text.size(), "contact %d of %s and %s at %.3f s, %.2f and %.2f m/s",
@@ -81,12 +81,14 @@ std::string describe(const Scenario& scenario, const Touch& t, const Touch* twin
   return told + text.data();
 }
 
-/// Why the scores of two runs of one scene differ.
+/// Cause of a difference between the scores of two runs of one scene.
 enum class Cause {
-  first_contact,  ///< already the first contact differs by over 5 %
-  same_contacts,  ///< all contacts are in both, the first differs little
-  extra_contact,  ///< a contact that one run alone has, before any of both differs by over 5 %
-  later_contact,  ///< a later contact of both differs by over 5 % before one is in one run alone
+  first_contact,  ///< the first contact differs by more than 5 %
+  same_contacts,  ///< all contacts are in both runs, the first differs little
+  /// a contact is in one run only, before any common one differs by more than 5 %
+  extra_contact,
+  /// a common later contact differs by more than 5 % before one is in one run only
+  later_contact,
 };
 
 struct Branch {
@@ -95,8 +97,8 @@ struct Branch {
   std::string text = "no contact differs by over 5 %";
 };
 
-/// The first contact in time that one run alone has, or whose delta-v differs by over 5 % (0.05 m/s
-/// where it is below 1).
+/// The earliest contact that is in one run only or whose delta-v differs by more than 5 % (0.05 m/s
+/// if it is below 1 m/s).
 Branch branch_of(const Scenario& scenario, const CandidateResult& p, const CandidateResult& q) {
   const std::array<std::vector<Touch>, 2> all{touches_of(p), touches_of(q)};
   Branch first;
@@ -119,7 +121,7 @@ Branch branch_of(const Scenario& scenario, const CandidateResult& p, const Candi
   return first;
 }
 
-/// By body: its part of the score.
+/// Contribution to the score, by body.
 std::map<std::size_t, double> harm_by_body(const CandidateResult& result) {
   std::map<std::size_t, double> harm;
   for (const Contact& c : result.contacts) {
@@ -167,7 +169,7 @@ std::string worst_body(const Scenario& scenario, const CandidateResult& p,
   return told;
 }
 
-/// A crash in a queue of shipped bodies, by one random manoeuvre.
+/// A crash in a queue of shipped models, with one random manoeuvre.
 Scene crash_in_queue(std::uint64_t seed) {
   oracle::Random random(seed);
   Scene scene;
@@ -175,7 +177,7 @@ Scene crash_in_queue(std::uint64_t seed) {
   scenes::add_queue(random, scene);
   scene.add_candidate("drives", random.real(-6, 1), random.real(-0.04, 0.04));
   scene.scenario.measure = Measure::harm;
-  // Nothing but the numerical samples: all ranges end where they begin.
+  // Only the numerical samples: all ranges are single values.
   HarmOptions& harm = scene.scenario.harm;
   HarmRanges& r = harm.ranges;
   r.least_friction = r.most_friction = harm.friction;
@@ -297,7 +299,8 @@ TEST(SceneSensitivity, AMillimetreAndHalvedStepsChangeScoresLittle) {
   aside.print("1 mm aside at first contact");
   halved.print("half the steps");
   print_outliers(outliers);
-  // 95 % of all scenes: of so few as a short run has, chance leaves some more over.
+  // The goal is 95 % of all scenes; short runs have few scenes, so chance allows some more
+  // outliers.
   const auto scenes = static_cast<double>(moved.all.size());
   EXPECT_LE(static_cast<double>(outliers.size()), 0.05 * scenes + 2.0 * std::sqrt(0.0475 * scenes));
 }

@@ -115,7 +115,7 @@ struct Scene {
   }
 };
 
-/// The result of a candidate, wherever it came in the ranking.
+/// The result of a candidate, wherever it is in the ranking.
 inline const CandidateResult& of(const RankResult& result, const std::string& name) {
   for (const CandidateResult& candidate : result.ranking) {
     if (result.candidates[candidate.candidate].name == name) return candidate;

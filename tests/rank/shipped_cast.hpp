@@ -23,7 +23,7 @@ inline TriangleMesh shipped_mesh(const std::string& name) {
   return mesh.ok() ? std::move(*mesh) : TriangleMesh{};
 }
 
-/// With its outline, which else every ranking would cut anew.
+/// With its outline, which every ranking would compute again otherwise.
 inline Model shipped_model(const std::string& name) {
   Result<Model> model = make_model(shipped_mesh(name));
   EXPECT_TRUE(model.ok());
@@ -56,7 +56,7 @@ inline const std::vector<Model>& shipped_cast() {
   return cast;
 }
 
-/// Names the models of `shipped_cast` in a scenario.
+/// Adds the models of `shipped_cast` to a scenario.
 inline void name_shipped_cast(Scenario& scenario) {
   for (const ShippedRole& role : shipped_roles) {
     ScenarioModel model;

@@ -13,7 +13,7 @@ using scenes::box_mesh;
 using scenes::of;
 using scenes::Scene;
 
-/// A wall across the lane, somebody on foot on its left, a standing car on its right.
+/// A wall across the lane, a person on foot on the left, a parked car on the right.
 Scene square() {
   Scene scene;
   const std::size_t car =
@@ -35,7 +35,7 @@ Scene square() {
   return scene;
 }
 
-TEST(Stability, SamplesTellPlacesAndSeparation) {
+TEST(Stability, SamplesDeterminePlacesAndSeparability) {
   const RankResult result = square().ranked();
   ASSERT_EQ(result.samples.size(), 132U);
   ASSERT_EQ(range_sample_count(result), 129U);
@@ -45,7 +45,7 @@ TEST(Stability, SamplesTellPlacesAndSeparation) {
     EXPECT_LE(c.score_interval.lowest, *c.score);
     EXPECT_GE(c.score_interval.highest, *c.score);
   }
-  // Places and shares once more, the slow way.
+  // Recomputes places and shares by brute force.
   const std::size_t count = result.ranking.size();
   for (std::size_t place = 0; place < count; ++place) {
     const CandidateResult& c = result.ranking[place];
@@ -118,7 +118,7 @@ TEST(Stability, EqualCandidatesShareAPlaceAndAreNotSeparable) {
         EXPECT_FALSE(c.separable);
       }
     }
-    // In the order of the candidates, and each without itself.
+    // In the order of the candidates, without the candidate itself.
     EXPECT_EQ(result.ranking[row].candidate, 0U);
     EXPECT_EQ(tied_with(result, row), (std::vector<std::size_t>{1, 3}));
     EXPECT_EQ(tied_with(result, row + 1), (std::vector<std::size_t>{0, 3}));
@@ -131,7 +131,7 @@ TEST(Stability, EqualCandidatesShareAPlaceAndAreNotSeparable) {
   }
 }
 
-TEST(Stability, EqualScoresThatATieBreakOrdersAreNotSeparable) {
+TEST(Stability, EqualScoresOrderedByTieBreaksAreNotSeparable) {
   Scene scene = square();
   scene.scenario.measure = Measure::polygons;
   scene.scenario.listed.clear();
@@ -145,8 +145,8 @@ TEST(Stability, EqualScoresThatATieBreakOrdersAreNotSeparable) {
   EXPECT_FALSE(result.ranking[0].separable);
 }
 
-TEST(Stability, WhatAMillimetreDecidesIsNotSeparable) {
-  // The ego meets the wall's end with an overlap of 5 cm, once 1 cm/s slower.
+TEST(Stability, AnOrderThatOneMillimetreReversesIsNotSeparable) {
+  // The ego hits the end of the wall with an overlap of 5 cm, and again at 1 cm/s less.
   Scene scene = square();
   scene.scenario.listed.clear();
   scene.scenario.actors.clear();
@@ -162,7 +162,8 @@ TEST(Stability, WhatAMillimetreDecidesIsNotSeparable) {
       << result.ranking[1].numerical_interval.lowest << " to "
       << result.ranking[1].numerical_interval.highest;
   EXPECT_FALSE(first.separable);
-  // Square hits do not depend on it: with half the steps and 1 mm aside the slower one is better.
+  // Full frontal impacts do not depend on it: with half the steps and with a shift of 1 mm the
+  // slower one is better.
   const RankResult square_hits = square().ranked();
   const CandidateResult& fast = of(square_hits, "wall");
   const CandidateResult& slow = of(square_hits, "wall, a little slower");
@@ -170,7 +171,7 @@ TEST(Stability, WhatAMillimetreDecidesIsNotSeparable) {
   EXPECT_LT(fast.numerical_interval.highest - fast.numerical_interval.lowest, 0.02 * *fast.score);
 }
 
-TEST(Stability, NumericalSamplesAreLastAndPlainInAllElse) {
+TEST(Stability, NumericalSamplesAreLastAndOtherwiseNominal) {
   const std::vector<HarmSample> samples = harm_samples(HarmOptions{});
   for (std::size_t i = 0; i < samples.size(); ++i) {
     EXPECT_EQ(is_numerical(samples[i]), i + numerical_samples >= samples.size());
@@ -189,11 +190,11 @@ TEST(Stability, NumericalSamplesAreLastAndPlainInAllElse) {
   EXPECT_EQ(samples[131].shift_m, -0.001);
 }
 
-TEST(Stability, WhatIsWrongForBothAlikeDoesNotCount) {
+TEST(Stability, ErrorsCommonToBothDoNotReduceSeparability) {
   const RankResult result = square().ranked();
   const CandidateResult& fast = of(result, "wall");
   const CandidateResult& slow = of(result, "wall, a little slower");
-  // Their intervals overlap widely, and yet the slower one is better in every sample.
+  // Their intervals overlap widely, but the slower one is better in every sample.
   EXPECT_LT(*slow.score, *fast.score);
   EXPECT_LT(fast.score_interval.lowest, slow.score_interval.highest);
   for (std::size_t s = 0; s < result.samples.size(); ++s) {
@@ -201,7 +202,7 @@ TEST(Stability, WhatIsWrongForBothAlikeDoesNotCount) {
   }
 }
 
-TEST(Stability, WithoutRangesThereIsOneAnswer) {
+TEST(Stability, WithoutRangesAllSamplesAreEqual) {
   Scene scene = square();
   HarmRanges& r = scene.scenario.harm.ranges;
   r.least_friction = r.most_friction = scene.scenario.harm.friction;
@@ -227,7 +228,7 @@ TEST(Stability, WithoutRangesThereIsOneAnswer) {
   EXPECT_EQ(bare.ranking.front().score, result.ranking.front().score);
 }
 
-TEST(Stability, TheModelsCornersAreThere) {
+TEST(Stability, SamplesContainAllCornersOfTheRanges) {
   HarmOptions options;
   const std::vector<HarmSample> samples = harm_samples(options);
   ASSERT_EQ(samples.size(), 129U + numerical_samples);
@@ -266,7 +267,7 @@ TEST(Stability, BoundsHoldForAllDirectionsAndFronts) {
   }
 }
 
-TEST(Stability, WhoIsBrushedIsStruckLessHard) {
+TEST(Stability, AGrazedPersonIsStruckAtALowerSpeed) {
   const HarmOptions options;
   const double reduced = 75.0 * 1500.0 / 1575.0;
   const double full = 10.0 * reduced / 75.0;

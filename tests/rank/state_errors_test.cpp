@@ -22,7 +22,7 @@ using scenes::Scene;
 
 constexpr std::size_t sampled = 12;
 
-/// Phi: by the complementary error function of the standard library.
+/// Cumulative normal distribution, by the complementary error function of the standard library.
 double normal_share(double deviate) { return 0.5 * std::erfc(-deviate / std::numbers::sqrt2); }
 
 RankOptions harm_of(std::size_t futures) {
@@ -53,7 +53,7 @@ std::vector<StateError> drawn_of_ego(const Scenario& scenario, std::size_t count
   return drawn(detail::reserved_seed("ego"), scenario.ego.uncertainty, count);
 }
 
-TEST(StateErrors, TheDeviateIsTheInverseOfTheNormalDistribution) {
+TEST(StateErrors, NormalDeviateInvertsTheNormalDistribution) {
   for (double p = 1e-16; p < 0.5; p *= 1.07) {
     const double z = detail::normal_deviate(p);
     EXPECT_NEAR(normal_share(z) / p, 1.0, 1e-13 * (1.0 + z * z)) << p;
@@ -89,7 +89,7 @@ TEST(StateErrors, SamplesAreStratifiedWithTheStatedMeanAndDeviation) {
         EXPECT_FALSE(hit.at(stratum));
         hit.at(stratum) = true;
       }
-      // Stratified: far below 1/sqrt(count).
+      // Stratified: far below the 1/sqrt(count) of independent draws.
       EXPECT_NEAR(mean_of(units[i], ones), 0.0, 1.0 / static_cast<double>(count));
       EXPECT_NEAR(std::sqrt(mean_of(units[i], units[i])), 1.0, 4.0 / static_cast<double>(count));
       for (std::size_t k = 0; k < i; ++k) {
@@ -119,7 +119,7 @@ void displace(ActorMotion& motion, const StateError& error) {
   motion.speed_mps = speed;
 }
 
-/// Index of the choice that a share of 1 falls into.
+/// Index of the choice for a number in [0, 1).
 template <class Weighted>
 std::size_t chosen(double share, const std::vector<Weighted>& choices, double scale = 1.0) {
   double reached = 0.0;
@@ -130,7 +130,7 @@ std::size_t chosen(double share, const std::vector<Weighted>& choices, double sc
   return choices.size() - 1;
 }
 
-/// Traffic whose candidates do not change with the ego's speed.
+/// Traffic whose candidates do not depend on the speed of the ego.
 Scene uncertain_traffic(std::uint64_t seed) {
   Scene scene = seed % 2 == 0 ? scenes::traffic(seed) : scenes::congestion(seed);
   scene.scenario.grid.reset();
@@ -146,7 +146,7 @@ Scene uncertain_traffic(std::uint64_t seed) {
   return scene;
 }
 
-/// The scenario of each drawn future, written out.
+/// The scenario of each drawn future, without uncertainty.
 std::vector<Scenario> single_scenarios(const Scenario& scenario) {
   std::vector<Scenario> singles(sampled, likeliest_future(scenario));
   const std::vector<StateError> ego = drawn_of_ego(scenario, sampled);
@@ -223,18 +223,18 @@ void expect_mean_of_singles(const Scene& scene, double tolerance) {
   }
 }
 
-TEST(StateErrors, ScoresAreTheMeanOfTheScenariosWrittenOut) {
+TEST(StateErrors, ScoresAreTheMeanOfTheDisplacedScenarios) {
   for (std::uint64_t seed = 8100; seed < 8108; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     oracle::Random random(seed);
     Scene scene = uncertain_traffic(seed);
     if (seed % 4 > 1) scenes::add_predictions(random, scene, 2);
     expect_mean_of_singles(scene, 1e-9);
-    // Without rotation the poses have the same bits.
+    // Without rotations the poses have the same bits.
     scene.scenario.ego.uncertainty.heading_rad = 0.0;
     for (ScenarioActor& actor : scene.scenario.actors) actor.perception.heading_rad = 0.0;
     expect_mean_of_singles(scene, 1e-12);
-    // Of the others alone: futures may share a simulation.
+    // With errors of the actors only: futures can share a simulation.
     scene.scenario.ego.uncertainty = {};
     if (is_uncertain(scene.scenario) && !scene.scenario.actors.front().perception.any()) continue;
     expect_mean_of_singles(scene, 1e-12);
@@ -272,8 +272,8 @@ TEST(StateErrors, NoOrderOfActorsAndNoNumberOfWorkersChangesABit) {
   }
 }
 
-/// A gap 10 cm wider than the ego between two bodies ahead, straight through at 20 m/s or braking
-/// before it. What follows closely hits the ego gently where it brakes.
+/// A gap between two bodies, 10 cm wider than the ego: straight through at 20 m/s, or braking
+/// before it. A following car hits the braking ego gently.
 Scene gap_scene(bool of_cars) {
   Scene scene = scenes::car_and_wall();
   scene.scenario.actors.clear();
@@ -290,7 +290,7 @@ Scene gap_scene(bool of_cars) {
   return scene;
 }
 
-TEST(StateErrors, AGapOfCentimetresLosesItsFirstPlace) {
+TEST(StateErrors, ATightGapLosesItsFirstPlace) {
   Scene scene = gap_scene(false);
   const RankResult exact = scene.ranked();
   ASSERT_EQ(exact.candidates[exact.ranking.front().candidate].name, "through");
@@ -301,7 +301,7 @@ TEST(StateErrors, AGapOfCentimetresLosesItsFirstPlace) {
   const RankResult result = scene.ranked();
   EXPECT_EQ(result.candidates[result.ranking.front().candidate].name, "brake");
   const CandidateResult& through = scenes::of(result, "through");
-  // |y| > 5 cm. A stratum at each of both borders is open.
+  // |y| > 5 cm. At each of the two borders one stratum is undetermined.
   const double expected = 2.0 * normal_share(-0.25);
   EXPECT_NEAR(through.collision_probability, expected, 2.0 / 64.0);
   EXPECT_FALSE(through.collides);
@@ -318,7 +318,7 @@ TEST(StateErrors, AGapOfCentimetresLosesItsFirstPlace) {
               2.0 / 1000.0);
 }
 
-TEST(StateErrors, APerceivedBodyThatMayStandInTheWayIsAvoided) {
+TEST(StateErrors, AnUncertainBodyNearThePathIsAvoided) {
   Scene scene = gap_scene(true);
   ASSERT_EQ(scene.ranked().ranking.front().candidate, 0U);
   scene.scenario.actors.front().perception.position_m = 0.2;
@@ -341,8 +341,8 @@ TEST(StateErrors, ErrorsOfZeroChangeNothing) {
   EXPECT_EQ(scores_of(scene.ranked(harm_of(sampled))), scores_of(result));
 }
 
-TEST(StateErrors, LeavingTheRoadIsThatOfTheDisplacedEgo) {
-  // The right wheels run 0.1 m from the border.
+TEST(StateErrors, LeavingTheRoadUsesTheDisplacedEgo) {
+  // The right wheels are 0.1 m from the border.
   Scene scene = gap_scene(false);
   scene.scenario.actors.clear();
   scene.scenario.measure = Measure::harm;

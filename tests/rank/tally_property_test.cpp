@@ -25,7 +25,7 @@ Vector3d any_direction(Random& random) {
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
-/// The ego and three actors, the first of which moves.
+/// The ego and three actors, the first of which is movable.
 Scene small_scene(Random& random, const Scene& all, Measure measure) {
   constexpr std::array<RiskModel, 4> models{RiskModel::tum, RiskModel::malliaris_monfort,
                                             RiskModel::malliaris_rosen, RiskModel::joksch_monfort};
@@ -46,7 +46,7 @@ Scene small_scene(Random& random, const Scene& all, Measure measure) {
   return scene;
 }
 
-/// A contact as a simulation may leave it, between any two bodies one of which moves.
+/// A random contact between any two bodies of which one is movable.
 ContactEffect any_effect(Random& random, const Scene& scene, double begin_s) {
   ContactEffect e;
   e.begin_s = begin_s;
@@ -79,7 +79,7 @@ ContactEffect any_effect(Random& random, const Scene& scene, double begin_s) {
   return e;
 }
 
-/// Contacts in the order of their begins, some within one event and some apart.
+/// Random contacts in the order of their begin times, some within one event and some separate.
 std::vector<ContactEffect> any_effects(Random& random, const Scene& scene, std::size_t count) {
   std::vector<ContactEffect> effects;
   double time_s = 0.0;
@@ -97,7 +97,7 @@ TEST(Tally, NoFurtherContactLowersAScore) {
   Random random(seed);
   const Scene all = scene_of(Measure::harm);
   for (int i = 0; i < cases; ++i) {
-    // A further contact may take the ego's delta-v back: that measure is the sum over events.
+    // A further contact can reduce the delta-v of the ego: that measure is the sum over events.
     constexpr std::array<Measure, 3> rising{Measure::energy, Measure::intrusion, Measure::harm};
     const Scene scene = small_scene(random, all, rising[random.below(3)]);
     Tally tally;
@@ -131,7 +131,7 @@ TEST(Tally, ExchangingTheSidesOfContactsChangesNothing) {
     }
     const Tally p = tally_of(scene, effects);
     const Tally q = tally_of(scene, exchanged);
-    // Every body's part has the same bits; sums over bodies take them in another order.
+    // The contribution of each body has the same bits; sums over bodies run in a different order.
     for (const std::size_t body : {ego_body, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
       ASSERT_EQ(p.people_score(scene, body), q.people_score(scene, body)) << "case " << i;
       ASSERT_EQ(p.event(body).number, q.event(body).number) << "case " << i;
@@ -142,7 +142,7 @@ TEST(Tally, ExchangingTheSidesOfContactsChangesNothing) {
   }
 }
 
-TEST(Tally, ActorsThatExchangeTheirPlacesExchangeTheirShares) {
+TEST(Tally, ExchangingActorsExchangesTheirContributions) {
   constexpr std::uint64_t seed = 505;
   constexpr int cases = 1000;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
@@ -168,7 +168,7 @@ TEST(Tally, ActorsThatExchangeTheirPlacesExchangeTheirShares) {
   }
 }
 
-TEST(Tally, NoScoreWithFurtherContactsIsBelowTheLeast) {
+TEST(Tally, LowerBoundHoldsWithFurtherContacts) {
   constexpr std::uint64_t seed = 501;
   constexpr int cases = 20000;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
@@ -188,7 +188,7 @@ TEST(Tally, NoScoreWithFurtherContactsIsBelowTheLeast) {
     }
     const double least = some.lower_bound(scene);
     ASSERT_LE(least, some.score(scene)) << "case " << i;
-    // The known contacts among all others, in any order.
+    // The known contacts mixed with others, in any order.
     std::vector<std::size_t> order(effects.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     for (int shuffle = 0; shuffle < 3; ++shuffle) {

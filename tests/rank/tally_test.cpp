@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A contact that changes the velocity of its first body alone.
+/// A contact that changes only the velocity of its first body.
 ContactEffect effect(std::size_t a, std::size_t b, double begin_s, double end_s,
                      const Vector3d& delta_v) {
   ContactEffect e;
@@ -28,7 +28,7 @@ double score_of(const Scene& scene, const std::vector<ContactEffect>& effects) {
   return tally_of(scene, effects).score(scene);
 }
 
-TEST(Tally, NothingScoresNothing) {
+TEST(Tally, WithoutContactsTheScoreIsZero) {
   for (const Measure measure : tallied) {
     const Scene scene = scene_of(measure);
     EXPECT_EQ(Tally().score(scene), 0.0);
@@ -37,7 +37,7 @@ TEST(Tally, NothingScoresNothing) {
   }
 }
 
-TEST(Tally, BeginForgetsAllContacts) {
+TEST(Tally, BeginRemovesAllContacts) {
   for (const Measure measure : tallied) {
     const Scene scene = scene_of(measure);
     ContactEffect e = effect(ego_body, wall, 1.0, 1.1, {-15, 0, 0});
@@ -57,7 +57,7 @@ TEST(Tally, ContactsWithinATenthOfASecondAreOneEvent) {
   const auto score = [&](double begin_s) {
     return score_of(scene, {first, effect(ego_body, 1, begin_s, begin_s + 0.1, {0, 8, 0})});
   };
-  // Within one event delta-v adds as a vector, counted from the end of what came before.
+  // Within one event delta-v adds as a vector; the gap counts from the end of the contact before.
   EXPECT_DOUBLE_EQ(score(1.1), 10.0);
   EXPECT_DOUBLE_EQ(score(1.2), 10.0);
   EXPECT_DOUBLE_EQ(score(1.299), 10.0);
@@ -65,7 +65,7 @@ TEST(Tally, ContactsWithinATenthOfASecondAreOneEvent) {
   EXPECT_DOUBLE_EQ(score(5.0), 14.0);
 }
 
-TEST(Tally, AnEventGoesOnFromTheLatestEnd) {
+TEST(Tally, AnEventExtendsToTheLatestEnd) {
   const Scene scene = scene_of(Measure::delta_v);
   Tally tally;
   tally.add(scene, effect(ego_body, 0, 1.0, 1.6, {-3, 0, 0}), scene.nominal);
@@ -84,7 +84,7 @@ TEST(Tally, AnEventGoesOnFromTheLatestEnd) {
 TEST(Tally, EveryBodyHasEventsOfItsOwn) {
   const Scene scene = scene_of(Measure::harm);
   Tally tally;
-  // Actor 0 is pushed by the ego and then, within 0.1 s, into actor 2; actor 1 is hit later.
+  // The ego pushes actor 0, which within 0.1 s hits actor 2; actor 1 is hit later.
   ContactEffect push = effect(0, ego_body, 1.0, 1.1, {9, 0, 0});
   std::swap(push.sides[0], push.sides[1]);
   tally.add(scene, push, scene.nominal);
@@ -98,7 +98,8 @@ TEST(Tally, EveryBodyHasEventsOfItsOwn) {
   EXPECT_EQ(tally.event(3).number, 0U);
 }
 
-/// Checks events of a body that is struck alone, twice at least 0.1 s apart, and twice close by.
+/// Checks the events of a body with a single hit, with two hits at least 0.1 s apart, and with two
+/// hits close together.
 void expect_events(const Scene& scene, std::size_t body) {
   const ContactEffect first = effect(body, wall, 1.0, 1.1, {-15, 0, 0});
   const ContactEffect second = effect(body, wall, 2.0, 2.1, {0, 12, 0});
@@ -111,7 +112,7 @@ void expect_events(const Scene& scene, std::size_t body) {
   const double r = score_of(scene, {third});
   EXPECT_NEAR(score_of(scene, {first, second, third}), 1.0 - (1.0 - p) * (1.0 - q) * (1.0 - r),
               1e-14);
-  // Close together they are one event with the sum of the velocities.
+  // Close together they are one event with the sum of the changes of velocity.
   ContactEffect close = second;
   close.begin_s = 1.15;
   close.end_s = 1.2;
@@ -125,7 +126,7 @@ TEST(Tally, SeparateEventsAreIndependentRisks) {
   expect_events(scene, ego_body);
 }
 
-TEST(Tally, OtherBodiesHaveEventsAsTheEgoHas) {
+TEST(Tally, ActorsHaveEventsLikeTheEgo) {
   const Scene scene = scene_of(Measure::harm);
   for (const std::size_t body : {0U, 1U, 3U, 5U}) {
     SCOPED_TRACE(body);
@@ -150,7 +151,7 @@ TEST(Tally, PeopleOfDifferentBodiesAddUp) {
   EXPECT_NEAR(score_of(scene, {one, other}), 3.0 * p + q, 1e-14);
 }
 
-TEST(Tally, AContactThatTakesDeltaVBackHealsNobody) {
+TEST(Tally, ReducingDeltaVDoesNotReduceTheRisk) {
   const Scene scene = scene_of(Measure::harm);
   for (const std::size_t body : {ego_body, std::size_t{0}, std::size_t{5}}) {
     const ContactEffect first = effect(body, wall, 1.0, 1.1, {-15, 0, 0});
@@ -159,7 +160,7 @@ TEST(Tally, AContactThatTakesDeltaVBackHealsNobody) {
   }
 }
 
-/// A contact's intrusion is what it adds to that of earlier ones of the two.
+/// The intrusion of a contact is its increase over earlier contacts of the same two bodies.
 TEST(Tally, IntrusionsByOneBodyAddUpInAnEvent) {
   const Scene scene = scene_of(Measure::harm);
   const auto intruding = [](std::size_t by, double begin_s, double intrusion_m) {
@@ -173,9 +174,9 @@ TEST(Tally, IntrusionsByOneBodyAddUpInAnEvent) {
   const ContactEffect first = intruding(0, 1.0, 0.2);
   EXPECT_DOUBLE_EQ(reached({first, intruding(0, 1.1, 0.1)}), 0.3);
   EXPECT_DOUBLE_EQ(reached({first, intruding(0, 1.1, 0.0)}), 0.2);
-  // Two bodies reach as far as the one that reaches further.
+  // Intrusion by two bodies is that of the deeper one.
   EXPECT_DOUBLE_EQ(reached({first, intruding(1, 1.1, 0.25)}), 0.25);
-  // A later event begins with none.
+  // A later event starts without intrusion.
   EXPECT_DOUBLE_EQ(reached({first, intruding(0, 2.0, 0.1)}), 0.1);
 }
 
@@ -209,7 +210,7 @@ TEST(Tally, PropertyHarmAddsUpOverContactsAndBodies) {
   second.sides[1].crush_j = 5e4;
   EXPECT_NEAR(score_of(scene, {first}), 0.4 * 0.5, 1e-14);
   EXPECT_NEAR(score_of(scene, {first, second}), 0.4 * 0.65, 1e-14);
-  // Nothing that follows takes it back: it is in the least score, but for the margin of rounding.
+  // No later contact reduces it: the lower bound contains it, except for the margin of rounding.
   EXPECT_NEAR(tally_of(scene, {first, second}).lower_bound(scene), 0.4 * 0.65, 1e-8);
 }
 
@@ -224,7 +225,7 @@ TEST(Tally, OtherMeasuresSumOverContacts) {
   further.sides[0].body = 1;
   EXPECT_DOUBLE_EQ(score_of(energy, {e, e, further}), 15e4);
   EXPECT_DOUBLE_EQ(score_of(intrusion, {e, e, further}), 3 * 0.35);
-  // A rebound keeps its share of the energy.
+  // A larger restitution dissipates less energy.
   e.restitution = 0.2;
   HarmSample bouncing = energy.nominal;
   bouncing.restitution = 2.0;
@@ -233,14 +234,14 @@ TEST(Tally, OtherMeasuresSumOverContacts) {
   EXPECT_DOUBLE_EQ(kept.score(energy), (1.0 - 0.16) / (1.0 - 0.04) * 5e4);
 }
 
-TEST(Tally, DeltaVCountsTheEgosAlone) {
+TEST(Tally, DeltaVCountsOnlyThatOfTheEgo) {
   const Scene scene = scene_of(Measure::delta_v);
   ContactEffect first = effect(ego_body, 0, 1.0, 1.1, {-6, 0, 0});
   first.sides[1].delta_v_mps = {9, 0, 0};
   EXPECT_DOUBLE_EQ(score_of(scene, {first, effect(0, 1, 1.2, 1.3, {-7, 0, 0})}), 6.0);
 }
 
-TEST(Tally, ASampleScalesTheReboundOfEachContactByItself) {
+TEST(Tally, ASampleScalesTheReboundOfEachContact) {
   const Scene scene = scene_of(Measure::delta_v);
   HarmSample bouncing = scene.nominal;
   bouncing.restitution = 1.5;
@@ -252,7 +253,7 @@ TEST(Tally, ASampleScalesTheReboundOfEachContactByItself) {
   EXPECT_DOUBLE_EQ(tally.score(scene), 6.0);
   tally.add(scene, hard, bouncing);
   EXPECT_DOUBLE_EQ(tally.score(scene), 6.0 + 6.0 * 1.3 / 1.2);
-  // No contact gives back more than half of its impulse.
+  // Restitution returns at most half of the impulse.
   bouncing.restitution = 10.0;
   Tally most;
   most.add(scene, hard, bouncing);

@@ -17,8 +17,8 @@ using scenes::congestion;
 using scenes::Scene;
 using scenes::traffic;
 
-/// The answers to growing amounts of work in which every contact is searched for and not every
-/// score known, each given to `check`.
+/// Calls `check` with the answers for increasing work budgets in which all candidates are searched
+/// and some scores are unknown.
 template <class Check> void each_estimated(const Case& c, Measure measure, Check check) {
   Ranker ranker = c.ranker(measure);
   const std::uint64_t all = ranker.rank(c.candidates).effort.work;
@@ -35,7 +35,7 @@ template <class Check> void each_estimated(const Case& c, Measure measure, Check
   }
 }
 
-/// Of the only candidate, once its contact is known and before its crash is simulated.
+/// Estimate of the only candidate after its search and before its simulation.
 double estimate_of(const Scene& scene, Measure measure) {
   const Case c(scene, measure);
   double estimate = -1.0;
@@ -45,19 +45,19 @@ double estimate_of(const Scene& scene, Measure measure) {
   return estimate;
 }
 
-TEST(Estimate, OfTheEgosDeltaVIsThatOfTwoPointsThatStopEachOther) {
+TEST(Estimate, OfDeltaVIsThatOfTwoPointMasses) {
   constexpr double speed_mps = 20.0;
   Scene fixed = scenes::car_and_wall();
   fixed.add_candidate("on", 0.0);
   EXPECT_NEAR(estimate_of(fixed, Measure::delta_v), speed_mps, 1e-6);
-  // A car of 1500 kg into 500 kg.
+  // A car of 1500 kg hits one of 500 kg.
   Scene light = scenes::car_and_wall(500.0);
   light.add_candidate("on", 0.0);
   EXPECT_NEAR(estimate_of(light, Measure::delta_v), 0.25 * speed_mps, 1e-6);
 }
 
-/// A barrier that is only scraped takes little of the speed: whoever is on foot goes before.
-TEST(Estimate, PutsAScrapeBeforeAPerson) {
+/// Scraping along a barrier takes little of the speed: a collision with a person is worse.
+TEST(Estimate, AScrapeRanksBeforeAPerson) {
   Scene scene;
   scene.scenario.ego.model = scene.add_model(
       "car", scenes::box_mesh({2, 0.9F, 0.7F}, 1, {0, 0, 0.7F}), BodyKind::car, 1500.0);
@@ -80,15 +80,15 @@ TEST(Estimate, PutsAScrapeBeforeAPerson) {
   EXPECT_EQ(c.candidates[c.plain.ranking[0].candidate].name, "scrape");
 }
 
-/// No harm without people.
-TEST(Estimate, OfAnEmptyCarAtAWallIsNothing) {
+/// Without people there is no harm.
+TEST(Estimate, OfAnEmptyCarAtAWallIsZero) {
   Scene scene = scenes::car_and_wall();
   scene.scenario.ego.occupants = 0.0;
   scene.add_candidate("on", 0.0);
   EXPECT_EQ(estimate_of(scene, Measure::harm), 0.0);
 }
 
-TEST(Estimate, DecidesTheOrderOfThoseNotKnown) {
+TEST(Estimate, OrdersCandidatesWithUnknownScores) {
   std::size_t seen = 0;
   for (std::uint64_t seed = 320; seed < 324; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -105,8 +105,8 @@ TEST(Estimate, DecidesTheOrderOfThoseNotKnown) {
   EXPECT_GT(seen, 20U);
 }
 
-/// Else the estimate would be no better than what it stands beside.
-TEST(Estimate, ChoosesLessHarmThanTheUpperEndsOfTheIntervals) {
+/// Without this property estimates would not be better than upper bounds.
+TEST(Estimate, ChoosesLessHarmThanUpperBounds) {
   double by_estimate = 0.0;
   double by_upper_end = 0.0;
   std::size_t answers = 0;

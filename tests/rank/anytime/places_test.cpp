@@ -11,8 +11,7 @@ namespace {
 
 using scenes::Scene;
 
-/// Traffic with manoeuvres of which some are beyond what the vehicle can do and some are listed
-/// twice.
+/// Traffic with manoeuvres, some of them infeasible and some listed twice.
 Scene with_ties_and_demands(std::uint64_t seed) {
   oracle::Random random(seed);
   Scene scene = seed % 2 == 0 ? scenes::traffic(seed) : scenes::congestion(seed);
@@ -36,7 +35,7 @@ Scene with_ties_and_demands(std::uint64_t seed) {
 
 struct Seen {
   std::size_t answers = 0;
-  std::size_t places = 0;  ///< that answers leave open, of all candidates
+  std::size_t places = 0;  ///< places that answers leave open, of all candidates
   std::size_t demoted = 0;
   std::size_t tied = 0;
 };
@@ -51,7 +50,7 @@ void expect_places_hold(const RankResult& partial, const RankResult& whole, Seen
     ASSERT_LE(told.best_place, last->place - 1) << "candidate " << told.candidate;
     ASSERT_GE(told.worst_place, last->place - 1) << "candidate " << told.candidate;
     ASSERT_TRUE(!partial.complete || told.best_place == told.worst_place);
-    // What a search tells stays true.
+    // Results of the search remain valid.
     if (told.searched) {
       ASSERT_TRUE(told.feasible == last->feasible || partial.infeasible == Infeasible::keep);
       ASSERT_EQ(told.collision_probability, last->collision_probability);
@@ -68,7 +67,7 @@ void expect_places_hold(const RankResult& partial, const RankResult& whole, Seen
   ASSERT_TRUE(!partial.proved || partial.in_race.front() == whole.ranking.front().candidate);
 }
 
-TEST(Places, ThePlaceOfTheCompleteAnswerIsWithinThoseOfEveryPartialOne) {
+TEST(Places, PartialAnswersContainTheFinalPlace) {
   const std::uint64_t seed = first_seed(1900);
   const std::uint64_t scenes = scenes_to_try(24);
   const std::uint64_t cuts = test::wished("CRASHRANK_RANKER_CUTS", 8);
@@ -102,7 +101,7 @@ TEST(Places, ThePlaceOfTheCompleteAnswerIsWithinThoseOfEveryPartialOne) {
     RankBudget first;
     first.first_place_only = true;
     expect_places_hold(within(first), whole, seen);
-    // A ranking that its caller ends after some candidates.
+    // A ranking that its caller cancels after some candidates.
     RankOptions ended = options;
     const std::size_t known = i % whole.ranking.size();
     ended.on_progress = [known](std::size_t evaluated, std::size_t) { return evaluated < known; };

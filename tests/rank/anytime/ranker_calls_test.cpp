@@ -106,8 +106,8 @@ TEST(RankerCalls, ErrorsOfStatesAllocateNothing) {
 
 #if defined(__linux__) && defined(__x86_64__)
 
-/// Kills the process, all threads of it, at any system call but those by which threads wake and
-/// await each other and that which ends it. False where the system does not allow such a filter.
+/// Makes the kernel kill the process at any system call except those that wake and await threads
+/// and the one that ends the process. Returns false if the system does not allow such a filter.
 bool allow_only_waiting() {
   const auto load = [](std::uint32_t at) {
     return sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, at);
@@ -132,7 +132,7 @@ bool allow_only_waiting() {
   return syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program) == 0;
 }
 
-/// Waits until all threads but this one sleep: one that starts still makes calls of its own.
+/// Waits until all other threads sleep, since starting threads make system calls.
 void await_sleeping_workers() {
   const std::string self = std::to_string(::getpid());
   for (int quiet = 0; quiet < 5;) {
@@ -150,14 +150,14 @@ void await_sleeping_workers() {
 
 constexpr int not_allowed = 77;
 
-/// Ends the process: taking the Ranker down again makes system calls.
+/// Ends the process without destroying the Ranker, which makes system calls.
 [[noreturn]] void rank_under_the_filter(const Ready& ready, bool misbehave) {
   Result<Ranker> ranker = ready.ranker(Measure::harm, 3);
   if (!ranker) _exit(1);
   RankBudget budget;
   budget.deadline_s = 2e-3;
   await_sleeping_workers();
-  // The first calls touch memory that was set aside; the kernel hands it out without being asked.
+  // The first calls touch reserved memory, which the kernel maps without a system call.
   if (!allow_only_waiting()) _exit(not_allowed);
   for (int i = 0; i < 5; ++i) {
     if (!ranker->rank(ready.candidates, budget).status) _exit(2);
@@ -175,7 +175,7 @@ int outcome_of(const Ready& ready, bool misbehave) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
-TEST(RankerCalls, TheOnlySystemCallsWakeAndAwaitItsWorkers) {
+TEST(RankerCalls, TheOnlySystemCallsWakeAndAwaitWorkers) {
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "sanitizers make system calls of their own";
 #endif
@@ -183,7 +183,7 @@ TEST(RankerCalls, TheOnlySystemCallsWakeAndAwaitItsWorkers) {
   const int outcome = outcome_of(ready, false);
   if (outcome == not_allowed) GTEST_SKIP() << "this system does not allow seccomp filters";
   EXPECT_EQ(outcome, 0);
-  // The filter does stop what it should.
+  // Checks that the filter works.
   EXPECT_LT(outcome_of(ready, true), 0);
 }
 

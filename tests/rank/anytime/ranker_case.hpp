@@ -20,8 +20,8 @@ inline constexpr std::array<Measure, 7> measures{
     Measure::harm,     Measure::delta_v, Measure::energy,   Measure::closing_energy,
     Measure::polygons, Measure::area,    Measure::intrusion};
 
-/// How many scenes a property is tried on, the seed of the first, and how often the work on each is
-/// cut: campaigns say so in CRASHRANK_RANKER_SCENES, CRASHRANK_RANKER_SEED, CRASHRANK_RANKER_CUTS.
+/// Number of scenes of a property, seed of the first, and number of work budgets for each;
+/// campaigns set CRASHRANK_RANKER_SCENES, CRASHRANK_RANKER_SEED, CRASHRANK_RANKER_CUTS.
 inline std::uint64_t scenes_to_try(std::uint64_t otherwise) {
   return test::wished("CRASHRANK_RANKER_SCENES", otherwise);
 }
@@ -38,13 +38,13 @@ inline RankOptions options_of(Measure measure, unsigned workers = 1) {
   return options;
 }
 
-/// A Ranker of a scene, its candidates, and the answer that it is held against.
+/// A Ranker of a scene, its candidates, and the expected answer.
 struct Case {
   scenes::Scene scene;
   RankResult plain;
   std::vector<Candidate> candidates;
   std::vector<double> scores;  ///< by candidate
-  std::size_t sampled = 64;    ///< futures, where they are drawn
+  std::size_t sampled = 64;    ///< number of drawn futures, if drawn
 
   Case(std::uint64_t seed, Measure measure) : Case(scenes::traffic(seed), measure) {}
   Case(scenes::Scene ranked_scene, Measure measure, std::size_t sampled_futures = 64)

@@ -1,4 +1,4 @@
-// Deadlines that come at every single look at the clock, by a clock that the test sets.
+// Deadlines at every single reading of the clock, with a clock that the test controls.
 #include "crashrank/rank/anytime/ranker.hpp"
 
 #include "rank/random_scene.hpp"
@@ -22,18 +22,18 @@
 
 namespace {
 
-/// Looks at the clock after which it is late for everything; none: the clock is the real one.
+/// Number of clock readings before all deadlines have passed; none: real clock.
 std::int64_t looks_left = -1;
 std::int64_t looks = 0;
 
-/// Who is not the main thread is held at its look of this number, as long as `held`.
+/// A thread other than the main thread waits at its reading of this number while `held` is set.
 std::atomic<bool> held{false};
 std::atomic<int> looks_until_held{0};
 std::atomic<int> holding{0};
 
 }  // namespace
 
-// Every steady_clock of the process ends up here.
+// Replaces steady_clock of the whole process.
 extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
   const auto end = static_cast<int>(::syscall(SYS_clock_gettime, clock, time));
   if (held.load() && ::syscall(SYS_gettid) != ::getpid() && looks_until_held.fetch_sub(1) <= 1) {
@@ -55,8 +55,8 @@ std::uint64_t wished(const char* variable, std::uint64_t otherwise) {
   return wish != nullptr ? std::strtoull(wish, nullptr, 10) : otherwise;
 }
 
-/// CRASHRANK_RANKER_SCENES, _SEED and _LOOKS (cuts of a scene at most) make a campaign of it.
-TEST(RankerClock, TheIntervalsHoldAtWhateverLookTheTimeIsUp) {
+/// CRASHRANK_RANKER_SCENES, _SEED and _LOOKS (deadlines for each scene) make this a campaign.
+TEST(RankerClock, IntervalsHoldAtEveryDeadline) {
   const std::uint64_t scenes = wished("CRASHRANK_RANKER_SCENES", 6);
   const std::uint64_t first = wished("CRASHRANK_RANKER_SEED", 300);
   const auto most = static_cast<std::int64_t>(wished("CRASHRANK_RANKER_LOOKS", 120));
@@ -90,7 +90,7 @@ TEST(RankerClock, TheIntervalsHoldAtWhateverLookTheTimeIsUp) {
     const std::int64_t all = looks;
     ASSERT_GT(all, 10);
     const std::int64_t step = std::max<std::int64_t>(1, all / most);
-    // Another first one in every scene, so that many scenes see all residues.
+    // A different start in every scene, so that many scenes cover all residues.
     const auto begin = static_cast<std::int64_t>(seed % static_cast<std::uint64_t>(step));
     for (std::int64_t look = begin; look <= all; look += step) {
       SCOPED_TRACE("look " + std::to_string(look) + " of " + std::to_string(all));
@@ -110,7 +110,7 @@ TEST(RankerClock, TheIntervalsHoldAtWhateverLookTheTimeIsUp) {
       }
       if (HasFailure()) return;
     }
-    // What was cut leaves nothing behind.
+    // An interrupted call has no effect on the next one.
     EXPECT_EQ(cut_at(std::numeric_limits<std::int64_t>::max()).hash,
               ranker->rank(plain.candidates).hash);
   }
@@ -118,7 +118,7 @@ TEST(RankerClock, TheIntervalsHoldAtWhateverLookTheTimeIsUp) {
               static_cast<unsigned long long>(scenes));
 }
 
-TEST(RankerClock, AWorkerThatIsHeldKeepsNoCallFromEndingAtItsDeadline) {
+TEST(RankerClock, ABlockedWorkerDoesNotDelayACall) {
   RankOptions how;
   how.measure = Measure::harm;
   how.harm.emplace();
@@ -128,7 +128,7 @@ TEST(RankerClock, AWorkerThatIsHeldKeepsNoCallFromEndingAtItsDeadline) {
   RankerOptions options;
   options.rank = how;
   options.rank.workers = 3;
-  options.spin_us = 0;  // idle workers look at no clock
+  options.spin_us = 0;  // idle workers do not read the clock
   options.limits.candidates = plain.candidates.size();
   Result<Ranker> ranker = Ranker::prepare(scene.scenario, scene.models, options);
   ASSERT_TRUE(ranker.ok());
@@ -142,7 +142,7 @@ TEST(RankerClock, AWorkerThatIsHeldKeepsNoCallFromEndingAtItsDeadline) {
     holding.store(0);
     looks_until_held.store(look);
     held.store(true);
-    // That both return is what is tested, and that the second one knows nothing.
+    // The test is that both calls return, and that the second one knows no score.
     ranker->rank(plain.candidates, budget);
     const bool away = holding.load() > 0;
     const RankerAnswer next = ranker->rank(plain.candidates, budget);

@@ -20,7 +20,7 @@ using scenes::Scene;
 using scenes::traffic;
 using test::wished;
 
-/// Widths of intervals as shares of their first, by how much of the whole work is done.
+/// Widths of intervals relative to their first width, by fraction of the total work.
 struct Widths {
   static constexpr std::array<std::uint64_t, 5> percent{10, 25, 50, 75, 90};
   std::array<std::vector<double>, percent.size()> shares;
@@ -40,7 +40,7 @@ void cut_everywhere(const Case& c, Measure measure, std::uint64_t cuts, Widths& 
   std::vector<double> first(c.candidates.size(), 0.0);
   for (std::uint64_t cut = 0; cut <= cuts; ++cut) {
     RankBudget budget;
-    // Closer together where little has been done; never less than at the cut before.
+    // Dense at little work; the width never grows from one budget to the next.
     const std::uint64_t fewest = std::min<std::uint64_t>(cut, 3);
     budget.work = std::max(fewest, all * cut * cut / (cuts * cuts));
     const RankerAnswer answer = ranker.rank(c.candidates, budget);
@@ -65,7 +65,7 @@ void cut_everywhere(const Case& c, Measure measure, std::uint64_t cuts, Widths& 
   }
   for (std::size_t k = 0; k < Widths::percent.size(); ++k) {
     RankBudget part;
-    // Rounded up: where all is told by a handful of tests, none is no part of them.
+    // Rounded up: if a few tests are the total work, no work is not a fraction of it.
     part.work = (all * Widths::percent[k] + 99) / 100;
     for (const RankedCandidate& told : ranker.rank(c.candidates, part).ranking) {
       if (!(first[told.candidate] > 0.0)) continue;
@@ -75,7 +75,7 @@ void cut_everywhere(const Case& c, Measure measure, std::uint64_t cuts, Widths& 
   }
 }
 
-TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
+TEST(RankerProperty, IntervalsContainTheScoreAndNarrowWithWork) {
   const std::uint64_t seed = first_seed(1000);
   const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 14);
   Widths widths;
@@ -92,12 +92,12 @@ TEST(RankerProperty, IntervalsHoldTheScoreAndNarrowWhereverTheWorkIsCut) {
         static_cast<unsigned long long>(Widths::percent[k]), widths.median(k),
         widths.shares[k].size(), static_cast<unsigned long long>(scenes));
   }
-  // More than half of the candidates are known in full by a quarter of the work: at a tenth most of
+  // A quarter of the work gives the scores of more than half of the candidates; at a tenth most of
   // it is still to be simulated.
   EXPECT_LT(widths.median(1), 0.2);
 }
 
-TEST(RankerProperty, IntervalsHoldWhereOneCrashLeadsToOthers) {
+TEST(RankerProperty, IntervalsHoldForChainsOfCrashes) {
   const std::uint64_t seed = first_seed(1500);
   const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 8);
   const std::uint64_t scenes = scenes_to_try(6);
@@ -107,7 +107,7 @@ TEST(RankerProperty, IntervalsHoldWhereOneCrashLeadsToOthers) {
   std::size_t crowded = 0;
   for (std::uint64_t i = 0; i < scenes; ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed + i));
-    // Every measure that is simulated, in turn.
+    // All simulated measures in turn.
     const Measure measure = measures[i % 4 == 3 ? 1 + i / 4 % 3 : 0];
     const Case c(scenes::congestion(seed + i), measure);
     for (const CandidateResult& result : c.plain.ranking) {
@@ -125,7 +125,7 @@ TEST(RankerProperty, IntervalsHoldWhereOneCrashLeadsToOthers) {
   EXPECT_GT(chains, 2 * scenes);
 }
 
-TEST(RankerProperty, IntervalsHoldOverFuturesThatAreNotEvaluatedYet) {
+TEST(RankerProperty, IntervalsHoldForUnevaluatedFutures) {
   const std::uint64_t seed = first_seed(1700);
   const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 8);
   const std::uint64_t scenes = scenes_to_try(4);
@@ -142,7 +142,7 @@ TEST(RankerProperty, IntervalsHoldOverFuturesThatAreNotEvaluatedYet) {
     for (const CandidateResult& result : c.plain.ranking) outcomes += result.futures.size();
     cut_everywhere(c, Measure::harm, cuts, widths);
     if (HasFatalFailure()) return;
-    // All of it, in any number of threads.
+    // The complete answer, for any number of threads.
     Ranker ranker = c.ranker(Measure::harm, 3);
     const RankerAnswer answer = ranker.rank(c.candidates);
     ASSERT_TRUE(answer.complete);
@@ -155,7 +155,7 @@ TEST(RankerProperty, IntervalsHoldOverFuturesThatAreNotEvaluatedYet) {
               static_cast<unsigned long long>(seed), outcomes);
 }
 
-TEST(RankerProperty, IntervalsHoldOverErrorsOfStates) {
+TEST(RankerProperty, IntervalsHoldForErrorsOfStates) {
   const std::uint64_t seed = first_seed(1800);
   const std::uint64_t cuts = wished("CRASHRANK_RANKER_CUTS", 6);
   const std::uint64_t scenes = scenes_to_try(4);
@@ -168,7 +168,7 @@ TEST(RankerProperty, IntervalsHoldOverErrorsOfStates) {
     oracle::Random random(seed + i);
     Scene scene = i % 2 == 0 ? traffic(seed + i) : scenes::congestion(seed + i);
     if (i % 2 == 0) scenes::add_predictions(random, scene, 2);
-    // The ego's alone, those of the others alone, then both.
+    // Errors of the ego only, of the actors only, then of both.
     if (i % 3 != 1) scene.scenario.ego.uncertainty = {0.3, 0.02, 1.0};
     for (ScenarioActor& actor : scene.scenario.actors) {
       if (i % 3 != 0 && actor.model < scenes::pole_model) actor.perception = {0.2, 0.05, 0.5};
@@ -192,8 +192,8 @@ TEST(RankerProperty, IntervalsHoldOverErrorsOfStates) {
   }
 }
 
-TEST(RankerProperty, IntervalsHoldWhereTwoBodiesMeetAgain) {
-  // Two bodies meet with 14.3 m/s, then with 5.8 m/s: the first alone counts.
+TEST(RankerProperty, IntervalsHoldForRepeatedContacts) {
+  // Two bodies collide at 14.3 m/s, then at 5.8 m/s: only the first collision counts.
   Widths widths;
   cut_everywhere(Case(scenes::congestion(50095), Measure::closing_energy), Measure::closing_energy,
                  16, widths);

@@ -15,7 +15,7 @@
 namespace crashrank {
 namespace {
 
-TEST(RankerRefusal, WhatIsNotFiniteIsRefusedAndNeverTakenForNothingThere) {
+TEST(RankerRefusal, MotionsThatAreNotFiniteAreRefused) {
   const Case c(302, Measure::harm);
   Ranker ranker = c.ranker(Measure::harm, 2);
   const std::uint64_t whole = ranker.rank(c.candidates).hash;
@@ -56,10 +56,10 @@ TEST(RankerRefusal, WhatIsNotFiniteIsRefusedAndNeverTakenForNothingThere) {
   never.deadline_s = NAN;
   EXPECT_FALSE(ranker.rank(c.candidates, never).status.ok());
   for (const Motion& motion : motions) EXPECT_TRUE(motion.is_finite());
-  EXPECT_EQ(ranker.rank(c.candidates).hash, whole);  // nothing has changed
+  EXPECT_EQ(ranker.rank(c.candidates).hash, whole);  // the Ranker is unchanged
 }
 
-TEST(RankerRefusal, NothingMovesBeyondTheLimitsOfScenarios) {
+TEST(RankerRefusal, MotionsBeyondScenarioLimitsAreRefused) {
   const Case c(303, Measure::harm);
   Ranker ranker = c.ranker(Measure::harm, 2);
   const std::uint64_t whole = ranker.rank(c.candidates).hash;
@@ -149,7 +149,7 @@ TEST(RankerRefusal, NothingMovesBeyondTheLimitsOfScenarios) {
   EXPECT_EQ(ranker.rank(c.candidates).hash, whole);
 }
 
-TEST(RankerRefusal, NumbersThatDecideBetweenEqualsAreFinite) {
+TEST(RankerRefusal, TieBreakNumbersMustBeFinite) {
   const Case c(304, Measure::harm);
   Ranker ranker = c.ranker(Measure::harm);
   for (double Candidate::*const told :
@@ -160,7 +160,7 @@ TEST(RankerRefusal, NumbersThatDecideBetweenEqualsAreFinite) {
   }
 }
 
-TEST(RankerRefusal, ManoeuvresBeginWhereTheEgoIs) {
+TEST(RankerRefusal, CandidatesMustStartAtTheEgoPose) {
   const Case c(305, Measure::harm);
   Ranker ranker = c.ranker(Measure::harm);
   const std::vector<Motion> motions = c.motions();
@@ -168,7 +168,7 @@ TEST(RankerRefusal, ManoeuvresBeginWhereTheEgoIs) {
   start.translation.x() += 0.9;
   ASSERT_TRUE(ranker.move_actors(start, motions).ok());
   EXPECT_TRUE(ranker.rank(c.candidates).status.ok());
-  // Candidates of an earlier moment.
+  // Candidates made for an earlier situation.
   start.translation.x() += 100.0;
   ASSERT_TRUE(ranker.move_actors(start, motions).ok());
   const RankerAnswer stale = ranker.rank(c.candidates);

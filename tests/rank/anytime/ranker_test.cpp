@@ -21,7 +21,7 @@ namespace {
 using scenes::Scene;
 using scenes::traffic;
 
-TEST(Ranker, WithoutADeadlineItHasTheBitsOfThePlainRanking) {
+TEST(Ranker, WithoutADeadlineItHasTheBitsOfRank) {
   const std::uint64_t begin = first_seed(1);
   const std::uint64_t scenes = scenes_to_try(4);
   for (std::uint64_t seed = begin; seed < begin + scenes; ++seed) {
@@ -48,7 +48,7 @@ TEST(Ranker, WithoutADeadlineItHasTheBitsOfThePlainRanking) {
   }
 }
 
-TEST(Ranker, TheFirstPlaceAloneIsTheRightOneAndTakesNoMoreWork) {
+TEST(Ranker, TheFirstPlaceAloneIsCorrectAndTakesNoMoreWork) {
   std::uint64_t all = 0;
   std::uint64_t first = 0;
   for (std::uint64_t seed = 100; seed < 112; ++seed) {
@@ -68,7 +68,7 @@ TEST(Ranker, TheFirstPlaceAloneIsTheRightOneAndTakesNoMoreWork) {
               static_cast<double>(first) / static_cast<double>(all));
 }
 
-TEST(Ranker, MovedAndWeighedPlansKeepTheirErrors) {
+TEST(Ranker, MovedAndWeightedPlansKeepTheirErrors) {
   oracle::Random random(1850);
   Scene scene = traffic(1850);
   scenes::add_predictions(random, scene, 2);
@@ -103,7 +103,7 @@ TEST(Ranker, MovedAndWeighedPlansKeepTheirErrors) {
   }
 }
 
-TEST(Ranker, ABudgetOfWorkCutsTheSameForEveryNumberOfWorkers) {
+TEST(Ranker, WorkBudgetsGiveTheSameAnswerForEveryNumberOfWorkers) {
   for (std::uint64_t seed = 200; seed < 206; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Case c(seed, Measure::harm);
@@ -122,7 +122,7 @@ TEST(Ranker, ABudgetOfWorkCutsTheSameForEveryNumberOfWorkers) {
   }
 }
 
-TEST(Ranker, AnyDeadlineGivesASoundAnswer) {
+TEST(Ranker, AnyDeadlineGivesAValidAnswer) {
   const Case c(300, Measure::harm);
   Ranker ranker = c.ranker(Measure::harm, 2);
   for (const double deadline_s : {0.0, -1.0, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 1.0}) {
@@ -143,7 +143,7 @@ TEST(Ranker, AnyDeadlineGivesASoundAnswer) {
   }
 }
 
-TEST(Ranker, ACompleteAnswerIsExplainedWithTheSamplesAndMarksOfThePlainRanking) {
+TEST(Ranker, ExplainingACompleteAnswerEqualsRank) {
   for (const std::uint64_t seed : {310U, 311U}) {
     const Scene scene = traffic(seed);
     RankerOptions options;
@@ -169,7 +169,7 @@ TEST(Ranker, ACompleteAnswerIsExplainedWithTheSamplesAndMarksOfThePlainRanking) 
       EXPECT_EQ(p.within_numerical_error, q.within_numerical_error);
       EXPECT_EQ(p.sample_scores, q.sample_scores);
     }
-    // What is cut is explained without samples.
+    // Partial answers are explained without samples.
     RankBudget none;
     none.work = 0;
     const RankerAnswer cut = ranker->rank(plain.candidates, none);
@@ -179,7 +179,7 @@ TEST(Ranker, ACompleteAnswerIsExplainedWithTheSamplesAndMarksOfThePlainRanking) 
   }
 }
 
-TEST(Ranker, WorkersThatADeadlineLeavesBehindReadNothingOfTheCallers) {
+TEST(Ranker, WorkersAfterADeadlineReadNoMemoryOfTheCaller) {
   const Case c(301, Measure::harm);
   const std::vector<Motion> motions = c.motions();
   const Pose& start = c.scene.scenario.ego.pose;
@@ -193,7 +193,7 @@ TEST(Ranker, WorkersThatADeadlineLeavesBehindReadNothingOfTheCallers) {
       ASSERT_TRUE(ranker.rank(gone, budget).status);
       for (Candidate& candidate : gone) candidate.motion = Motion::at_rest(start);
     }
-    // Both change or read what the workers may still be reading.
+    // Both change or read data that workers may still read.
     if (call % 3 == 1) {
       ASSERT_TRUE(ranker.move_actors(start, motions));
     }
@@ -207,7 +207,7 @@ TEST(Ranker, WorkersThatADeadlineLeavesBehindReadNothingOfTheCallers) {
   }
 }
 
-TEST(Ranker, MovedActorsAreRankedAsANewScenarioWouldBe) {
+TEST(Ranker, MovedActorsAreRankedLikeANewScenario) {
   Scene scene = traffic(400);
   RankerOptions options;
   options.rank = options_of(Measure::harm);
@@ -230,7 +230,7 @@ TEST(Ranker, MovedActorsAreRankedAsANewScenarioWouldBe) {
   EXPECT_FALSE(ranker->move_actors(scene.scenario.ego.pose, motions));
 }
 
-TEST(Ranker, LimitsAreKept) {
+TEST(Ranker, LimitsAreEnforced) {
   const Case c(500, Measure::harm);
   RankerOptions options;
   options.rank = options_of(Measure::harm);
