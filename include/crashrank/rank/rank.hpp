@@ -425,52 +425,52 @@ struct RankResult {
   std::optional<RankerEffort> effort;  ///< of a Ranker's answer
 };
 
-/// Ranks the candidates of a scenario by the harm or damage of their crashes. `models` belong to
-/// `Scenario::models`, index by index, in body coordinates.
+/// Ranks the candidates of a scenario by the harm or damage of their crashes. `models` correspond
+/// to `Scenario::models` by index and are in body coordinates.
 ///
-/// For every candidate the ego and the actors follow their motions until the horizon. First contact
-/// is found without stepping over any (time_of_impact); a body inside another at the start is a
-/// contact at time 0. From there the crash is simulated (the law of `simulate_contact`), and with
-/// nothing varied every triangle that touches the other body of a contact along the simulated
-/// motion, on which both overlap as rigid ones, is damaged: those that intersect it at one of the
-/// recorded poses (ContactMotion), about every 0.1 m of the way, the greatest compression and the
-/// end of the force among them; and those that it passed through between two poses, a corner's
-/// straight way crossing its surface. So a pole leaves a furrow, and a front that is wholly inside
-/// a wall counts. Bodies that do not press on each other damage the first pair of triangles alone.
-/// Where both bodies give way, the overlap is the sum of both crush depths: each body's damage then
-/// reaches deeper than its own crush.
+/// For every candidate the ego and the actors follow their motions until the horizon. The search
+/// for the first contact cannot step over one (time_of_impact); a body inside another at the start
+/// is a contact at time 0. From there the crash is simulated (the law of `simulate_contact`).
+/// Damage is evaluated along the motion of each contact in the nominal sample, on which both bodies
+/// overlap as rigid ones. A triangle is damaged if it intersects the other body at a recorded pose
+/// (ContactMotion; about every 0.1 m of the path, including the greatest compression and the end of
+/// the force), or if it passes through the surface between two poses, that is, if the straight path
+/// of one of its corners crosses the surface. So a pole leaves a furrow, and a front that is
+/// completely inside a wall counts. Bodies that do not press on each other damage only the first
+/// pair of triangles. If both bodies deform, the overlap is the sum of both crush depths, so the
+/// damage of each reaches deeper than its own crush.
 ///
-/// The crash of a candidate is one simulated scene: the ego, what it hits, what that is pushed into
-/// and so on press on each other and on the road with their tyres (HarmOptions::after_contact says
-/// what their wheels do), until everything rests, or 3 s after the last force. What is crushed
-/// stays crushed when two bodies touch again. All other bodies keep their plans, do not react and
-/// pass through each other. Where a scene reaches its limits, `CandidateResult::crowded` is set.
+/// The crash of a candidate is one simulated scene: the ego, the bodies that it hits, and those
+/// that these hit in turn press on each other, and on the road with their tyres
+/// (HarmOptions::after_contact sets braking), until all are at rest, or 3 s after the last force.
+/// Crush remains when two bodies touch again. All other bodies keep their plans and pass through
+/// each other. If a scene reaches its limits, `CandidateResult::crowded` is set.
 ///
-/// Scores add up over all contacts of the scene, those between others included: `polygons` counts
-/// damaged triangles of all bodies, `area` adds their areas, a triangle that is hit twice once;
-/// `closing-energy` adds the energy of every pair's first contact, `energy` all, `intrusion` both
-/// bodies', `delta-v` the changes of velocity in the ego's events, `harm` everybody's risk as
-/// weighted. An event is a body's contacts that begin less than 0.1 s after the end of one before;
-/// the risk of the people in a body is that of injury in at least one of its events.
+/// Scores are sums over all contacts of the scene. `polygons` counts the damaged triangles of all
+/// bodies and `area` adds their areas, a triangle that is hit twice once; `closing-energy` adds the
+/// energy of the first contact of every pair, `energy` that of all, `intrusion` that of both
+/// bodies, `delta-v` the delta-v of the events of the ego, and `harm` the weighted risks of all
+/// people. An event consists of contacts of a body that begin less than 0.1 s after the end of an
+/// earlier one; a risk is that of injury in at least one event.
 ///
-/// Where actors have predictions, may not exist, or joint futures are listed, every candidate is
-/// evaluated in each future and its scores become one by the risk measure. Futures that do not
-/// differ for a candidate are simulated once; what such a simulation may share is decided by the
-/// bodies that came near it, so that sharing changes no bit. A body that nothing moves follows one
-/// plan, and one that may not exist adjoins no other.
+/// If actors have predictions, may be absent, or joint futures are listed, every candidate is
+/// evaluated in each future, and the risk measure combines its scores. Futures that are equivalent
+/// for a candidate are simulated once: those with the same plans of all bodies that came near the
+/// simulation, so sharing does not change a bit. A fixed body has one plan, and one that may be
+/// absent adjoins no other body.
 ///
-/// Order: what the ego can follow before what it cannot (RankOptions::infeasible); lower score;
-/// lower probability of a collision; in the likeliest future a clean miss before a graze, and
-/// staying on the road; the larger least distance, to a centimetre and up to `enough_distance_m`,
-/// and least time gap, to 10 ms and up to `enough_time_gap_s`; in the likeliest future the
-/// later first contact, the lower closing speed, or the lower speed at the horizon. Candidates that
-/// agree in all of these are tied: they share a place and are listed in the order of the
-/// candidates.
+/// Order: feasible before infeasible candidates (RankOptions::infeasible); lower score; lower
+/// probability of a collision; in the likeliest future no contact before a graze, and staying on
+/// the road before leaving it; the larger least distance, rounded to 1 cm, up to
+/// `enough_distance_m`; the larger least time gap, rounded to 10 ms, up to `enough_time_gap_s`; in
+/// the likeliest future the later first contact, then the lower closing speed, or the lower speed
+/// at the horizon. Candidates that agree in all of these are tied: they share a place and are
+/// listed in the order of the candidates.
 ///
-/// Cost: about the candidates times the bodies they come near. Errors: bad_input (numbers out
-/// of `scenario_limits` or not finite, poses not rigid or out of order, missing or empty model, ego
-/// without mass), usage (number of models), internal (no memory).
-/// Safe from any thread; allocates.
+/// Cost: proportional to the candidates times the bodies that they come near. Errors: bad_input
+/// (numbers beyond `scenario_limits` or not finite, poses not rigid or out of order, a missing or
+/// empty model, an ego without mass), usage (number of models), internal (no memory). Safe from any
+/// thread; allocates.
 CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
                                       const RankOptions& options = {});
 

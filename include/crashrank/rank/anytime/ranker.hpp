@@ -122,29 +122,29 @@ CRASHRANK_API Result<std::vector<Motion>> plan_motions(const Scenario& scenario)
 
 /// Ranks candidates within a deadline, in memory allocated beforehand.
 ///
-/// Every candidate has an interval that contains its final score. Candidates that can still be
-/// first are refined first, the most promising one first; after the first place is proved, the
-/// others. The stages of a candidate: the bodies that its swept boxes overlap (none: the score is
-/// 0); the search for its first contact (none: 0); the simulation of its crash, which stops as soon
-/// as the score cannot be the lowest: the contacts so far are a lower bound, the available energy
-/// gives an upper one.
+/// Every candidate has an interval that contains its final score. Candidates that can
+/// still be first are refined first, in order of promise; once the first place is
+/// proved, the others follow. Stages: the bodies that the swept boxes overlap (none:
+/// the score is 0); the search for the first contact (none: 0); the simulation of the
+/// crash. This stops as soon as the candidate cannot be first: the contacts so far give
+/// a lower bound, the available energy an upper bound.
 ///
-/// `rank` allocates nothing, throws nothing, takes no lock, and its only system calls wake and
-/// await its own workers. Exception: measures `polygons` and `area`, whose last stage
+/// `rank` does not allocate, throw or lock, and its only system calls wake and await
+/// its own workers. Exception: measures `polygons` and `area`, whose last stage
 /// allocates.
 ///
-/// At its deadline a call returns without waiting for workers in the middle of a step: these end at
-/// their next reading of the clock, after the call has returned, and read only the models
-/// meanwhile. The next call begins by waiting for them, `rank` until its own deadline at most.
-/// Except, again, with those measures, and where a candidate's motion is a timed one: then the call
-/// waits for its workers. docs/evidence/ranking-times.md has the lateness of answers. With no
-/// deadline the scores have the bits of `crashrank::rank`, and so has the order.
+/// At its deadline a call returns without waiting for workers in the middle of a step.
+/// These stop at their next reading of the clock and read only the models until then.
+/// The next call first waits for them, `rank` until its own deadline at most. With the
+/// measures above and for candidates with timed motions a call waits for its workers
+/// instead. docs/evidence/ranking-times.md has the lateness of answers. Without a
+/// deadline scores and order have the bits of `crashrank::rank`.
 ///
-/// One thread at a time calls the members; different Rankers are independent.
+/// One thread at a time may call the members; different Rankers are independent.
 class CRASHRANK_API Ranker {
 public:
-  /// Sets up the workers, the memory and the scenario's situation. `models` have to outlive the
-  /// Ranker. Errors: as `crashrank::rank`; usage where limits are exceeded.
+  /// Starts the workers and prepares memory and scenario. `models` must outlive the Ranker. Errors:
+  /// as `crashrank::rank`; usage if limits are exceeded.
   static Result<Ranker> prepare(const Scenario& scenario, View<const Model> models,
                                 const RankerOptions& options = {});
 
@@ -165,35 +165,35 @@ public:
   /// Returns the plans of all actors; allocates.
   std::vector<Plan> plans() const;
 
-  /// Sets a new situation: the pose where the ego starts, and the motion of each actor on each
-  /// of its plans, in the order of `plans`: one for each actor if nothing is uncertain. Waits
-  /// first for workers that the last answer did not wait for, then costs a few µs an actor, as
-  /// much for each future if its state has errors, and allocates for timed motions only.
-  /// Errors, and nothing changes: usage where their number is another; bad_input for a pose or
-  /// motion that is not finite or beyond `scenario_limits` within the horizon; out_of_memory.
-  /// `ego` is the ego's present motion: without it the demand of timed poses leaves out their
-  /// beginning.
+  /// Sets a new situation: the start pose of the ego, and the motion of each actor on each of its
+  /// plans in the order of `plans`: one for each actor if nothing is uncertain. First waits for
+  /// workers that the last call left running. Then takes a few µs for each actor, and as much for
+  /// each future if its state has errors. Allocates only for timed motions. Errors, without any
+  /// change: usage for a wrong number of motions; bad_input for a pose or motion that is not
+  /// finite or exceeds `scenario_limits` within the horizon; out_of_memory. `ego` is the present
+  /// motion of the ego; without it the demand of timed poses excludes the transition at their
+  /// begin.
   Status move_actors(const Pose& ego_start, View<const Motion> actors,
                      std::optional<EgoMotion> ego = std::nullopt) noexcept;
 
-  /// Sets other probabilities of the plans: above 0, summing to 1 for each actor. Draws samples
-  /// again from the same strata, so that they change as little as the probabilities do. Begins like
-  /// `move_actors`, allocates nothing. Errors, and nothing changes: usage where their number is
-  /// another, or the futures are joint; bad_input for what is not a probability.
+  /// Sets the probabilities of the plans: above 0, with a sum of 1 for each actor. Samples are
+  /// drawn again from the same strata, so they change as little as the probabilities. Waits like
+  /// `move_actors`; does not allocate. Errors, without any change: usage for a wrong number of
+  /// values or joint futures; bad_input for values that are not probabilities.
   Status weigh_plans(View<const double> probabilities) noexcept;
 
-  /// Candidates have to stay until the call returns. Errors (in the answer, which is empty then):
-  /// usage where there are more than the limits allow or the deadline is NaN; bad_input for a
-  /// candidate whose motion is not finite, beyond `scenario_limits` within the horizon, or does not
-  /// begin at the ego's pose (1 m, 30°): made before `move_actors`, say; out_of_memory where the
-  /// text of an error cannot be allocated.
+  /// Ranks candidates, which must stay valid until the call returns. Errors, in an otherwise empty
+  /// answer: usage for too many candidates or a NaN deadline; bad_input for a candidate whose
+  /// motion is not finite, exceeds `scenario_limits` within the horizon, or does not start at the
+  /// pose of the ego (within 1 m, 30°), for example because it was made before `move_actors`;
+  /// out_of_memory if the text of an error cannot be allocated.
   RankerAnswer rank(View<const Candidate> candidates, const RankBudget& budget = {}) noexcept;
 
-  /// What `crashrank::rank` returns, of an answer. Complete: the same, samples, intervals and marks
-  /// included (HarmOptions::intervals). Otherwise without samples: the known candidates in full,
-  /// with contacts and damage, the others with their intervals, and places as far as these leave
-  /// them open. Evaluates and allocates; not for use on time. Once `cancel` is set, from any
-  /// thread, candidates that are not evaluated yet get bounds on their scores.
+  /// Returns the result of `crashrank::rank` for an answer. If the answer is complete, the results
+  /// are equal, including samples and intervals (HarmOptions::intervals). Otherwise there are no
+  /// samples; known candidates have contacts and damage, the others intervals, and places are given
+  /// as far as they are decided. Takes unbounded time and allocates. Any thread may set `cancel`;
+  /// candidates that are not evaluated by then get bounds on their scores.
   Result<RankResult> explain(View<const Candidate> candidates, const RankerAnswer& answer,
                              const std::atomic<bool>* cancel = nullptr);
 
@@ -203,9 +203,9 @@ private:
   std::unique_ptr<State> state_;
 };
 
-/// As `crashrank::rank`, within a budget: prepares a Ranker, ranks the scenario's candidates and
-/// explains the answer, off the clock. Without a budget use `rank`, whose workers share the
-/// explanation. Policy and depth have no effect. Errors: as `rank`.
+/// Ranks like `crashrank::rank` within a budget: prepares a Ranker, ranks the candidates of the
+/// scenario and explains the answer after the deadline. Without a budget use `rank`, which shares
+/// all work among threads. Policy and depth have no effect. Errors: as `rank`.
 CRASHRANK_API Result<RankResult> rank_within(const Scenario& scenario, View<const Model> models,
                                              const RankOptions& options, const RankBudget& budget);
 
