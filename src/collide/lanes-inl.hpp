@@ -33,66 +33,76 @@ struct I8 {
   hn::Vec<IntTag> v[vectors];
 };
 
+// The target without vectors, which highway always builds and no processor in use needs, would be
+// eight times as many instructions: calls keep the compiler's time short.
+#undef CRASHRANK_LANES_INLINE
+#if HWY_TARGET == HWY_SCALAR
+#define CRASHRANK_LANES_INLINE inline HWY_NOINLINE
+#else
+#define CRASHRANK_LANES_INLINE HWY_INLINE
+#endif
+
 #define CRASHRANK_EACH for (std::size_t k = 0; k < vectors; ++k)
 
-HWY_INLINE F8 load(const float* p) {
+CRASHRANK_LANES_INLINE F8 load(const float* p) {
   F8 r;
   CRASHRANK_EACH r.v[k] = hn::Load(FloatTag(), p + k * tag_lanes);
   return r;
 }
-HWY_INLINE void store(F8 x, float* p) {
+CRASHRANK_LANES_INLINE void store(F8 x, float* p) {
   CRASHRANK_EACH hn::Store(x.v[k], FloatTag(), p + k * tag_lanes);
 }
-HWY_INLINE F8 all(float x) {
+CRASHRANK_LANES_INLINE F8 all(float x) {
   F8 r;
   CRASHRANK_EACH r.v[k] = hn::Set(FloatTag(), x);
   return r;
 }
-HWY_INLINE F8 operator+(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE F8 operator+(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Add(a.v[k], b.v[k]);
   return a;
 }
-HWY_INLINE F8 operator-(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE F8 operator-(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Sub(a.v[k], b.v[k]);
   return a;
 }
-HWY_INLINE F8 operator*(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE F8 operator*(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Mul(a.v[k], b.v[k]);
   return a;
 }
-HWY_INLINE F8 operator/(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE F8 operator/(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Div(a.v[k], b.v[k]);
   return a;
 }
-HWY_INLINE I8 operator+(I8 a, I8 b) {
+CRASHRANK_LANES_INLINE I8 operator+(I8 a, I8 b) {
   CRASHRANK_EACH a.v[k] = hn::Add(a.v[k], b.v[k]);
   return a;
 }
-HWY_INLINE F8 operator-(F8 a) {
+CRASHRANK_LANES_INLINE F8 operator-(F8 a) {
   CRASHRANK_EACH a.v[k] = hn::Neg(a.v[k]);
   return a;
 }
-HWY_INLINE F8 square_root(F8 a) {
+CRASHRANK_LANES_INLINE F8 square_root(F8 a) {
   CRASHRANK_EACH a.v[k] = hn::Sqrt(a.v[k]);
   return a;
 }
 /// Towards zero, of numbers that an int holds.
-HWY_INLINE I8 truncate(F8 a) {
+CRASHRANK_LANES_INLINE I8 truncate(F8 a) {
   I8 r;
   CRASHRANK_EACH r.v[k] = hn::ConvertTo(IntTag(), a.v[k]);
   return r;
 }
-HWY_INLINE F8 to_floats(I8 a) {
+CRASHRANK_LANES_INLINE F8 to_floats(I8 a) {
   F8 r;
   CRASHRANK_EACH r.v[k] = hn::ConvertTo(FloatTag(), a.v[k]);
   return r;
 }
-HWY_INLINE void store(I8 x, std::int32_t* p) {
+CRASHRANK_LANES_INLINE void store(I8 x, std::int32_t* p) {
   CRASHRANK_EACH hn::Store(x.v[k], IntTag(), p + k * tag_lanes);
 }
 /// Four floats at each of eight places of a table, as four columns: four rows that lie together are
 /// read at once, which takes a quarter of the loads of single floats. `at`: aligned to 32 bytes.
-HWY_INLINE void gather_rows(const float* table, const std::int32_t* at, F8 (&column)[4]) {
+CRASHRANK_LANES_INLINE void gather_rows(const float* table, const std::int32_t* at,
+                                        F8 (&column)[4]) {
 #if HWY_TARGET == HWY_SCALAR
   for (std::size_t c = 0; c < 4; ++c) {
     CRASHRANK_EACH column[c].v[k] = hn::Set(FloatTag(), table[at[k] + static_cast<int>(c)]);
@@ -128,63 +138,63 @@ HWY_INLINE void gather_rows(const float* table, const std::int32_t* at, F8 (&col
 }
 /// a·b + c, fused where the target can: every bound in this folder
 /// holds either way.
-HWY_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
+CRASHRANK_LANES_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
   CRASHRANK_EACH a.v[k] = hn::MulAdd(a.v[k], b.v[k], c.v[k]);
   return a;
 }
 /// a·b + c, fused where the target can or, for the same bits on all, rounded twice.
-template <bool fused> HWY_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
+template <bool fused> CRASHRANK_LANES_INLINE F8 mul_add(F8 a, F8 b, F8 c) {
   return fused ? mul_add(a, b, c) : a * b + c;
 }
 /// a·b − c
-HWY_INLINE F8 mul_sub(F8 a, F8 b, F8 c) {
+CRASHRANK_LANES_INLINE F8 mul_sub(F8 a, F8 b, F8 c) {
   CRASHRANK_EACH a.v[k] = hn::MulSub(a.v[k], b.v[k], c.v[k]);
   return a;
 }
-HWY_INLINE F8 minimum(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE F8 minimum(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Min(a.v[k], b.v[k]);
   return a;
 }
-HWY_INLINE F8 maximum(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE F8 maximum(F8 a, F8 b) {
   CRASHRANK_EACH a.v[k] = hn::Max(a.v[k], b.v[k]);
   return a;
 }
-HWY_INLINE F8 absolute(F8 a) {
+CRASHRANK_LANES_INLINE F8 absolute(F8 a) {
   CRASHRANK_EACH a.v[k] = hn::Abs(a.v[k]);
   return a;
 }
-HWY_INLINE M8 less(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE M8 less(F8 a, F8 b) {
   M8 r;
   CRASHRANK_EACH r.m[k] = hn::Lt(a.v[k], b.v[k]);
   return r;
 }
-HWY_INLINE M8 at_most(F8 a, F8 b) {
+CRASHRANK_LANES_INLINE M8 at_most(F8 a, F8 b) {
   M8 r;
   CRASHRANK_EACH r.m[k] = hn::Le(a.v[k], b.v[k]);
   return r;
 }
-HWY_INLINE M8 both(M8 a, M8 b) {
+CRASHRANK_LANES_INLINE M8 both(M8 a, M8 b) {
   CRASHRANK_EACH a.m[k] = hn::And(a.m[k], b.m[k]);
   return a;
 }
-HWY_INLINE M8 either(M8 a, M8 b) {
+CRASHRANK_LANES_INLINE M8 either(M8 a, M8 b) {
   CRASHRANK_EACH a.m[k] = hn::Or(a.m[k], b.m[k]);
   return a;
 }
-HWY_INLINE M8 differ(M8 a, M8 b) {
+CRASHRANK_LANES_INLINE M8 differ(M8 a, M8 b) {
   CRASHRANK_EACH a.m[k] = hn::Xor(a.m[k], b.m[k]);
   return a;
 }
 /// yes where the mask is set, no elsewhere
-HWY_INLINE F8 select(M8 mask, F8 yes, F8 no) {
+CRASHRANK_LANES_INLINE F8 select(M8 mask, F8 yes, F8 no) {
   CRASHRANK_EACH no.v[k] = hn::IfThenElse(mask.m[k], yes.v[k], no.v[k]);
   return no;
 }
-HWY_INLINE F8 negate_where(M8 mask, F8 a) {
+CRASHRANK_LANES_INLINE F8 negate_where(M8 mask, F8 a) {
   CRASHRANK_EACH a.v[k] = hn::IfThenElse(mask.m[k], hn::Neg(a.v[k]), a.v[k]);
   return a;
 }
-HWY_INLINE std::uint32_t bits(M8 mask) {
+CRASHRANK_LANES_INLINE std::uint32_t bits(M8 mask) {
   std::uint32_t out = 0;
   CRASHRANK_EACH {
     std::uint8_t byte[8] = {};
@@ -198,15 +208,15 @@ HWY_INLINE std::uint32_t bits(M8 mask) {
 struct Picker {
 #if HWY_TARGET <= HWY_AVX2
   hn::Indices256<float> index;
-  HWY_INLINE explicit Picker(const std::int32_t* lanes)
+  CRASHRANK_LANES_INLINE explicit Picker(const std::int32_t* lanes)
       : index(hn::IndicesFromVec(FloatTag(), hn::Load(IntTag(), lanes))) {}
-  HWY_INLINE F8 operator()(const float* table) const {
+  CRASHRANK_LANES_INLINE F8 operator()(const float* table) const {
     return {{hn::TableLookupLanes(hn::Load(FloatTag(), table), index)}};
   }
 #else
   const std::int32_t* lanes;
-  HWY_INLINE explicit Picker(const std::int32_t* lanes_in) : lanes(lanes_in) {}
-  HWY_INLINE F8 operator()(const float* table) const {
+  CRASHRANK_LANES_INLINE explicit Picker(const std::int32_t* lanes_in) : lanes(lanes_in) {}
+  CRASHRANK_LANES_INLINE F8 operator()(const float* table) const {
     alignas(32) float out[8];
     for (std::size_t i = 0; i < 8; ++i) out[i] = table[lanes[i]];
     return load(out);
@@ -215,7 +225,7 @@ struct Picker {
 };
 
 /// Writes the set bits of a byte as eight numbers, lowest first, then zeros.
-HWY_INLINE void append_lanes(std::uint32_t byte, std::int32_t* out) {
+CRASHRANK_LANES_INLINE void append_lanes(std::uint32_t byte, std::int32_t* out) {
   using ByteTag = hn::Rebind<std::uint8_t, IntTag>;
   const std::uint8_t* list = lane_lists.of[byte].data();
   CRASHRANK_EACH {
@@ -223,14 +233,15 @@ HWY_INLINE void append_lanes(std::uint32_t byte, std::int32_t* out) {
                out + k * tag_lanes);
   }
 }
-HWY_INLINE void append_same(std::int32_t value, std::int32_t* out) {
+CRASHRANK_LANES_INLINE void append_same(std::int32_t value, std::int32_t* out) {
   CRASHRANK_EACH hn::StoreU(hn::Set(IntTag(), value), IntTag(), out + k * tag_lanes);
 }
 
 /// Writes (a[ia[k]], b[ib[k]]) for every set bit k of `which`, one after the other; eight pairs of
 /// room are used whatever is set.
-HWY_INLINE void write_pairs(const std::uint32_t* a, const std::int32_t* ia, const std::uint32_t* b,
-                            const std::int32_t* ib, std::uint32_t which, std::int32_t* out) {
+CRASHRANK_LANES_INLINE void write_pairs(const std::uint32_t* a, const std::int32_t* ia,
+                                        const std::uint32_t* b, const std::int32_t* ib,
+                                        std::uint32_t which, std::int32_t* out) {
 #if HWY_TARGET <= HWY_AVX2
   alignas(32) std::int32_t set[8];
   append_lanes(which, set);
@@ -254,39 +265,43 @@ HWY_INLINE void write_pairs(const std::uint32_t* a, const std::int32_t* ia, cons
 struct V8 {
   F8 x, y, z;
 };
-HWY_INLINE V8 operator+(V8 a, V8 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-HWY_INLINE V8 operator-(V8 a, V8 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-HWY_INLINE F8 dot(V8 a, V8 b) { return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z)); }
-HWY_INLINE V8 cross(V8 a, V8 b) {
+CRASHRANK_LANES_INLINE V8 operator+(V8 a, V8 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+CRASHRANK_LANES_INLINE V8 operator-(V8 a, V8 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+CRASHRANK_LANES_INLINE F8 dot(V8 a, V8 b) {
+  return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z));
+}
+CRASHRANK_LANES_INLINE V8 cross(V8 a, V8 b) {
   return {mul_sub(a.y, b.z, a.z * b.y), mul_sub(a.z, b.x, a.x * b.z), mul_sub(a.x, b.y, a.y * b.x)};
 }
-HWY_INLINE V8 minimum(V8 a, V8 b) {
+CRASHRANK_LANES_INLINE V8 minimum(V8 a, V8 b) {
   return {minimum(a.x, b.x), minimum(a.y, b.y), minimum(a.z, b.z)};
 }
-HWY_INLINE V8 maximum(V8 a, V8 b) {
+CRASHRANK_LANES_INLINE V8 maximum(V8 a, V8 b) {
   return {maximum(a.x, b.x), maximum(a.y, b.y), maximum(a.z, b.z)};
 }
-HWY_INLINE V8 select(M8 mask, V8 yes, V8 no) {
+CRASHRANK_LANES_INLINE V8 select(M8 mask, V8 yes, V8 no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
-HWY_INLINE V8 absolute(V8 a) { return {absolute(a.x), absolute(a.y), absolute(a.z)}; }
-HWY_INLINE F8 sum_abs(V8 a) { return absolute(a.x) + absolute(a.y) + absolute(a.z); }
-HWY_INLINE F8 max_abs(V8 a) {
+CRASHRANK_LANES_INLINE V8 absolute(V8 a) { return {absolute(a.x), absolute(a.y), absolute(a.z)}; }
+CRASHRANK_LANES_INLINE F8 sum_abs(V8 a) { return absolute(a.x) + absolute(a.y) + absolute(a.z); }
+CRASHRANK_LANES_INLINE F8 max_abs(V8 a) {
   return maximum(absolute(a.x), maximum(absolute(a.y), absolute(a.z)));
 }
-HWY_INLINE V8 all3(const float* p) { return {all(p[0]), all(p[1]), all(p[2])}; }
-HWY_INLINE V8 load3(const float* rows) { return {load(rows), load(rows + 8), load(rows + 16)}; }
-HWY_INLINE void store3(V8 v, float* rows) {
+CRASHRANK_LANES_INLINE V8 all3(const float* p) { return {all(p[0]), all(p[1]), all(p[2])}; }
+CRASHRANK_LANES_INLINE V8 load3(const float* rows) {
+  return {load(rows), load(rows + 8), load(rows + 16)};
+}
+CRASHRANK_LANES_INLINE void store3(V8 v, float* rows) {
   store(v.x, rows);
   store(v.y, rows + 8);
   store(v.z, rows + 16);
 }
-HWY_INLINE V8 pick3(const Picker& pick, const float* rows) {
+CRASHRANK_LANES_INLINE V8 pick3(const Picker& pick, const float* rows) {
   return {pick(rows), pick(rows + 8), pick(rows + 16)};
 }
 /// Folds each coordinate's eight lanes into one, of three floats and one to spare. `fold`: the
 /// least or the greatest of two vectors, lane by lane.
-template <class Fold> HWY_INLINE void store_folded(V8 v, const Fold& fold, float* out) {
+template <class Fold> CRASHRANK_LANES_INLINE void store_folded(V8 v, const Fold& fold, float* out) {
   const FloatTag tag;
   const auto one = [&](F8 x) {
     auto folded = x.v[0];
@@ -319,16 +334,16 @@ template <class Fold> HWY_INLINE void store_folded(V8 v, const Fold& fold, float
 }
 /// The least, or the greatest, of each coordinate into the first three of four floats at a multiple
 /// of 16 bytes.
-HWY_INLINE void store_least(V8 v, float* out) {
+CRASHRANK_LANES_INLINE void store_least(V8 v, float* out) {
   store_folded(
       v, [](auto a, auto b) { return hn::Min(a, b); }, out);
 }
-HWY_INLINE void store_greatest(V8 v, float* out) {
+CRASHRANK_LANES_INLINE void store_greatest(V8 v, float* out) {
   store_folded(
       v, [](auto a, auto b) { return hn::Max(a, b); }, out);
 }
 /// One entry of three rows in all lanes.
-HWY_INLINE V8 spread3(const float* rows, std::size_t lane) {
+CRASHRANK_LANES_INLINE V8 spread3(const float* rows, std::size_t lane) {
   return {all(rows[lane]), all(rows[8 + lane]), all(rows[16 + lane])};
 }
 
