@@ -101,8 +101,4 @@ ContactOutcome ContactRun::outcome(bool swapped) const {
   return result;
 }
 
-Vector3d ContactRun::impulse_ns() const {
-  return Vector3d(impulse_on_first_.x, impulse_on_first_.y, 0.0);
-}
-
 }  // namespace crashrank::detail

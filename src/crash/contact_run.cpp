@@ -86,10 +86,7 @@ void ContactRun::begin(ContactWorkspace::State& state, std::size_t first, std::u
   radius_m_ = outline_radius(*given_first.vehicle);
   if (given_second.vehicle->movable())
     radius_m_ = std::max(radius_m_, outline_radius(*given_second.vehicle));
-  energy_before_j_ = kinetic_energy_j();
-  speed_before_mps_ = relative_speed();
-  momentum_before_ns_ = speed_before_mps_ / (p.inverse_mass + q.inverse_mass);
-  speed_sum_before_mps_ = plane_length(p.vx, p.vy) + plane_length(q.vx, q.vy);
+  momentum_before_ns_ = relative_speed() / (p.inverse_mass + q.inverse_mass);
   speed_mps_ = relative_speed_bound();
   over_ = !can_press(*given_first.vehicle, *given_second.vehicle);
 }

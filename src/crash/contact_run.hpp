@@ -136,28 +136,8 @@ public:
   /// The outcome up to now; `swapped`: the first body is B.
   ContactOutcome outcome(bool swapped) const;
 
-  // Bounds on the final result, for two bodies on which nothing else acts. They follow from what
-  // every step guarantees: momentum is conserved, and energy grows only in a rebound, which
-  // restores at most `most_restored` of the energy lost before it.
-
-  /// Impulse on the first body so far, world axes, N·s.
-  Eigen::Vector3d impulse_ns() const;
-  /// Upper bound of the impulse that can still follow, N·s.
-  double max_remaining_impulse_ns() const;
-  /// Lower bound of the total impulse, N·s.
-  double min_total_impulse_ns() const;
-  /// Upper bound of the total impulse, N·s.
-  double max_total_impulse_ns() const;
-  /// Rounding error of impulses, N·s, and of energies, J: both are differences of much larger
-  /// numbers.
-  double rounding_ns() const;
-  double rounding_j() const { return 1e-12 * energy_before_j_; }
   /// Kinetic energy lost so far, J.
   double dissipated_j() const { return std::max(0.0, dissipated_j_); }
-  /// Lower bound of the total loss of kinetic energy, J.
-  double min_total_loss_j() const;
-  /// Upper bound of the total loss of kinetic energy, J.
-  double max_total_loss_j() const;
   /// Number of outline pieces moved so far: the amount of work done.
   std::uint64_t work() const noexcept { return pieces_; }
 
@@ -204,7 +184,6 @@ private:
   double kinetic_energy_j() const;
   double relative_speed_bound() const;
   double relative_speed() const;
-  double max_later_speed_mps() const;
   BodyContact body_result(bool is_first) const;
   static void limit_delta_v(const VelocityChange& change, double inverse_mass,
                             BodyContact& contact);
@@ -244,15 +223,12 @@ private:
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;
-  double pass_interval_s_ = 0.0;    ///< time from the last evaluation of the forces to this one
-  double speed_mps_ = 0.0;          ///< upper bound of the relative speed of any two points
-  double acceleration_mps2_ = 0.0;  ///< relative acceleration by the force of the last step
-  double travel_bound_m_ = 0.0;     ///< upper bound of the relative travel in the last step
-  double energy_before_j_ = 0.0;
-  double speed_before_mps_ = 0.0;
+  double pass_interval_s_ = 0.0;     ///< time from the last evaluation of the forces to this one
+  double speed_mps_ = 0.0;           ///< upper bound of the relative speed of any two points
+  double acceleration_mps2_ = 0.0;   ///< relative acceleration by the force of the last step
+  double travel_bound_m_ = 0.0;      ///< upper bound of the relative travel in the last step
   double momentum_before_ns_ = 0.0;  ///< momentum of the relative motion at first contact
-  double speed_sum_before_mps_ = 0.0;
-  double dissipated_j_ = 0.0;  ///< kinetic energy lost so far
+  double dissipated_j_ = 0.0;        ///< kinetic energy lost so far
   double lost_since_rebound_j_ = 0.0;
   double max_pressing_since_rebound_ = 0.0;
   double max_closing_since_rebound_mps_ = 0.0;
