@@ -48,8 +48,17 @@ def test_inputs_below_a_folder_and_beside_it(scenes, tmp_path):
     ids = [row[0] for row in results(out)]
     assert "below/scene-00.json" in ids
     again = run_batch(scenes, scenes / "scene-01.json", "-o", tmp_path / "x", code=2)
-    for text in ("same id 'scene-01.json'", str(scenes / "scene-01.json"), "the folder above"):
-        assert text in again["messages"]
+    assert (
+        f"{scenes / 'scene-01.json'}: is named twice by the inputs; name it once"
+        in (again["messages"])
+    )
+
+
+def test_an_input_that_is_named_twice(scenes, tmp_path):
+    write_table(tmp_path / "all.parquet", [scene(i) for i in range(2)], base=[str(scenes)] * 2)
+    for twice in (scenes, tmp_path / "all.parquet"):
+        done = run_batch(twice, twice, "-o", tmp_path / "x", "--sequential", code=2)
+        assert "is named twice by the inputs; name it once" in done["messages"]
 
 
 @pytest.mark.usefixtures("scenes")

@@ -55,23 +55,27 @@ def _first_repeated(
     sources: Sequence[Source], ids: Sequence[pyarrow.ChunkedArray], repeated: int
 ) -> Error:
     """Return the error that names both places of the first id that is there twice."""
-    seen: dict[str, tuple[Source, int]] = {}
+    # By the sources' numbers: one that is named twice equals itself.
+    seen: dict[str, tuple[int, int]] = {}
     places = (
-        (row_id, source, row)
-        for source, column in zip(sources, ids, strict=True)
+        (row_id, number, row)
+        for number, column in enumerate(ids)
         for row, row_id in enumerate(column.to_pylist())
     )
-    row_id, source, row = next(
+    row_id, number, row = next(
         each for each in places if seen.setdefault(each[0], each[1:]) != each[1:]
     )
+    source, first_source = sources[number], sources[seen[row_id][0]]
     file, place = _place(source, row)
-    first_file, first_place = _place(*seen[row_id])
+    first_file, first_place = _place(first_source, seen[row_id][1])
+    if (file, place) == (first_file, first_place):
+        return UsageError("usage", file, "", "is named twice by the inputs", "name it once")
     named = (first_place, "" if first_file == file and first_place else first_file)
     first = " of ".join(part for part in named if part)
     reason = f"has the same id {row_id!r} as {first}"
     if repeated > 1:
         reason += f" ({repeated} rows in all repeat an id)"
-    if isinstance(source, str) or isinstance(seen[row_id][0], str):
+    if isinstance(source, str) or isinstance(first_source, str):
         return BadInputError("bad_input", file, place, reason, _REMEDY)
     return UsageError("usage", file, place, reason, "name the folder above both instead")
 
