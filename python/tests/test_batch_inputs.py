@@ -59,6 +59,10 @@ def test_an_input_that_is_named_twice(scenes, tmp_path):
     for twice in (scenes, tmp_path / "all.parquet"):
         done = run_batch(twice, twice, "-o", tmp_path / "x", "--sequential", code=2)
         assert "is named twice by the inputs; name it once" in done["messages"]
+    other = shutil.copytree(scenes, tmp_path / "other")
+    done = run_batch(scenes, other, "-o", tmp_path / "x", "--sequential", code=2)
+    for text in (str(other), "the same id 'scene-00.json'", "name the folder above both instead"):
+        assert text in done["messages"]
 
 
 @pytest.mark.usefixtures("scenes")
