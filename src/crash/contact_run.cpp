@@ -32,12 +32,29 @@ bool can_press(const Vehicle& a, const Vehicle& b) {
   return (a.movable() || b.movable()) && (!a.strength.rigid || !b.strength.rigid);
 }
 
+void CountedShare::pass(double time_s) {
+  constexpr double decay_s = 0.3;
+  share = std::max(0.0, share - std::max(0.0, time_s - hold_s) / decay_s);
+  hold_s = std::max(0.0, hold_s - time_s);
+}
+
+void CountedShare::take(double acceleration_mps2) {
+  constexpr double braking_mps2 = 0.3 * gravity_mps2;
+  constexpr double strong_mps2 = 1.0 * gravity_mps2;
+  const double strength =
+      std::clamp((acceleration_mps2 - braking_mps2) / (strong_mps2 - braking_mps2), 0.0, 1.0);
+  if (strength < share) return;
+  share = strength;
+  constexpr double strong_hold_s = 0.15;
+  hold_s = std::max(hold_s, strong_hold_s);
+}
+
 void BodyPair::begin(std::size_t a, std::size_t b) {
   first = static_cast<std::uint32_t>(a);
   second = static_cast<std::uint32_t>(b);
   of_first.begin();
   of_second.begin();
-  push_until_s = -1e9;
+  push_s = -1e9;
   in_first = {};
   in_second = {};
   earlier_first_m = earlier_second_m = 0.0;
@@ -273,27 +290,24 @@ Eigen::Vector2d ContactRun::step_change_mps(bool of_first) const {
   return Eigen::Vector2d(share * f.x, share * f.y);
 }
 
-/// Injury risk curves describe impacts of about 0.1 s. A long push or scrape that accelerates both
-/// bodies no more than everyday braking is not an impact, whatever velocity change it adds up to.
-/// Both bodies use the same share, so that the counted impulses stay equal and opposite. Slow
-/// impacts, whose forces are as small, are over within `impact_s`.
+/// Both bodies use the same share, so that the counted impulses stay equal and opposite.
 void ContactRun::compute_counted_share() {
-  constexpr double impact_s = 0.3;
-  constexpr double braking_mps2 = 0.3 * gravity_mps2;
-  constexpr double strong_mps2 = 1.0 * gravity_mps2;
-  counted_share_ = 1.0;
+  counted_ = counted_share();
+  counted_s_ = time_s_;
   const double change_mps = std::max(step_change_mps(true).norm(), step_change_mps(false).norm());
-  const double acceleration = change_mps / step_s_;
-  if (acceleration >= strong_mps2) last_strong_s_ = time_s_;
-  if (time_s_ - last_strong_s_ <= impact_s) return;
-  counted_share_ =
-      std::clamp((acceleration - braking_mps2) / (strong_mps2 - braking_mps2), 0.0, 1.0);
-  add_excluded(true, 1.0 - counted_share_);
-  add_excluded(false, 1.0 - counted_share_);
+  counted_.take(change_mps / step_s_);
+  add_excluded(true, 1.0 - counted_.share);
+  add_excluded(false, 1.0 - counted_.share);
+}
+
+CountedShare ContactRun::counted_share() const {
+  CountedShare now = counted_;
+  now.pass(std::max(0.0, time_s_ - counted_s_));
+  return now;
 }
 
 void ContactRun::exclude(bool from_first, double share) {
-  add_excluded(from_first, share * counted_share_);
+  add_excluded(from_first, share * counted_.share);
 }
 
 void ContactRun::add_excluded(bool from_first, double share) {
@@ -307,7 +321,7 @@ void ContactRun::add_excluded(bool from_first, double share) {
 void ContactRun::add_velocity_change(bool first, const Eigen::Vector2d& change_mps, bool shared) {
   VelocityChange& body = first ? change_first_ : change_second_;
   body.now_mps += change_mps;
-  body.partial = body.partial || shared || counted_share_ < 1.0;
+  body.partial = body.partial || shared || counted_.share < 1.0;
   if (presses()) body.most_mps = std::max(body.most_mps, body.now_mps.norm());
 }
 

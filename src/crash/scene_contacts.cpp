@@ -32,7 +32,8 @@ void SceneRun::close_contact(ContactRun& run) {
   for (const std::uint32_t k : run.pairs()) {
     memory_.pairs[k].last_end_step = steps_;
     if (run.ended_on_low_force()) {
-      memory_.pairs[k].push_until_s = now_s_ + SceneContact::push_window_s;
+      memory_.pairs[k].push_s = now_s_;
+      memory_.pairs[k].push_share = run.counted_share();
     }
   }
   if (run.acts()) {
@@ -141,7 +142,6 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
   contact.a = a;
   contact.b = b;
   contact.begin_s = begin_s;
-  contact.is_continued_push = is_push_[static_cast<std::size_t>(&run - runs_.data())] != 0;
   contact.is_first =
       &run == first_run_ && (members_[partner_].state != State::fixed || second == partner_ ||
                              members_[second].state != State::fixed);

@@ -28,7 +28,6 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   near_.reserve(bodies * most_near);
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
-  is_push_.resize(most_at_once);
   active_.reserve(most_at_once);
   free_runs_.reserve(most_at_once);
   contacts_.reserve(most_contacts);
@@ -53,7 +52,6 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   near_.resize(bodies.size() * most_near);
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
-  is_push_.resize(most_at_once);
   chain_.clear();
   active_.clear();
   free_runs_.clear();
@@ -244,10 +242,12 @@ void SceneRun::open_contact(std::size_t i, std::size_t j) {
   free_runs_.pop_back();
   active_.push_back(k);
   begun_s_[k] = now_s_;
-  is_push_[k] = now_s_ < pair.push_until_s ? 1 : 0;
   runs_[k].begin(memory_, first, index, contact_body(first), contact_body(second), origin_m_,
                  options_.variant, options_.contact);
-  if (is_push_[k] != 0) runs_[k].begin_as_push();
+  if (!(now_s_ - pair.push_s < SceneContact::push_window_s)) return;
+  CountedShare share = pair.push_share;
+  share.pass(now_s_ - pair.push_s);
+  runs_[k].begin_as_push(share);
 }
 
 void SceneRun::open_contacts() {

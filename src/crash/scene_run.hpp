@@ -65,10 +65,6 @@ struct SceneContact {
   /// Index of the other body; of several adjoining fixed bodies the one with the largest impulse.
   std::uint32_t b = 0;
   double begin_s = 0.0;  ///< time of its first force on the plans' clock
-  /// The contact continues the push of an earlier contact of the two bodies that ended on a
-  /// negligible force. The contact law is validated up to that end, so this contact is not part of
-  /// the same event.
-  bool is_continued_push = false;
   /// Contact with the partner: the body that the chain's first body contacts first. If the partner
   /// is fixed and another fixed body of the contact receives more impulse, the contact is reported
   /// for that body and this is false.
@@ -239,7 +235,6 @@ private:
   std::vector<std::uint32_t> near_;  ///< `most_near` entries for each body
   std::vector<ContactRun> runs_;
   std::vector<double> begun_s_;           ///< by run: time of its beginning
-  std::vector<char> is_push_;             ///< by run, see SceneContact::is_continued_push
   std::vector<std::uint32_t> active_;     ///< runs in progress
   std::vector<std::uint32_t> free_runs_;  ///< unused runs
   std::vector<SceneContact> contacts_;

@@ -171,7 +171,6 @@ ContactEffect CrashChain::effect(std::size_t index) const {
   });
   ContactEffect e;
   e.begin_s = contact.begin_s;
-  e.is_apart = contact.is_continued_push;
   e.end_s = contact.begin_s + contact.outcome.duration_s;
   e.closing_mps = contact.is_first ? first_->closing_speed_mps : closing_of(contact).norm();
   if (!again) {

@@ -89,14 +89,9 @@ bool has_cage(BodyKind kind) noexcept {
 }
 
 double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                        double reduced_kg) noexcept {
+                        double reduced_kg, double restitution) noexcept {
   const double full_hit_mps = reduced_kg > 0.0 ? delta_v_mps * mass_kg / reduced_kg : 0.0;
-  return std::min(full_hit_mps, closing_speed_mps);
-}
-
-double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                        double reduced_kg, const HarmOptions& /*options*/) {
-  return struck_speed_mps(closing_speed_mps, delta_v_mps, mass_kg, reduced_kg);
+  return std::clamp(closing_speed_mps, full_hit_mps / (1.0 + restitution), full_hit_mps);
 }
 
 double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept {

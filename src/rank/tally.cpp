@@ -16,10 +16,10 @@ double reduced_mass_kg(const Body& a, const Body& b) {
   return std::isinf(b.mass_kg) ? a.mass_kg : a.mass_kg * b.mass_kg / (a.mass_kg + b.mass_kg);
 }
 
-double struck_speed_of(const Body& body, double closing_mps, double delta_v_mps,
-                       double reduced_kg) {
-  if (!body.vehicle.movable()) return closing_mps;
-  return struck_speed_mps(closing_mps, delta_v_mps, body.mass_kg, reduced_kg);
+double struck_speed_of(const Body& body, const BodyEvent& event) {
+  if (!body.vehicle.movable()) return event.closing_mps;
+  return struck_speed_mps(event.closing_mps, event.size_mps(), body.mass_kg, event.reduced_kg,
+                          event.restitution);
 }
 
 /// Adds one side of a contact to an event.
@@ -43,6 +43,7 @@ void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect&
   if (effect.closing_mps < event.closing_mps) return;
   event.closing_mps = effect.closing_mps;
   event.reduced_kg = reduced_mass_kg(body_of(scene, own.body), other);
+  event.restitution = effect.restitution;
   event.leading_edge_m = other.vehicle.leading_edge_m;
 }
 
@@ -50,6 +51,20 @@ BodyEvent new_event(const SideEffect& side) {
   BodyEvent event;
   event.forward = side.forward;
   event.road_mps = side.road_mps;
+  return event;
+}
+
+/// Share of an event that still counts in a contact which begins `gap_s` after its end.
+double shared_weight(double gap_s) {
+  return std::clamp((apart_s - gap_s) / (apart_s - same_event_s), 0.0, 1.0);
+}
+
+/// The event that a contact opens, with a share in [0, 1) of the event before it.
+BodyEvent next_event(const BodyEvent& before, const SideEffect& side, double share) {
+  BodyEvent event = before.scaled(share);
+  event.number = before.number + 1;
+  event.forward = (share * before.forward + (1.0 - share) * side.forward).normalized();
+  event.road_mps = share * before.road_mps + (1.0 - share) * side.road_mps;
   return event;
 }
 
@@ -67,6 +82,7 @@ ContactEffect scale_restitution(const ContactEffect& effect, double factor) {
   const double gain = rebound_gain(effect.restitution, factor);
   const double loss = rebound_loss(effect.restitution, factor);
   e.dissipated_j *= loss;
+  e.restitution = std::min(most_restitution, factor * effect.restitution);
   for (SideEffect& side : e.sides) {
     side.delta_v_mps *= gain;
     side.impulse_ns *= gain;
@@ -76,6 +92,19 @@ ContactEffect scale_restitution(const ContactEffect& effect, double factor) {
   return e;
 }
 
+BodyEvent BodyEvent::scaled(double share) const {
+  BodyEvent event = *this;
+  event.delta_v_mps *= share;
+  event.greatest_mps *= share;
+  event.impulse_ns *= share;
+  event.yaw_radps *= share;
+  event.closing_mps *= share;
+  event.intrusion_m *= share;
+  event.intruded_m *= share;
+  event.risk *= share;
+  return event;
+}
+
 HarmExposure exposure_of(const Scene& scene, std::size_t index, const BodyEvent& event) {
   const Body& body = body_of(scene, index);
   HarmExposure e;
@@ -83,7 +112,7 @@ HarmExposure exposure_of(const Scene& scene, std::size_t index, const BodyEvent&
   e.ego = index == ego_body;
   e.delta_v_mps = event.size_mps();
   e.pdof_deg = pdof_deg(event.impulse_ns, event.forward);
-  e.closing_speed_mps = struck_speed_of(body, event.closing_mps, e.delta_v_mps, event.reduced_kg);
+  e.closing_speed_mps = struck_speed_of(body, event);
   e.leading_edge_m = event.leading_edge_m;
   e.intrusion_m = event.intrusion_m;
   e.road_speed_mps = event.road_mps;
@@ -116,11 +145,14 @@ void Tally::add_side(const Scene& scene, const ContactEffect& effect, std::size_
                      const HarmSample& sample) {
   const SideEffect& own = effect.sides[side];
   Entry& e = entry(own.body);
-  if (e.open.number == 0 || effect.is_apart || !(effect.begin_s - e.open.end_s < same_event_s)) {
-    e.closed = term(scene, e);
-    const std::size_t number = e.open.number + 1;
-    e.open = new_event(own);
-    e.open.number = number;
+  const double share = e.open.number == 0 ? 0.0 : shared_weight(effect.begin_s - e.open.end_s);
+  if (share < 1.0) {
+    // What the new event does not keep of the one before it is closed. Its risk is the one that,
+    // combined with the risk kept, gives the risk before: the score does not fall.
+    BodyEvent rest = e.open.scaled(1.0 - share);
+    rest.risk /= 1.0 - share * e.open.risk;
+    e.closed = term(scene, e, rest);
+    e.open = next_event(e.open, own, share);
   }
   add_contact_side(e.open, scene, effect, side);
   if (!measure_row(scene.measure).counts_people) return;
@@ -142,16 +174,17 @@ void Tally::add(const Scene& scene, const ContactEffect& simulated, const HarmSa
   sum_ += row.of_contact(effect);
 }
 
-/// Term of a body over all events: the risk of its people, or the summed delta-v of the ego.
-double Tally::term(const Scene& scene, const Entry& e) const {
+/// Term of a body over its closed events and `last`: the risk of its people, or the summed delta-v
+/// of the ego.
+double Tally::term(const Scene& scene, const Entry& e, const BodyEvent& last) const {
   if (e.open.number == 0) return e.closed;
-  return measure_row(scene.measure).of_body(e.closed, e.open, e.body == ego_body);
+  return measure_row(scene.measure).of_body(e.closed, last, e.body == ego_body);
 }
 
 double Tally::people_score(const Scene& scene, std::size_t body) const {
   const Entry* const e = find(body);
   if (e == nullptr) return 0.0;
-  const double people = term(scene, *e);
+  const double people = term(scene, *e, e->open);
   if (!measure_row(scene.measure).counts_people) return people;
   return people_weight(exposure_of(scene, body, e->open), scene.harm.weights) * people;
 }
@@ -164,7 +197,7 @@ std::vector<PersonRisk> Tally::people(const Scene& scene) const {
   unit_weights.pedestrian = unit_weights.cyclist = unit_weights.motorcyclist = 1.0;
   for (const Entry& e : bodies_) {
     const double persons = people_weight(exposure_of(scene, e.body, e.open), unit_weights);
-    if (persons > 0.0) people.push_back({e.body, persons, term(scene, e)});
+    if (persons > 0.0) people.push_back({e.body, persons, term(scene, e, e.open)});
   }
   return people;
 }

@@ -207,8 +207,9 @@ Json car_json(const Row& row, const std::string& mesh, const std::string& suffix
   return model;
 }
 
-/// Severity of the first contact of the only candidate.
-Json ranked(const Workplace& place, const Json& models, const Json& ego, const Json& actor) {
+/// Contacts of the only candidate.
+Json ranked_contacts(const Workplace& place, const Json& models, const Json& ego,
+                     const Json& actor) {
   Json scenario{{"scenario_version", 1},
                 {"models", models},
                 {"ego", ego},
@@ -222,7 +223,12 @@ Json ranked(const Workplace& place, const Json& models, const Json& ego, const J
   EXPECT_EQ(run.code, 0) << run.err;
   const Json ranking = run.json().at("ranking");
   EXPECT_EQ(ranking.size(), 1U);
-  return ranking.at(0).at("contacts").at(0).at("severity");
+  return ranking.at(0).at("contacts");
+}
+
+/// Severity of the first contact of the only candidate.
+Json ranked(const Workplace& place, const Json& models, const Json& ego, const Json& actor) {
+  return ranked_contacts(place, models, ego, actor).at(0).at("severity");
 }
 
 void expect_same(const Json& one, const char* key, const Json& other,
@@ -236,6 +242,7 @@ TEST(ValidateRank, BarrierCrashesHaveTheNumbersOfTheirScenarios) {
   const Workplace place;
   const Sedan sedan(place);
   std::size_t crashes = 0;
+  std::size_t events_of_one = 0;
   for (const char* const table : {"small_overlap", "full_width"}) {
     const Json answers = validated(place, table);
     const std::vector<Row> rows = rows_of(table);
@@ -253,12 +260,13 @@ TEST(ValidateRank, BarrierCrashesHaveTheNumbersOfTheirScenarios) {
         barrier["honeycomb"] = {
             {"pressure_pa", 342000}, {"depth_m", 0.54}, {"low_m", 0.2}, {"high_m", 0.85}};
       }
-      const Json severity =
-          ranked(place, {{"car", car_json(row, "car.obj", "")}, {"barrier", barrier}},
-                 {{"model", "car"},
-                  {"pose", {{"x_m", -run_up_m - mesh.front_m}}},
-                  {"speed_mps", number(row, "speed_mps")}},
-                 {{"name", "barrier"}, {"model", "barrier"}});
+      const Json contacts =
+          ranked_contacts(place, {{"car", car_json(row, "car.obj", "")}, {"barrier", barrier}},
+                          {{"model", "car"},
+                           {"pose", {{"x_m", -run_up_m - mesh.front_m}}},
+                           {"speed_mps", number(row, "speed_mps")}},
+                          {{"name", "barrier"}, {"model", "barrier"}});
+      const Json& severity = contacts.at(0).at("severity");
       const Json& ego = severity.at("ego");
       const Json& answer = answers.at(i);
       ASSERT_EQ(answer.at("id"), row.at("id"));
@@ -267,7 +275,11 @@ TEST(ValidateRank, BarrierCrashesHaveTheNumbersOfTheirScenarios) {
       expect_same(answer, "delta_v_x_mps", ego, "delta_v_x_mps");
       expect_same(answer, "delta_v_y_mps", ego, "delta_v_y_mps");
       expect_same(answer, "yaw_rate_dps", ego, "yaw_rate_change_dps");
-      expect_same(answer, "yaw_rate_dps", ego, "event_yaw_rate_change_dps");
+      // A later contact of the same event, in which the barrier goes on to push the car, changes
+      // the yaw rate further.
+      const bool alone = contacts.size() == 1 || contacts.at(1).at("event") != 1;
+      if (alone) expect_same(answer, "yaw_rate_dps", ego, "event_yaw_rate_change_dps");
+      events_of_one += alone ? 1 : 0;
       expect_same(answer, "pdof_deg", ego, "pdof_deg");
       expect_same(answer, "deepest_m", ego, "crush_m");
       expect_same(answer, "duration_s", severity, "duration_s");
@@ -277,6 +289,7 @@ TEST(ValidateRank, BarrierCrashesHaveTheNumbersOfTheirScenarios) {
     }
   }
   EXPECT_EQ(crashes, 12U);
+  EXPECT_GE(events_of_one, 8U);
 }
 
 /// A car of a pair as it moves 0.3 s before its stated position.

@@ -156,6 +156,52 @@ TEST(Aftermath, AStruckCarIsPushedIntoThePersonBehindIt) {
   EXPECT_EQ(*of(scene.ranked(), "on").score, without);
 }
 
+/// A struck car accelerates a person in front of it to the same speed, whether it touches the
+/// person at once or after a gap.
+TEST(Aftermath, APersonAtTheBumperOfAStruckCarIsHarmedAsAtAGap) {
+  std::vector<double> risks;
+  for (const double gap_m : {0.005, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5}) {
+    Scene scene = road();
+    scene.scenario.grip = 0.8;
+    const std::size_t person = scene.add_model(
+        "person", box_mesh({0.2F, 0.3F, 0.85F}, 2, {0, 0, 0.85F}), BodyKind::pedestrian);
+    scene.add_actor("car", scene.scenario.ego.model, 10.0, 0.0);
+    scene.add_actor("person", person, 12.2 + gap_m, 0.0);
+    const RankResult result = scene.ranked();
+    for (const PersonRisk& each : of(result, "on").people) {
+      if (each.body == 1) risks.push_back(each.probability);
+    }
+  }
+  ASSERT_EQ(risks.size(), 7U);
+  const auto [least, most] = std::minmax_element(risks.begin(), risks.end());
+  EXPECT_GT(*least, 0.0);
+  EXPECT_LT(*most, 1.15 * *least);
+}
+
+/// A car that is pushed against a wall stops the one behind it a second time. The faster crash is
+/// the worse one, whatever the time between the two hits, and no threshold between one event and
+/// two makes it jump.
+TEST(Aftermath, AFasterCrashIntoACarBeforeAWallIsWorse) {
+  for (const double gap_m : {0.02, 0.1, 0.4, 0.8}) {
+    Scene scene = road();
+    scene.scenario.grip = 0.8;
+    const std::size_t wall =
+        scene.add_model("wall", box_mesh({0.2F, 5.0F, 1.2F}, 8, {0, 0, 1.2F}), BodyKind::building);
+    scene.add_actor("car", scene.scenario.ego.model, 10.0, 0.0);
+    scene.add_actor("wall", wall, 12.2 + gap_m, 0.0);
+    double before = 0.0;
+    for (double speed = 8.0; speed <= 26.0; speed += 0.5) {
+      scene.scenario.ego.speed_mps = speed;
+      const double score = *of(scene.ranked(), "on").score;
+      EXPECT_GE(score, 0.98 * before) << "gap " << gap_m << " m, " << speed << " m/s";
+      if (speed > 8.0) {
+        EXPECT_LT(score, 1.4 * before + 0.01) << "gap " << gap_m << " m, " << speed << " m/s";
+      }
+      before = score;
+    }
+  }
+}
+
 TEST(Aftermath, BodiesBrakeBetweenContacts) {
   // The struck car brakes with 0.45 of the grip until it hits the second one.
   constexpr double deceleration = 0.45 * 0.8 * 9.80665;

@@ -157,12 +157,37 @@ TEST(Harm, AToppledPedestrianFallsFromStandingHeight) {
 }
 
 TEST(Harm, AContactWithoutImpulseHarmsNobody) {
-  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0), 0.0);
-  EXPECT_DOUBLE_EQ(struck_speed_mps(10.0, 1.0, 75.0, 50.0), 1.5);
-  EXPECT_EQ(struck_speed_mps(10.0, 30.0, 75.0, 50.0), 10.0);
-  HarmOptions options;
-  options.least_struck_share = 1.0;
-  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0, options), 0.0);
+  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0, 0.3), 0.0);
+  EXPECT_DOUBLE_EQ(struck_speed_mps(10.0, 1.0, 75.0, 50.0, 0.3), 1.5);
+}
+
+/// In a central impact of free bodies delta-v = (1 + e)·v·M/m: the struck speed is then v.
+TEST(Harm, ACentralImpactStrikesAtItsClosingSpeed) {
+  for (const double restitution : {0.0, 0.1, 0.3, 0.5}) {
+    for (const double closing : {0.5, 5.0, 30.0}) {
+      const double reduced = 75.0 * 1500.0 / 1575.0;
+      const double delta_v = (1.0 + restitution) * closing * reduced / 75.0;
+      EXPECT_NEAR(struck_speed_mps(closing, delta_v, 75.0, reduced, restitution), closing, 1e-12);
+      // Touched at a lower speed and then accelerated to the same delta-v, as harmful.
+      EXPECT_NEAR(struck_speed_mps(0.1 * closing, delta_v, 75.0, reduced, restitution), closing,
+                  1e-12);
+    }
+  }
+}
+
+TEST(Harm, TheStruckSpeedRisesWithClosingSpeedAndDeltaV) {
+  double before = 0.0;
+  for (double closing = 0.0; closing < 20.0; closing += 0.25) {
+    const double now = struck_speed_mps(closing, 8.0, 75.0, 70.0, 0.2);
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  before = 0.0;
+  for (double delta_v = 0.0; delta_v < 20.0; delta_v += 0.25) {
+    const double now = struck_speed_mps(6.0, delta_v, 75.0, 70.0, 0.2);
+    EXPECT_GE(now, before);
+    before = now;
+  }
 }
 
 TEST(Harm, LightContactsCauseLittleHarm) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -61,8 +63,36 @@ TEST(Tally, ContactsWithinATenthOfASecondAreOneEvent) {
   EXPECT_DOUBLE_EQ(score(1.1), 10.0);
   EXPECT_DOUBLE_EQ(score(1.2), 10.0);
   EXPECT_DOUBLE_EQ(score(1.299), 10.0);
-  EXPECT_DOUBLE_EQ(score(1.301), 14.0);
+  EXPECT_DOUBLE_EQ(score(1.4), 14.0);
   EXPECT_DOUBLE_EQ(score(5.0), 14.0);
+}
+
+/// Between 0.1 and 0.2 s after the end of an event it counts in the next one with a falling share.
+TEST(Tally, TheShareOfAnEarlierEventFallsWithoutAJump) {
+  for (const Measure measure : {Measure::delta_v, Measure::harm}) {
+    const Scene scene = scene_of(measure);
+    const ContactEffect first = effect(ego_body, 0, 1.0, 1.2, {-16, 0, 0});
+    const auto score = [&](double begin_s, const Vector3d& delta_v) {
+      return score_of(scene, {first, effect(ego_body, 1, begin_s, begin_s + 0.1, delta_v)});
+    };
+    for (const Vector3d& delta_v : {Vector3d(-12, 0, 0), Vector3d(0, 12, 0), Vector3d(8, 2, 0)}) {
+      const double together = score(1.299, delta_v);
+      const double apart = score(1.401, delta_v);
+      for (double begin_s = 1.299; begin_s < 1.401; begin_s += 0.001) {
+        const double now = score(begin_s, delta_v);
+        EXPECT_NEAR(score(begin_s + 0.001, delta_v), now, 0.04 * std::max(together, apart));
+        // No later contact takes back the harm of an earlier one.
+        if (measure == Measure::harm) {
+          EXPECT_GE(now, score_of(scene, {first}));
+        }
+      }
+    }
+  }
+  // Half way: half of the first event counts in the second, half apart.
+  const Scene scene = scene_of(Measure::delta_v);
+  const ContactEffect first = effect(ego_body, 0, 1.0, 1.2, {-6, 0, 0});
+  EXPECT_NEAR(score_of(scene, {first, effect(ego_body, 1, 1.35, 1.4, {0, 8, 0})}),
+              3.0 + std::hypot(3.0, 8.0), 1e-12);
 }
 
 TEST(Tally, AnEventExtendsToTheLatestEnd) {
@@ -75,7 +105,7 @@ TEST(Tally, AnEventExtendsToTheLatestEnd) {
   tally.add(scene, effect(ego_body, 2, 1.65, 1.7, {-3, 0, 0}), scene.nominal);
   EXPECT_EQ(tally.event(ego_body).number, 1U);
   EXPECT_DOUBLE_EQ(tally.event(ego_body).delta_v_mps.x(), -9.0);
-  tally.add(scene, effect(ego_body, 3, 1.9, 2.0, {-3, 0, 0}), scene.nominal);
+  tally.add(scene, effect(ego_body, 3, 2.0, 2.1, {-3, 0, 0}), scene.nominal);
   EXPECT_EQ(tally.event(ego_body).number, 2U);
   EXPECT_DOUBLE_EQ(tally.event(ego_body).delta_v_mps.x(), -3.0);
   EXPECT_DOUBLE_EQ(tally.score(scene), 12.0);
@@ -98,7 +128,7 @@ TEST(Tally, EveryBodyHasEventsOfItsOwn) {
   EXPECT_EQ(tally.event(3).number, 0U);
 }
 
-/// Checks the events of a body with a single hit, with two hits at least 0.1 s apart, and with two
+/// Checks the events of a body with a single hit, with two hits at least 0.2 s apart, and with two
 /// hits close together.
 void expect_events(const Scene& scene, std::size_t body) {
   const ContactEffect first = effect(body, wall, 1.0, 1.1, {-15, 0, 0});

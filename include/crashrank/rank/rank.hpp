@@ -92,7 +92,8 @@ struct BodyOutcome {
   double delta_v_y_mps = 0.0;          ///< to the left, m/s
   double yaw_rate_change_radps = 0.0;  ///< to the left, rad/s
   /// Of the event of the contact: contacts of one body that overlap in time or are less than 0.1 s
-  /// apart. Harm uses the largest value that the event reached.
+  /// apart. An event that begins 0.1 to 0.2 s after another contains a share of it that falls to 0.
+  /// Harm uses the largest value that the event reached.
   double event_delta_v_mps = 0.0;
   double event_yaw_rate_change_radps = 0.0;  ///< of the event, to the left, rad/s
   double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)

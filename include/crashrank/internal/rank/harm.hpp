@@ -27,7 +27,7 @@ namespace crashrank {
 // intrusion (occupants), struck speed (people outside cars) or road speed (riders) rise. It depends
 // on the PDOF by a coefficient between those of front, side and rear, and on the striker's leading
 // edge in the models that have it, in which it need not be monotonic; `most_harm` takes the worst
-// of both. The struck speed lies between 0 and the closing speed, see `struck_speed_mps`.
+// of both. For the struck speed see `struck_speed_mps`.
 //
 // Bounds on the inputs, for two bodies of masses m1, m2 with the relative velocity v of their
 // centres of mass and the yaw rates w1, w2 (inertias I1, I2), since a contact conserves momentum
@@ -120,14 +120,13 @@ constexpr double combined_risk(double earlier, double later) noexcept {
 /// Impact speed for the risk curve of a person outside a car, m/s. The curves come from people who
 /// were struck by the front of a vehicle and took on its speed: delta-v = closing speed · M/m. A
 /// person who is grazed by a flank takes on less and has the risk of a full hit with the same
-/// delta-v: min(closing speed, delta-v · m/M), 0 without delta-v. `reduced_kg` is M = m1·m2/(m1 +
-/// m2).
+/// delta-v: at most delta-v · m/M. A person whom a vehicle touches at low speed and then
+/// accelerates, because the vehicle is struck itself, takes on more: the speed is at least that at
+/// which an impact between free bodies with the restitution e gives the same delta-v, delta-v ·
+/// m/(M·(1 + e)). Between these limits it is the closing speed. `reduced_kg` is M = m1·m2/(m1 +
+/// m2). Non-decreasing in closing speed and delta-v; 0 without delta-v.
 CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                                      double reduced_kg) noexcept;
-
-/// As above; the options have no effect.
-CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                                      double reduced_kg, const HarmOptions& options);
+                                      double reduced_kg, double restitution) noexcept;
 
 /// Kind of the people in or on a body of that kind; false if it has none.
 CRASHRANK_API bool carries_people(BodyKind kind, Person& person) noexcept;
