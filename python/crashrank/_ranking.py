@@ -46,6 +46,7 @@ class RankedCandidate(Record):
     score_estimate: float | None
     numerical_interval: tuple[float, float] | None
     sampling_error: float | None
+    sampling_error_to_next: float | None
     collision_probability: float | None
     people: tuple[Record, ...]
     futures: tuple[Record, ...]

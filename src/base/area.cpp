@@ -83,6 +83,21 @@ Status add_edges(const std::vector<Vector2d>& ring, std::size_t index, const std
   return Success{};
 }
 
+/// Even-odd rule; an edge holds its lower end, so that common edges count for one of two areas.
+bool is_inside(const std::vector<Vector2d>& ring, const Vector2d& point) {
+  bool inside = false;
+  for (std::size_t i = 0, k = ring.size() - 1; i < ring.size(); k = i++) {
+    const Vector2d& a = ring[i];
+    const Vector2d& b = ring[k];
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    // From the lower end to the upper, so that a common edge has the same bits for both areas.
+    const Vector2d& low = a.y() < b.y() ? a : b;
+    const Vector2d& high = a.y() < b.y() ? b : a;
+    if (turn(low, high, point) > 0.0) inside = !inside;
+  }
+  return inside;
+}
+
 }  // namespace
 
 Status check_area(const Area& area, const std::string& place) {
@@ -116,25 +131,16 @@ Status check_area(const Area& area, const std::string& place) {
           "their own");
     }
   }
+  // No two rings touch, so a hole is on one side of the border as a whole.
+  for (std::size_t i = 0; i < area.holes.size(); ++i) {
+    if (is_inside(area.outer, area.holes[i].front())) continue;
+    return refused(ring_name(place, i + 1), "lies outside " + ring_name(place, 0),
+                   "remove it, or move it inside the border of its area");
+  }
   return Success{};
 }
 
 namespace {
-
-/// Even-odd rule; an edge holds its lower end, so that common edges count for one of two areas.
-bool is_inside(const std::vector<Vector2d>& ring, const Vector2d& point) {
-  bool inside = false;
-  for (std::size_t i = 0, k = ring.size() - 1; i < ring.size(); k = i++) {
-    const Vector2d& a = ring[i];
-    const Vector2d& b = ring[k];
-    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
-    // From the lower end to the upper, so that a common edge has the same bits for both areas.
-    const Vector2d& low = a.y() < b.y() ? a : b;
-    const Vector2d& high = a.y() < b.y() ? b : a;
-    if (turn(low, high, point) > 0.0) inside = !inside;
-  }
-  return inside;
-}
 
 double distance2(const std::vector<Vector2d>& ring, const Vector2d& point) {
   double least = std::numeric_limits<double>::infinity();

@@ -42,7 +42,7 @@ std::vector<PersonRisk> mean_risks(const std::vector<CandidateResult>& results,
       if (same == people.end()) {
         people.push_back(risk);
       } else {
-        same->probability += risk.probability;
+        same->probability = std::min(same->probability + risk.probability, 1.0);
       }
     }
   }
@@ -94,6 +94,8 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
   combined.score = score;
   if (summary.method == FutureMethod::sampled) {
     combined.sampling_error = sampling_error(summary.risk, scratch.weighted, summary.sampled);
+    scores.resize(summary.sampled);
+    combined.drawn_scores = std::move(scores);
   }
   combined.sample_scores = std::move(samples);
   combined.futures = std::move(summaries);
@@ -112,7 +114,8 @@ double collision_probability(const Scene& scene, const FutureGroup& group, const
   for (std::size_t f = group.begin; f < group.end; ++f) {
     if (first_hit(scene, scratch, f) != nullptr) sum += futures.probability(f);
   }
-  return sum;
+  // Rounding can make the sum of all probabilities exceed 1.
+  return std::min(sum, 1.0);
 }
 
 }  // namespace crashrank::detail

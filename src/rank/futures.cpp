@@ -39,16 +39,13 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   };
   for (std::size_t i = 0; i < made.actors_; ++i) {
     const ScenarioActor& actor = scenario.actors[i];
-    const std::string place = "actors." + actor.name;
+    const std::string place = actor_place(i, actor.name);
     made.first_plan_.push_back(static_cast<std::uint32_t>(made.plans.size()));
     made.existence_.push_back(actor.existence_probability);
     made.seed_.push_back(seed_of(actor.name));
-    double sum = 0.0;
-    for (const Prediction& prediction : actor.predictions) sum += prediction.probability;
     for (std::size_t k = 0; k < actor.predictions.size(); ++k) {
       const Prediction& prediction = actor.predictions[k];
-      add(i, prediction, prediction.probability / sum,
-          place + ".predictions[" + std::to_string(k) + "]");
+      add(i, prediction, prediction.probability, place + ".predictions[" + std::to_string(k) + "]");
     }
     double present = 1.0;
     std::size_t moved = 0;
@@ -79,20 +76,52 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   summary.risk = scenario.risk;
   summary.sampled = std::max<std::size_t>(sampled, 1);
   summary.has_state_errors = has_errors(scenario);
-  if (!scenario.futures.empty()) {
-    summary.combinations = static_cast<double>(scenario.futures.size());
-    made.read_joint(scenario);
-  } else {
-    summary.combinations = made.count_combinations();
-  }
+  made.choices_.prepare(made.first_plan_, made.existence_);
+  if (!scenario.futures.empty()) made.read_joint(scenario);
+  made.update_choices();
   made.strata_.prepare(summary.sampled);
   if (summary.has_state_errors) made.read_errors(scenario);
-  if (made.can_leave_out()) {
-    made.probability_.reserve(max_combinations);
-    made.plan_of_.reserve(max_combinations * made.actors_);
-  }
+  made.reserve();
   made.list_futures();
   return made;
+}
+
+void Futures::reserve() {
+  constexpr auto listed = static_cast<double>(max_combinations);
+  const std::size_t drawn = summary.sampled + 1;
+  const double combinations = choices_.most_combinations();
+  if (summary.has_state_errors) {
+    max_future_count_ = drawn;
+  } else if (is_joint()) {
+    max_future_count_ = joint_.written();
+  } else {
+    max_future_count_ = combinations <= listed ? static_cast<std::size_t>(combinations)
+                                               : std::max(max_combinations, drawn);
+  }
+  probability_.reserve(max_future_count_);
+  plan_of_.reserve(max_future_count_ * actors_);
+  followed_.reserve(plans.size());
+}
+
+bool Futures::update_choices() {
+  bool changed = choices_.update(plans);
+  if (is_joint()) changed = joint_.update(choices_) || changed;
+  double combinations = 1.0;
+  for (std::size_t i = 0; i < actors_; ++i) {
+    constexpr double countable = 1e300;
+    combinations = std::min(combinations * static_cast<double>(choices_.count(i)), countable);
+  }
+  summary.combinations = is_joint() ? static_cast<double>(joint_.size()) : combinations;
+  return changed;
+}
+
+void Futures::update_motions() {
+  if (update_choices()) {
+    std::fill(left_out_.begin(), left_out_.end(), char{0});
+    summary.left_out = 0;
+    list_futures();
+  }
+  displace_plans();
 }
 
 /// Lists all futures, or draws a sample if there are too many.
@@ -124,7 +153,7 @@ double Futures::count_combinations() const {
 }
 
 bool Futures::can_leave_out() const noexcept {
-  return !is_joint() && !summary.has_state_errors && summary.combinations > 1.0;
+  return !is_joint() && !summary.has_state_errors && choices_.most_combinations() > 1.0;
 }
 
 bool Futures::leave_out_unreached(const std::vector<char>& reached) {
@@ -132,7 +161,7 @@ bool Futures::leave_out_unreached(const std::vector<char>& reached) {
   bool same = true;
   summary.left_out = 0;
   for (std::size_t i = 0; i < actors_; ++i) {
-    const char out = reached[i] == 0 && choices(i) > 1 ? 1 : 0;
+    const char out = reached[i] == 0 && choices_.count(i) > 1 ? 1 : 0;
     same = same && out == left_out_[i];
     left_out_[i] = out;
     summary.left_out += static_cast<std::size_t>(out);
@@ -170,55 +199,33 @@ void Futures::mark_followed_plans() {
   }
 }
 
-std::size_t Futures::choices(std::size_t actor) const {
-  const std::size_t count = first_plan_[actor + 1] - first_plan_[actor];
-  if (existence_[actor] == 0.0) return 1;
-  return existence_[actor] < 1.0 ? count + 1 : count;
-}
-
-std::uint32_t Futures::plan_of_choice(std::size_t actor, std::size_t choice) const {
-  const auto plan = first_plan_[actor] + static_cast<std::uint32_t>(choice);
-  return existence_[actor] == 0.0 || plan >= first_plan_[actor + 1] ? absent : plan;
-}
-
-double Futures::choice_probability(std::size_t actor, std::size_t choice) const {
-  const std::uint32_t plan = plan_of_choice(actor, choice);
-  return plan == absent ? 1.0 - existence_[actor] : existence_[actor] * plans[plan].probability;
-}
-
-std::size_t Futures::likeliest_choice(std::size_t actor) const {
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < choices(actor); ++k) {
-    if (choice_probability(actor, k) > choice_probability(actor, best)) best = k;
-  }
-  return best;
-}
-
 bool Futures::is_certain(std::size_t actor) const {
   return existence_[actor] == 1.0 && first_plan_[actor + 1] - first_plan_[actor] == 1 &&
          (displaced_.empty() || displaced_[actor] == not_displaced);
 }
 
 void Futures::read_joint(const Scenario& scenario) {
-  double sum = 0.0;
-  for (const JointFuture& future : scenario.futures) sum += future.probability;
   // The plans of an actor are ordered: one for each future that lists it, then its own motion.
   std::vector<std::uint32_t> next(first_plan_.begin(), first_plan_.end() - 1);
+  std::vector<std::uint32_t> followed;
   for (const JointFuture& future : scenario.futures) {
-    joint_.push_back(future.probability / sum);
-    const std::size_t row = joint_plans_.size();
-    for (std::size_t i = 0; i < actors_; ++i) joint_plans_.push_back(first_plan_[i + 1] - 1);
+    const std::size_t row = followed.size();
+    for (std::size_t i = 0; i < actors_; ++i) followed.push_back(first_plan_[i + 1] - 1);
     for (const FutureMotion& moved : future.motions)
-      joint_plans_[row + moved.actor] = next[moved.actor]++;
-    for (const std::size_t actor : future.absent) joint_plans_[row + actor] = absent;
+      followed[row + moved.actor] = next[moved.actor]++;
+    for (const std::size_t actor : future.absent) followed[row + actor] = absent;
   }
+  joint_.prepare(scenario, std::move(followed));
 }
 
 void Futures::add_joint() {
-  probability_ = joint_;
-  plan_of_ = joint_plans_;
-  likeliest_ =
-      static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin());
+  probability_.clear();
+  plan_of_.clear();
+  for (std::size_t f = 0; f < joint_.size(); ++f) {
+    probability_.push_back(joint_.probability(f));
+    for (std::size_t i = 0; i < actors_; ++i) plan_of_.push_back(joint_.plan(choices_, f, i));
+  }
+  likeliest_ = joint_.likeliest();
   mark_followed_plans();
 }
 
@@ -233,11 +240,11 @@ void Futures::add_combinations() {
     std::size_t rest = f;
     for (std::size_t i = 0; i < actors_; ++i) {
       const bool is_out = left_out_[i] != 0;
-      const std::size_t choice = is_out ? likeliest_choice(i) : rest % choices(i);
+      const std::size_t choice = is_out ? choices_.likeliest(i) : rest % choices_.count(i);
       rest /= combined_choices(i);
-      if (!is_out) probability *= choice_probability(i, choice);
-      is_likeliest = is_likeliest && choice == likeliest_choice(i);
-      plan_of_.push_back(plan_of_choice(i, choice));
+      if (!is_out) probability *= choices_.probability(i, choice);
+      is_likeliest = is_likeliest && choice == choices_.likeliest(i);
+      plan_of_.push_back(choices_.plan(i, choice));
     }
     probability_.push_back(probability);
     if (is_likeliest) likeliest_ = f;
@@ -281,7 +288,7 @@ void Futures::add_sample() {
   } else {
     for (std::size_t i = 0; i < actors_; ++i) {
       draw(i);
-      plan_of_[count * actors_ + i] = plan_of_choice(i, likeliest_choice(i));
+      plan_of_[count * actors_ + i] = choices_.plan(i, choices_.likeliest(i));
     }
   }
   mark_followed_plans();
@@ -316,31 +323,31 @@ void Futures::draw(std::size_t actor) {
   for (std::size_t f = 0; f < shares.size(); ++f) {
     double cumulative = 0.0;
     std::size_t choice = 0;
-    for (; choice + 1 < choices(actor); ++choice) {
-      cumulative += choice_probability(actor, choice);
+    for (; choice + 1 < choices_.count(actor); ++choice) {
+      cumulative += choices_.probability(actor, choice);
       if (shares[f] < cumulative) break;
     }
-    plan_of_[f * actors_ + actor] = plan_of_choice(actor, choice);
+    plan_of_[f * actors_ + actor] = choices_.plan(actor, choice);
   }
 }
 
 void Futures::draw_joint() {
   const auto follow = [&](std::size_t future, std::size_t joint) {
-    std::copy_n(joint_plans_.begin() + static_cast<std::ptrdiff_t>(joint * actors_), actors_,
-                plan_of_.begin() + static_cast<std::ptrdiff_t>(future * actors_));
+    for (std::size_t i = 0; i < actors_; ++i) {
+      plan_of_[future * actors_ + i] = joint_.plan(choices_, joint, i);
+    }
   };
   const std::vector<double>& shares = strata_.draw(reserved_seed("futures"));
   for (std::size_t f = 0; f < shares.size(); ++f) {
     double cumulative = 0.0;
     std::size_t joint = 0;
     for (; joint + 1 < joint_.size(); ++joint) {
-      cumulative += joint_[joint];
+      cumulative += joint_.probability(joint);
       if (shares[f] < cumulative) break;
     }
     follow(f, joint);
   }
-  follow(likeliest_,
-         static_cast<std::size_t>(std::max_element(joint_.begin(), joint_.end()) - joint_.begin()));
+  follow(likeliest_, joint_.likeliest());
 }
 
 void Futures::split(std::size_t future, const std::vector<char>& relevant,
@@ -366,6 +373,7 @@ void Futures::split(std::size_t future, const std::vector<char>& relevant,
 
 void Futures::set_probabilities(View<const double> probabilities) {
   for (std::size_t p = 0; p < own_plans_; ++p) plans[p].probability = probabilities[p];
+  update_choices();
   list_futures();
 }
 

@@ -5,6 +5,7 @@
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
+#include "rank/choices.hpp"
 #include "rank/strata.hpp"
 
 #include <algorithm>
@@ -14,14 +15,6 @@
 #include <vector>
 
 namespace crashrank::detail {
-
-/// A motion that an actor follows in some futures.
-struct Plan {
-  std::size_t actor = 0;
-  Motion motion;
-  /// probability that the actor follows it, given that it exists; unused for joint futures
-  double probability = 1.0;
-};
 
 /// Futures [begin, end) in which the ego has the same motion.
 struct FutureGroup {
@@ -34,12 +27,13 @@ struct FutureGroup {
 /// The futures in which candidates are evaluated, the same for all candidates. A future assigns to
 /// every actor a plan or absence, and to the ego the error of its initial state.
 ///
+/// Plans of an actor with the same motion count as one, see `Choices`: futures follow one of them.
 /// The plans of the scenario come first. They are followed by displaced plans: for each drawn
 /// future and each actor whose perceived state has errors, the plan that it follows in that future,
 /// displaced by the drawn error.
 class Futures {
 public:
-  static constexpr std::uint32_t absent = static_cast<std::uint32_t>(-1);
+  static constexpr std::uint32_t absent = Choices::absent;
   /// Combinations of independent predictions are evaluated exhaustively up to this number, and
   /// sampled above it.
   static constexpr std::size_t max_combinations = 1024;
@@ -63,6 +57,9 @@ public:
   bool is_followed(std::size_t plan) const { return followed_[plan] != 0; }
   /// Number of plans of the scenario; the plans behind them are displaced.
   std::size_t own_plans() const noexcept { return own_plans_; }
+  /// Probability that the actor of a plan of the scenario follows it, given that it exists.
+  /// Without meaning for joint futures.
+  double plan_probability(std::size_t plan) const { return choices_.plan_probability(plans[plan]); }
   bool is_joint() const noexcept { return !joint_.empty(); }
   /// Returns true if the initial state of the ego has errors, which differ between the drawn
   /// futures.
@@ -77,7 +74,8 @@ public:
   /// Smallest and largest error of the speed of the ego over all futures, m/s.
   const std::array<double, 2>& ego_speed_errors() const noexcept { return ego_speed_errors_; }
   /// Index of the likeliest future: each actor has its likeliest choice, without errors. Of joint
-  /// futures the most probable one, the first of equal ones.
+  /// futures the most probable one. Of equally probable ones the first in the order of their
+  /// motions, see `Choices` and `JointChoices`.
   std::size_t likeliest() const noexcept { return likeliest_; }
   /// Returns true if an actor exists in every future and has one plan without errors.
   bool is_certain(std::size_t actor) const;
@@ -95,10 +93,8 @@ public:
   /// Returns true if a relevant plan belongs to an actor that was left out. Then the results hold
   /// only for the likeliest choice of that actor and must be computed again without leaving it out.
   bool needs_left_out(const std::vector<char>& relevant) const;
-  /// Upper bound on the number of futures, for any set of actors that are left out.
-  std::size_t max_future_count() const noexcept {
-    return can_leave_out() ? std::max(size(), max_combinations) : size();
-  }
+  /// Upper bound on the number of futures, for any set of actors that are left out and any motions.
+  std::size_t max_future_count() const noexcept { return max_future_count_; }
 
   /// Partitions the sorted list `futures` by outcome: futures with the same relevant plans as
   /// `future` stay, the others are appended to `others`. `relevant` is indexed by plan.
@@ -109,8 +105,9 @@ public:
   /// again. Not for joint futures. Does not allocate.
   void set_probabilities(View<const double> probabilities);
 
-  /// Computes the displaced plans from the plans of the scenario. Allocates only for timed motions.
-  void displace_plans();
+  /// Updates the futures after a change of `plans`: which motions are equal, and the displaced
+  /// plans. Allocates only for timed motions.
+  void update_motions();
 
   /// plans of the scenario ordered by actor, followed by the displaced plans
   std::vector<Plan> plans;
@@ -124,20 +121,19 @@ private:
   void read_errors(const Scenario& scenario);
   void mark_followed_plans();
   void list_futures();
+  void reserve();
   void add_combinations();
   void add_sample();
   void draw(std::size_t actor);
   void draw_joint();
-  /// Probability of a choice of an actor: its plans in order, then absence.
-  double choice_probability(std::size_t actor, std::size_t choice) const;
-  std::size_t choices(std::size_t actor) const;
+  /// Compares the motions of all plans. Returns true if the choices changed.
+  bool update_choices();
+  void displace_plans();
   /// Number of choices that are combined: 1, the likeliest, if the actor is left out.
   std::size_t combined_choices(std::size_t actor) const {
-    return left_out_[actor] != 0 ? 1 : choices(actor);
+    return left_out_[actor] != 0 ? 1 : choices_.count(actor);
   }
   double count_combinations() const;
-  std::uint32_t plan_of_choice(std::size_t actor, std::size_t choice) const;
-  std::size_t likeliest_choice(std::size_t actor) const;
 
   std::size_t actors_ = 0;
   std::vector<std::uint32_t> first_plan_;  ///< by actor, plus the end
@@ -148,8 +144,9 @@ private:
   std::vector<char> followed_;             ///< by plan
   std::vector<char> left_out_;             ///< by actor
   std::size_t own_plans_ = 0;
-  std::vector<double> joint_;               ///< probability of each joint future
-  std::vector<std::uint32_t> joint_plans_;  ///< by joint future and actor
+  std::size_t max_future_count_ = 1;
+  Choices choices_;
+  JointChoices joint_;
   Strata strata_;
   // The members below are used if states have errors.
   StateUncertainty ego_uncertainty_;

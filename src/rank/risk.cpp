@@ -38,6 +38,21 @@ double worst_of(const std::vector<WeightedScore>& scores) {
   return worst;
 }
 
+/// Whether the scores of so many drawn futures say how much another sample would change the risk.
+bool has_sampling_error(const RiskMeasure& risk, std::size_t sampled) {
+  const auto count = static_cast<double>(sampled);
+  if (!(count > 1.0)) return false;
+  constexpr double least_in_tail = 10.0;
+  return risk.kind == RiskKind::expected ||
+         (risk.kind == RiskKind::cvar && !(count * (1.0 - risk.level) < least_in_tail));
+}
+
+/// What the score of a future adds to the mean, or to the mean of the tail above the quantile
+/// `from`.
+double contribution(const RiskMeasure& risk, double score, double from) {
+  return risk.kind == RiskKind::cvar ? std::max(score - from, 0.0) / (1.0 - risk.level) : score;
+}
+
 }  // namespace
 
 double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores) {
@@ -67,26 +82,51 @@ double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores) {
 
 std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
                                      std::size_t sampled) {
-  if (risk.kind != RiskKind::expected && risk.kind != RiskKind::cvar) return std::nullopt;
+  if (!has_sampling_error(risk, sampled)) return std::nullopt;
   const bool tail = risk.kind == RiskKind::cvar;
-  constexpr double least_in_tail = 10.0;
   const auto count = static_cast<double>(sampled);
-  if (tail && count * (1.0 - risk.level) < least_in_tail) return std::nullopt;
   const double from = tail ? quantile_of(risk.level, scores) : 0.0;
-  const auto value = [&](const WeightedScore& s) {
-    return tail ? std::max(s.score - from, 0.0) / (1.0 - risk.level) : s.score;
-  };
+  const auto value = [&](const WeightedScore& s) { return contribution(risk, s.score, from); };
   // Equal scores say nothing about the variance of futures that were not drawn.
   double least = worst_of(scores);
   for (const WeightedScore& s : scores) {
     if (s.probability > 0.0) least = std::min(least, s.score);
   }
-  if (!(count > 1.0) || least == worst_of(scores)) return std::nullopt;
+  if (least == worst_of(scores)) return std::nullopt;
   double mean = 0.0;
   for (const WeightedScore& s : scores) mean += s.probability * value(s);
   double variance = 0.0;
   for (const WeightedScore& s : scores) {
     variance += s.probability * (value(s) - mean) * (value(s) - mean);
+  }
+  return std::sqrt(variance / (count - 1.0));
+}
+
+std::optional<double> difference_error(const RiskMeasure& risk, const std::vector<double>& a,
+                                       const std::vector<double>& b) {
+  bool alike = true;
+  for (std::size_t f = 1; f < a.size(); ++f) alike = alike && a[f] - b[f] == a[0] - b[0];
+  if (alike) return 0.0;
+  if (!has_sampling_error(risk, a.size())) return std::nullopt;
+  const auto quantile = [&risk](const std::vector<double>& scores) {
+    if (risk.kind != RiskKind::cvar) return 0.0;
+    std::vector<WeightedScore> weighted;
+    for (const double score : scores) {
+      weighted.push_back({score, 1.0 / static_cast<double>(scores.size())});
+    }
+    return quantile_of(risk.level, weighted);
+  };
+  const double from_a = quantile(a);
+  const double from_b = quantile(b);
+  const auto difference = [&](std::size_t f) {
+    return contribution(risk, a[f], from_a) - contribution(risk, b[f], from_b);
+  };
+  const auto count = static_cast<double>(a.size());
+  double mean = 0.0;
+  for (std::size_t f = 0; f < a.size(); ++f) mean += difference(f) / count;
+  double variance = 0.0;
+  for (std::size_t f = 0; f < a.size(); ++f) {
+    variance += (difference(f) - mean) * (difference(f) - mean) / count;
   }
   return std::sqrt(variance / (count - 1.0));
 }

@@ -25,4 +25,10 @@ double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores);
 std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
                                      std::size_t sampled);
 
+/// Standard error of the difference of two values of `risk_of`, each over the scores in the same
+/// futures drawn with equal probability: 0 if all scores differ by the same number. Absent where
+/// the error of one of them is, for reasons other than equal scores.
+std::optional<double> difference_error(const RiskMeasure& risk, const std::vector<double>& a,
+                                       const std::vector<double>& b);
+
 }  // namespace crashrank::detail

@@ -5,6 +5,7 @@
 #include "crashrank/internal/rank/harm.hpp"
 #include "rank/join_fixed.hpp"
 #include "rank/measure_table.hpp"
+#include "scenario/motion_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +93,7 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
     if (scene.actors[i].vehicle.movable() || !actor.perception.any()) continue;
     return Error{ErrorCode::bad_input,
                  {},
-                 "actors." + actor.name + ".perception",
+                 actor_place(i, actor.name) + ".perception",
                  "belongs to a fixed body",
                  "state ego.uncertainty in its place, or give its model a mass"};
   }
@@ -102,7 +103,7 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
     if (plans[i - 1].actor != actor || scene.actors[actor].vehicle.movable()) continue;
     return Error{ErrorCode::bad_input,
                  {},
-                 "actors." + scenario.actors[actor].name,
+                 actor_place(actor, scenario.actors[actor].name),
                  "has several motions, but it is fixed",
                  "give it one pose, or its model a mass"};
   }

@@ -95,6 +95,11 @@ SimulatedOutcome* same_without_contact(const Scene& scene,
   return same != outcomes.end() ? &*same : nullptr;
 }
 
+/// Adds the probability of a future to its outcome. Rounding can make a sum exceed 1.
+void add_probability(double probability, FutureOutcome& outcome) {
+  outcome.probability = std::min(outcome.probability + probability, 1.0);
+}
+
 /// Simulates a candidate in the futures of a group, beginning with future `first`. Returns false if
 /// it was stopped.
 bool simulate_group(const Scene& scene, const Candidate& candidate, std::size_t first,
@@ -112,7 +117,7 @@ bool simulate_group(const Scene& scene, const Candidate& candidate, std::size_t 
     if (SimulatedOutcome* const same = same_without_contact(scene, leaving, found.outcomes)) {
       same->futures.push_back(static_cast<std::uint32_t>(first));
       ++same->summary.futures;
-      same->summary.probability += futures.probability(first);
+      add_probability(futures.probability(first), same->summary);
       return true;
     }
   }
@@ -136,7 +141,9 @@ bool simulate_group(const Scene& scene, const Candidate& candidate, std::size_t 
     // Results report damage for the likeliest future only; for the others it is evaluated only if
     // it is the score.
     if (!each.summary.is_likeliest && !scored_by_damage(scene.measure)) each.plans.clear();
-    for (const std::uint32_t f : scratch.same) each.summary.probability += futures.probability(f);
+    for (const std::uint32_t f : scratch.same) {
+      add_probability(futures.probability(f), each.summary);
+    }
   }
   return true;
 }

@@ -1,4 +1,5 @@
 #include "rank/order.hpp"
+#include "rank/risk.hpp"
 
 #include <algorithm>
 #include <array>
@@ -103,6 +104,26 @@ void places_by_intervals(RankResult& result) {
   }
 }
 
+/// Compares the scores of neighbours in the drawn futures: both follow the same sample, so errors
+/// that affect both alike do not count.
+void compare_samples(RankResult& result) {
+  std::vector<CandidateResult>& ranking = result.ranking;
+  for (std::size_t i = 0; i + 1 < ranking.size(); ++i) {
+    CandidateResult& c = ranking[i];
+    const CandidateResult& next = ranking[i + 1];
+    if (c.drawn_scores.empty() || next.drawn_scores.empty()) continue;
+    c.sampling_error_to_next =
+        difference_error(result.futures.risk, c.drawn_scores, next.drawn_scores);
+    const bool by_score =
+        c.place != next.place && tier_of(c, result.infeasible) == tier_of(next, result.infeasible);
+    if (!by_score || c.sampling_error_to_next == 0.0) continue;
+    c.within_sampling_error =
+        !c.sampling_error_to_next ||
+        *next.score - *c.score <= separable_errors * *c.sampling_error_to_next;
+    c.separable = c.separable && !c.within_sampling_error;
+  }
+}
+
 }  // namespace
 
 void compute_stability(RankResult& result) {
@@ -120,6 +141,7 @@ void compute_stability(RankResult& result) {
     ranking[i].separable = is_certainly_before(ranking[i], ranking[i + 1], result.infeasible) ||
                            is_certainly_before(ranking[i + 1], ranking[i], result.infeasible);
   }
+  compare_samples(result);
   if (!result.complete) {
     places_by_intervals(result);
     return;

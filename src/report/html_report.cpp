@@ -149,8 +149,11 @@ private:
           "<p class='note' id='separability'>Every place is separable from the next: no order "
           "reverses "
           "in more than {:.0f} % of {} samples of what is not known, nor with half the steps "
-          "or 1 mm aside.</p>\n",
-          100.0 * separable_share, range_sample_count(result_));
+          "or 1 mm aside{}.</p>\n",
+          100.0 * separable_share, range_sample_count(result_),
+          result_.futures.method == FutureMethod::sampled
+              ? ", and every difference exceeds two standard errors of the sample of futures"
+              : "");
     }
     out_ += "</section>\n";
   }

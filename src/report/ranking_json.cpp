@@ -323,7 +323,8 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"collision_probability", searched ? Json(ranked.collision_probability) : Json(nullptr)},
       {"people", people_json(scenario, ranked)},
       {"futures", futures_json(scenario, ranked)},
-      {"sampling_error", ranked.sampling_error ? Json(*ranked.sampling_error) : Json(nullptr)},
+      {"sampling_error", optional_json(ranked.sampling_error)},
+      {"sampling_error_to_next", optional_json(ranked.sampling_error_to_next)},
       {"collides", searched || ranked.collides ? Json(ranked.collides) : Json(nullptr)},
       {"contacts", std::move(contacts)},
       {"crowded", ranked.crowded},
@@ -415,7 +416,8 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
     if (ranked.separable || ranked.place == next.place) continue;
     not_separable.push_back({{"ranks", Json::array({ranked.place, next.place})},
                              {"overtaken_share", ranked.overtaken},
-                             {"within_numerical_error", ranked.within_numerical_error}});
+                             {"within_numerical_error", ranked.within_numerical_error},
+                             {"within_sampling_error", ranked.within_sampling_error}});
   }
   const RankWork& work = result.work;
   Json document{{"scenario", scenario.name},

@@ -234,6 +234,8 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
         ". The two are not separable: in {:.0f} % of {} samples of what is not known their order "
         "reverses",
         100.0 * first.overtaken, range_sample_count(result));
+  } else if (!first.separable && first.within_sampling_error) {
+    text += ". The two are not separable: in another sample of futures their order may reverse";
   } else if (!first.separable) {
     text +=
         ". The two are not separable: simulated with half the steps or 1 mm aside, their order may "

@@ -205,6 +205,8 @@ std::vector<std::string> not_separable_words(const RankResult& result, std::size
                             : ranked.overtaken > separable_share
                                 ? fmt::format("the order reverses in {:.0f} % of {} samples",
                                               100.0 * ranked.overtaken, range_sample_count(result))
+                            : ranked.within_sampling_error
+                                ? std::string("another sample of futures may reverse the order")
                                 : std::string("half the steps or 1 mm aside may turn their order");
     words.push_back(
         fmt::format("rank {} and {} not separable ({})", ranked.place, next.place, why));

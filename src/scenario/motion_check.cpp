@@ -57,6 +57,11 @@ bool begins_at(const Pose& begins, const Pose& ego) {
          trace >= 1.0 + 2.0 * least_cosine;
 }
 
+std::string actor_place(std::size_t index, const std::string& name) {
+  const std::string place = "actors[" + std::to_string(index) + "]";
+  return name.empty() ? place : place + " \"" + name + "\"";
+}
+
 Error refused_motion(std::string place, const char* what, const char* fault) {
   Error error = make_error(ErrorCode::bad_input, std::string(what) + " " + fault,
                            "check what it was made from: its units, its times, its frame");

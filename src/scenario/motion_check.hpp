@@ -4,6 +4,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/motion/motion.hpp"
 
+#include <cstddef>
 #include <string>
 
 namespace crashrank::detail {
@@ -20,6 +21,9 @@ const char* motion_fault(const Motion& motion, double horizon_s);
 /// Whether a manoeuvre that begins at `begins` may be the ego's: within 1 m and 30° of its pose.
 /// What is farther was written in another frame, or for another moment.
 bool begins_at(const Pose& begins, const Pose& ego);
+
+/// An actor as errors name it: its index and, where it has one, its name, as `actors[3] "van"`.
+std::string actor_place(std::size_t index, const std::string& name);
 
 /// The error for a fault of `what` at `place`.
 Error refused_motion(std::string place, const char* what, const char* fault);

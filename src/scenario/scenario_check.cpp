@@ -295,6 +295,12 @@ Status check_names(const Scenario& scenario) {
   Check check;
   check_names(scenario.listed, "candidates.listed", check);
   check_names(scenario.actors, "actors", check);
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    if (scenario.actors[i].name != "ego") continue;
+    check.refuse(ranges::indexed("actors", i) + ".name",
+                 "is 'ego', which is the deciding vehicle wherever bodies are named",
+                 "choose another name");
+  }
   return check.status;
 }
 

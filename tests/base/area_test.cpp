@@ -112,6 +112,10 @@ TEST(Area, RefusesWhatIsNoArea) {
       {"holes in each other",
        {square, {{{1, 1}, {3, 1}, {3, 3}}, {{2, 1}, {3.5, 2}, {2, 3}}}},
        "road.holes[0]"},
+      {"a hole outside",
+       {square, {{{1, 1}, {3, 1}, {3, 3}}, {{5, 1}, {6, 1}, {6, 2}}}},
+       "road.holes[1]"},
+      {"a hole around all", {square, {{{-1, -1}, {5, -1}, {5, 5}, {-1, 5}}}}, "road.holes[0]"},
       {"no number", {{{0, 0}, {4, NAN}, {4, 4}}, {}}, "road.outer"},
   };
   for (const Unsound& each : all) {

@@ -130,7 +130,7 @@ TEST(Futures, AFixedBodyHasOneMotion) {
   const Result<RankResult> result = rank(scene.scenario, scene.models);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::bad_input);
-  EXPECT_EQ(result.error().place, "actors.wall");
+  EXPECT_EQ(result.error().place, "actors[0] \"wall\"");
 }
 
 }  // namespace

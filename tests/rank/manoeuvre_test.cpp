@@ -2,6 +2,7 @@
 #include "oracle/random.hpp"
 #include "rank/scenes.hpp"
 
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/scenario/candidate.hpp"
 
 #include <gtest/gtest.h>
@@ -238,6 +239,15 @@ TEST(Infeasible, CountsAsFarAsThePlanIsFollowed) {
   const RankResult near = scene.ranked();
   EXPECT_TRUE(of(near, "swerves").collides);
   EXPECT_TRUE(of(near, "swerves").feasible);
+  // In one future, however improbable, nothing stops it.
+  for (ScenarioActor& actor : scene.scenario.actors) actor.existence_probability = 1.0 - 1e-9;
+  const RankResult rare = scene.ranked();
+  EXPECT_TRUE(of(rare, "swerves").collides);
+  EXPECT_FALSE(of(rare, "swerves").feasible);
+  const Result<RankResult> within =
+      rank_within(scene.scenario, scene.models, RankOptions{}, RankBudget{});
+  ASSERT_TRUE(within.ok());
+  EXPECT_FALSE(of(*within, "swerves").feasible);
   scene.scenario.actors.clear();
   const RankResult far = scene.ranked();
   EXPECT_FALSE(of(far, "swerves").feasible);

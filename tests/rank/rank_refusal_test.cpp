@@ -67,7 +67,7 @@ TEST(Rank, ImpossibleMotionsOfActorsAreRefusedInEveryForm) {
   actor.poses = {{0.0, actor.pose}, {0.1, away}};
   Result<RankResult> result = rank(scene.scenario, scene.models);
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().place, "actors." + actor.name);
+  EXPECT_EQ(result.error().place, "actors[0] \"wall\"");
   EXPECT_EQ(result.error().reason, "its motion is faster than 300 m/s");
   actor.poses[1].time_s = 2.0;
   EXPECT_TRUE(rank(scene.scenario, scene.models).ok());
@@ -87,6 +87,21 @@ TEST(Rank, DuplicateNamesAreRefusedAndEmptyOnesAreNot) {
   EXPECT_EQ(result.error().place, "actors[1].name");
   for (ScenarioActor& actor : scene.scenario.actors) actor.name.clear();
   EXPECT_TRUE(rank(scene.scenario, scene.models).ok());
+}
+
+TEST(Rank, AnActorIsNotNamedAsTheEgoIsInAnswers) {
+  Scene scene = car_and_wall();
+  scene.add_candidate("keep going", 0.0);
+  scene.add_actor("ego", 0, 20.0, 30.0);
+  const Result<RankResult> result = rank(scene.scenario, scene.models);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, ErrorCode::bad_input);
+  EXPECT_EQ(result.error().place, "actors[1].name");
+  EXPECT_FALSE(result.error().remedy.empty());
+  for (const char* const other : {"Ego", "ego 2", "the ego"}) {
+    scene.scenario.actors.back().name = other;
+    EXPECT_TRUE(rank(scene.scenario, scene.models).ok()) << other;
+  }
 }
 
 TEST(Rank, NumbersOutOfRangeAreRefused) {
@@ -123,7 +138,7 @@ TEST(Rank, NumbersOutOfRangeAreRefused) {
             "candidates.grid");
   EXPECT_EQ(place_after([](Scenario& s) {
               s.actors[0].poses = {{1.0, {}}, {0.5, {}}};
-            }).rfind("actors.wall.poses", 0),
+            }).rfind("actors[0] \"wall\".poses", 0),
             0U);
 }
 

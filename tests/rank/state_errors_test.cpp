@@ -146,8 +146,26 @@ Scene uncertain_traffic(std::uint64_t seed) {
   return scene;
 }
 
+/// The scenario with its alternatives in the order in which they are drawn: the faster one first,
+/// then the one that turns further to the left.
+Scenario sorted(Scenario scenario) {
+  const auto precedes = [](const ActorMotion& p, const ActorMotion& q) {
+    return p.speed_mps != q.speed_mps ? p.speed_mps > q.speed_mps
+                                      : p.yaw_rate_radps > q.yaw_rate_radps;
+  };
+  for (ScenarioActor& actor : scenario.actors) {
+    std::sort(actor.predictions.begin(), actor.predictions.end(), precedes);
+  }
+  std::sort(scenario.futures.begin(), scenario.futures.end(),
+            [&](const JointFuture& p, const JointFuture& q) {
+              return precedes(p.motions.front().motion, q.motions.front().motion);
+            });
+  return scenario;
+}
+
 /// The scenario of each drawn future, without uncertainty.
-std::vector<Scenario> single_scenarios(const Scenario& scenario) {
+std::vector<Scenario> single_scenarios(const Scenario& written) {
+  const Scenario scenario = sorted(written);
   std::vector<Scenario> singles(sampled, likeliest_future(scenario));
   const std::vector<StateError> ego = drawn_of_ego(scenario, sampled);
   detail::Strata strata;
@@ -399,7 +417,7 @@ TEST(StateErrors, BadDeviationsAreRefusedByKey) {
   walls.scenario.actors.front().perception.position_m = 0.1;
   const Result<RankResult> result = rank(walls.scenario, walls.models);
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().place, "actors.left.perception");
+  EXPECT_EQ(result.error().place, "actors[0] \"left\".perception");
   EXPECT_NE(result.error().remedy.find("ego.uncertainty"), std::string::npos);
 }
 

@@ -19,7 +19,8 @@ struct Area {
 };
 
 /// Checks that an area is valid: rings of at least three finite corners, of which no two edges of
-/// the area cross or touch except neighbours in their common corner. `place` names it in errors.
+/// the area cross or touch except neighbours in their common corner, and holes inside the outer
+/// one. `place` names it in errors.
 /// Errors: bad_input naming the ring and its edges. O(corners²).
 CRASHRANK_API Status check_area(const Area& area, const std::string& place);
 

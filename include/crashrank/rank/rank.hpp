@@ -325,6 +325,19 @@ struct CandidateResult {
   /// drawn futures in its tail, and where the drawn scores do not differ: futures that were not
   /// drawn may.
   std::optional<double> sampling_error;
+  /// With a sample of futures: the score in each drawn future; the futures are the same for all
+  /// candidates. Empty without a sample and where the score is not known.
+  std::vector<double> drawn_scores;
+  /// With a sample of futures: standard error of the difference of the scores of this candidate and
+  /// the next in the ranking, from their differences in the drawn futures, as if these were drawn
+  /// independently. 0 if all drawn futures differ alike. Absent for the last candidate, where a
+  /// score is not known, without a sample, and where `sampling_error` cannot be computed for the
+  /// risk measure.
+  std::optional<double> sampling_error_to_next;
+  /// Another sample of futures can reverse the order of this candidate and the next: their scores
+  /// differ by at most `separable_errors` times `sampling_error_to_next`, or that error is unknown.
+  /// False without a sample, between candidates that are tied, and if only one of them is feasible.
+  bool within_sampling_error = false;
   /// Place in the ranking, from 1. Candidates that are tied share it: 1, 2, 2, 4.
   std::size_t place = 1;
   /// Number of candidates in that place, this one included; 1: not tied. They are neighbours in
@@ -343,8 +356,8 @@ struct CandidateResult {
   /// sample by sample. False without numerical samples, and between candidates that are tied.
   bool within_numerical_error = false;
   /// The scores of this candidate and the next in the ranking differ (where one is not known: their
-  /// intervals are disjoint), not `within_numerical_error`, and `overtaken` is at most
-  /// `separable_share`. Never between candidates that are tied.
+  /// intervals are disjoint), neither `within_numerical_error` nor `within_sampling_error`, and
+  /// `overtaken` is at most `separable_share`. Never between candidates that are tied.
   bool separable = true;
 };
 
@@ -352,6 +365,9 @@ struct CandidateResult {
 /// applies to all candidates alike, so errors that affect both in the same way do not count, as
 /// they would if intervals were compared.
 inline constexpr double separable_share = 0.05;
+/// With a sample of futures, scores that differ by at most this number of standard errors of their
+/// difference are not separable.
+inline constexpr double separable_errors = 2.0;
 
 /// Properties of a body that the ranking used.
 struct RankedBody {

@@ -154,7 +154,7 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
     }
     // Nothing can fail from here on.
     for (std::size_t i = 0; i < actors.size(); ++i) std::swap(plans[i].motion, new_motions[i]);
-    scene.futures.displace_plans();
+    scene.futures.update_motions();
     scene.ego_start = ego_start;
     scene.limits.speed_mps = ego ? ego->speed_mps : std::numeric_limits<double>::quiet_NaN();
     scene.limits.yaw_rate_radps = ego ? ego->yaw_rate_radps : 0.0;
@@ -180,7 +180,7 @@ std::vector<Ranker::Plan> Ranker::plans() const {
   std::vector<Plan> plans;
   const detail::Futures& futures = state_->scene.futures;
   for (std::size_t i = 0; i < futures.own_plans(); ++i) {
-    plans.push_back({futures.plans[i].actor, futures.plans[i].probability});
+    plans.push_back({futures.plans[i].actor, futures.plan_probability(i)});
   }
   return plans;
 }
