@@ -89,9 +89,11 @@ bool has_cage(BodyKind kind) noexcept {
 }
 
 double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                        double reduced_kg, double restitution) noexcept {
-  const double full_hit_mps = reduced_kg > 0.0 ? delta_v_mps * mass_kg / reduced_kg : 0.0;
-  return std::clamp(closing_speed_mps, full_hit_mps / (1.0 + restitution), full_hit_mps);
+                        double reduced_kg, double largest_reduced_kg, double restitution) noexcept {
+  if (!(reduced_kg > 0.0) || !(largest_reduced_kg > 0.0)) return 0.0;
+  const double full_hit_mps = delta_v_mps * mass_kg / reduced_kg;
+  const double free_impact_mps = delta_v_mps * mass_kg / largest_reduced_kg / (1.0 + restitution);
+  return std::max(std::min(full_hit_mps, closing_speed_mps), free_impact_mps);
 }
 
 double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept {

@@ -19,7 +19,7 @@ double reduced_mass_kg(const Body& a, const Body& b) {
 double struck_speed_of(const Body& body, const BodyEvent& event) {
   if (!body.vehicle.movable()) return event.closing_mps;
   return struck_speed_mps(event.closing_mps, event.size_mps(), body.mass_kg, event.reduced_kg,
-                          event.restitution);
+                          event.largest_reduced_kg, event.restitution);
 }
 
 /// Adds one side of a contact to an event.
@@ -40,10 +40,12 @@ void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect&
     event.intruded_m += own.intrusion_m;
     event.intrusion_m = std::max(event.intrusion_m, event.intruded_m);
   }
+  const double reduced_kg = reduced_mass_kg(body_of(scene, own.body), other);
+  event.largest_reduced_kg = std::max(event.largest_reduced_kg, reduced_kg);
+  event.restitution = std::max(event.restitution, effect.restitution);
   if (effect.closing_mps < event.closing_mps) return;
   event.closing_mps = effect.closing_mps;
-  event.reduced_kg = reduced_mass_kg(body_of(scene, own.body), other);
-  event.restitution = effect.restitution;
+  event.reduced_kg = reduced_kg;
   event.leading_edge_m = other.vehicle.leading_edge_m;
 }
 
@@ -99,6 +101,8 @@ BodyEvent BodyEvent::scaled(double share) const {
   event.impulse_ns *= share;
   event.yaw_radps *= share;
   event.closing_mps *= share;
+  event.largest_reduced_kg *= share;
+  event.restitution *= share;
   event.intrusion_m *= share;
   event.intruded_m *= share;
   event.risk *= share;

@@ -60,10 +60,11 @@ struct BodyEvent {
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();
   Eigen::Vector3d forward = Eigen::Vector3d::UnitX();  ///< forward axis at its begin
   double yaw_radps = 0.0;
-  double road_mps = 0.0;     ///< speed over ground before it
-  double closing_mps = 0.0;  ///< largest closing speed of a contact
-  double reduced_kg = 0.0;   ///< reduced mass of the contact with the largest closing speed
-  double restitution = 0.0;  ///< of that contact
+  double road_mps = 0.0;            ///< speed over ground before it
+  double closing_mps = 0.0;         ///< largest closing speed of a contact
+  double reduced_kg = 0.0;          ///< reduced mass of the contact with the largest closing speed
+  double largest_reduced_kg = 0.0;  ///< of all contacts
+  double restitution = 0.0;         ///< largest of all contacts
   double leading_edge_m = 0.0;
   double intrusion_m = 0.0;         ///< largest intrusion by one other body
   std::size_t intruder = ego_body;  ///< other body of the last contact with intrusion

@@ -157,8 +157,8 @@ TEST(Harm, AToppledPedestrianFallsFromStandingHeight) {
 }
 
 TEST(Harm, AContactWithoutImpulseHarmsNobody) {
-  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0, 0.3), 0.0);
-  EXPECT_DOUBLE_EQ(struck_speed_mps(10.0, 1.0, 75.0, 50.0, 0.3), 1.5);
+  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0, 71.0, 0.3), 0.0);
+  EXPECT_DOUBLE_EQ(struck_speed_mps(10.0, 1.0, 75.0, 50.0, 50.0, 0.3), 1.5);
 }
 
 /// In a central impact of free bodies delta-v = (1 + e)·v·M/m: the struck speed is then v.
@@ -167,24 +167,34 @@ TEST(Harm, ACentralImpactStrikesAtItsClosingSpeed) {
     for (const double closing : {0.5, 5.0, 30.0}) {
       const double reduced = 75.0 * 1500.0 / 1575.0;
       const double delta_v = (1.0 + restitution) * closing * reduced / 75.0;
-      EXPECT_NEAR(struck_speed_mps(closing, delta_v, 75.0, reduced, restitution), closing, 1e-12);
-      // Touched at a lower speed and then accelerated to the same delta-v, as harmful.
-      EXPECT_NEAR(struck_speed_mps(0.1 * closing, delta_v, 75.0, reduced, restitution), closing,
+      EXPECT_NEAR(struck_speed_mps(closing, delta_v, 75.0, reduced, reduced, restitution), closing,
                   1e-12);
+      // Touched at a lower speed and then accelerated to the same delta-v, as harmful.
+      EXPECT_NEAR(struck_speed_mps(0.1 * closing, delta_v, 75.0, reduced, reduced, restitution),
+                  closing, 1e-12);
     }
   }
+}
+
+/// A motorcycle that first strikes a person and then is struck by a car to a delta-v of 7 m/s has
+/// not struck the person at the speed that would take for that: 7·280/59 = 33 m/s.
+TEST(Harm, ALightBodyDoesNotGiveWhatAHeavyOneGives) {
+  const double person = 280.0 * 75.0 / 355.0;
+  const double car = 280.0 * 1500.0 / 1780.0;
+  EXPECT_NEAR(struck_speed_mps(8.0, 7.0, 280.0, person, car, 0.3), 8.0, 1e-12);
+  EXPECT_NEAR(struck_speed_mps(2.0, 7.0, 280.0, person, car, 0.3), 7.0 * 280.0 / car / 1.3, 1e-12);
 }
 
 TEST(Harm, TheStruckSpeedRisesWithClosingSpeedAndDeltaV) {
   double before = 0.0;
   for (double closing = 0.0; closing < 20.0; closing += 0.25) {
-    const double now = struck_speed_mps(closing, 8.0, 75.0, 70.0, 0.2);
+    const double now = struck_speed_mps(closing, 8.0, 75.0, 70.0, 72.0, 0.2);
     EXPECT_GE(now, before);
     before = now;
   }
   before = 0.0;
   for (double delta_v = 0.0; delta_v < 20.0; delta_v += 0.25) {
-    const double now = struck_speed_mps(6.0, delta_v, 75.0, 70.0, 0.2);
+    const double now = struck_speed_mps(6.0, delta_v, 75.0, 70.0, 72.0, 0.2);
     EXPECT_GE(now, before);
     before = now;
   }

@@ -118,15 +118,18 @@ constexpr double combined_risk(double earlier, double later) noexcept {
 }
 
 /// Impact speed for the risk curve of a person outside a car, m/s. The curves come from people who
-/// were struck by the front of a vehicle and took on its speed: delta-v = closing speed · M/m. A
-/// person who is grazed by a flank takes on less and has the risk of a full hit with the same
-/// delta-v: at most delta-v · m/M. A person whom a vehicle touches at low speed and then
-/// accelerates, because the vehicle is struck itself, takes on more: the speed is at least that at
-/// which an impact between free bodies with the restitution e gives the same delta-v, delta-v ·
-/// m/(M·(1 + e)). Between these limits it is the closing speed. `reduced_kg` is M = m1·m2/(m1 +
-/// m2). Non-decreasing in closing speed and delta-v; 0 without delta-v.
+/// were struck by the front of a vehicle and took on its speed: delta-v = closing speed · M/m with
+/// M = m1·m2/(m1 + m2). A person who is grazed by a flank takes on less and has the risk of a full
+/// hit with the same delta-v: min(closing speed, delta-v · m/M). A person whom a vehicle touches at
+/// low speed and then accelerates, because the vehicle is struck itself, takes on more: the speed
+/// is at least that at which an impact between free bodies with the restitution e gives the same
+/// delta-v, delta-v · m/(M·(1 + e)). `closing_speed_mps` is the largest closing speed of the
+/// contacts of an event, `reduced_kg` the M of that contact, `largest_reduced_kg` and `restitution`
+/// are the largest of the event: a light body that is struck first does not give what a heavy one
+/// gives. 0 without delta-v; non-decreasing in closing speed and delta-v.
 CRASHRANK_API double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                                      double reduced_kg, double restitution) noexcept;
+                                      double reduced_kg, double largest_reduced_kg,
+                                      double restitution) noexcept;
 
 /// Kind of the people in or on a body of that kind; false if it has none.
 CRASHRANK_API bool carries_people(BodyKind kind, Person& person) noexcept;
