@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,6 +77,19 @@ inline RankResult ranked(const Scenario& scenario, const std::vector<Model>& mod
   return result.ok() ? std::move(*result) : RankResult{};
 }
 
+/// Expects that the outcomes of a candidate are those of `futures` futures, of probability 1 in
+/// all.
+inline void expect_all_futures(const CandidateResult& candidate, std::size_t futures) {
+  double probability = 0.0;
+  std::size_t found = 0;
+  for (const FutureOutcome& outcome : candidate.futures) {
+    probability += outcome.probability;
+    found += outcome.futures;
+  }
+  EXPECT_NEAR(probability, 1.0, 1e-12);
+  EXPECT_EQ(found, futures);
+}
+
 inline void expect_mean_of_singles(const Scene& scene, const RankOptions& options) {
   const RankResult whole = ranked(scene.scenario, scene.models, options);
   std::vector<double> mean(whole.ranking.size(), 0.0);
@@ -95,14 +109,7 @@ inline void expect_mean_of_singles(const Scene& scene, const RankOptions& option
     EXPECT_NEAR(c.score.value_or(-1.0), expected, 1e-12 * std::max(1.0, expected))
         << "candidate " << c.candidate;
     EXPECT_NEAR(c.collision_probability, collides[c.candidate], 1e-12);
-    double sum = 0.0;
-    std::size_t futures = 0;
-    for (const FutureOutcome& outcome : c.futures) {
-      sum += outcome.probability;
-      futures += outcome.futures;
-    }
-    EXPECT_NEAR(sum, 1.0, 1e-12);
-    EXPECT_EQ(futures, whole.futures.futures);
+    expect_all_futures(c, whole.futures.futures);
   }
 }
 

@@ -1,4 +1,5 @@
 #include "crashrank/rank/rank.hpp"
+#include "rank/futures_cases.hpp"
 #include "rank/random_scene.hpp"
 #include "rank/scenes.hpp"
 #include "rank/strata.hpp"
@@ -18,6 +19,7 @@
 namespace crashrank {
 namespace {
 
+using futures::scores_of;
 using scenes::Scene;
 
 constexpr std::size_t sampled = 12;
@@ -32,12 +34,6 @@ RankOptions harm_of(std::size_t futures) {
   options.harm->intervals = false;
   options.sampled_futures = futures;
   return options;
-}
-
-std::vector<double> scores_of(const RankResult& result) {
-  std::vector<double> scores(result.ranking.size());
-  for (const CandidateResult& c : result.ranking) scores[c.candidate] = c.score.value_or(-1.0);
-  return scores;
 }
 
 std::vector<StateError> drawn(std::uint64_t seed, const StateUncertainty& uncertainty,
@@ -230,14 +226,7 @@ void expect_mean_of_singles(const Scene& scene, double tolerance) {
     ASSERT_FALSE(c.futures.empty());
     EXPECT_TRUE(c.futures.front().is_likeliest);
     EXPECT_EQ(c.futures.front().score, scores_of(likeliest)[c.candidate]);
-    double sum = 0.0;
-    std::size_t futures = 0;
-    for (const FutureOutcome& outcome : c.futures) {
-      sum += outcome.probability;
-      futures += outcome.futures;
-    }
-    EXPECT_NEAR(sum, 1.0, 1e-12);
-    EXPECT_EQ(futures, sampled + 1);
+    futures::expect_all_futures(c, sampled + 1);
   }
 }
 
