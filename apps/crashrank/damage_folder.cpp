@@ -5,7 +5,7 @@
 
 #include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/internal/report/escape.hpp"
-#include "crashrank/report/picture.hpp"
+#include "crashrank/report/ranking.hpp"
 
 #include <fmt/format.h>
 

@@ -29,7 +29,6 @@
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
-#include "crashrank/report/picture.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/candidate.hpp"
 #include "crashrank/scenario/harm_options.hpp"

@@ -1,5 +1,5 @@
 #include "crashrank/base/box.hpp"
-#include "crashrank/report/picture.hpp"
+#include "crashrank/report/ranking.hpp"
 #include "report/bytes.hpp"
 #include "report/palette.hpp"
 

@@ -1,4 +1,4 @@
-#include "crashrank/report/picture.hpp"
+#include "crashrank/report/ranking.hpp"
 
 #include <png.h>
 

@@ -1,7 +1,7 @@
 #include "crashrank/report/ranking.hpp"
 
-#include "crashrank/crash/contact_law.hpp"
 #include "crashrank/scenario/candidate.hpp"
+#include "report/contact_json.hpp"
 #include "report/contact_order.hpp"
 #include "report/damage_summary.hpp"
 #include "report/future_words.hpp"
@@ -15,9 +15,7 @@ namespace crashrank {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using detail::DamageSummary;
-
-Json vector(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+using detail::both;
 
 const char* origin_name(CandidateOrigin origin) {
   switch (origin) {
@@ -31,89 +29,8 @@ const char* origin_name(CandidateOrigin origin) {
   return "grid";
 }
 
-const char* state_name(ImpactState state) {
-  switch (state) {
-    case ImpactState::none:
-      return "none";
-    case ImpactState::grazing:
-      return "grazing";
-    case ImpactState::contact:
-      return "contact";
-    case ImpactState::overlapping:
-      return "overlapping";
-    case ImpactState::contained:
-      return "contained";
-    case ImpactState::undecided:
-      break;
-  }
-  return "undecided";
-}
-
 /// Most names in `tied_with`.
 constexpr std::size_t most_tied_names = 256;
-
-/// Keys of what is stated of both bodies of a contact.
-struct SideKeys {
-  const char* first;
-  const char* second;
-};
-constexpr SideKeys ego_other{"ego", "other"};
-constexpr SideKeys a_b{"a", "b"};
-
-/// {"ego": of one, "other": of the other}
-template <class T> Json both(T first, T second, SideKeys keys = ego_other) {
-  return {{keys.first, std::move(first)}, {keys.second, std::move(second)}};
-}
-
-Json outcome_json(const BodyOutcome& o, bool simulated) {
-  constexpr double degrees = 180.0 / 3.14159265358979323846;
-  Json entry{{"delta_v_mps", o.delta_v_mps},
-             {"delta_v_x_mps", o.delta_v_x_mps},
-             {"delta_v_y_mps", o.delta_v_y_mps},
-             {"yaw_rate_change_dps", o.yaw_rate_change_radps * degrees},
-             {"event_delta_v_mps", o.event_delta_v_mps},
-             {"event_yaw_rate_change_dps", o.event_yaw_rate_change_radps * degrees},
-             {"pdof_deg", o.pdof_deg},
-             {"clock", o.clock}};
-  if (!simulated) return entry;
-  entry["crush_energy_j"] = o.crush_energy_j;
-  entry["ees_mps"] = o.ees_mps;
-  entry["crush_m"] = o.crush_m;
-  entry["intrusion_m"] = o.intrusion_m;
-  entry["cdc"] = o.cdc;
-  entry["harm"] = o.harm;
-  return entry;
-}
-
-Json severity_json(const ContactSeverity& s) {
-  Json ego = outcome_json(s.ego, s.simulated);
-  Json other = outcome_json(s.other, s.simulated);
-  Json entry{{"simulated", s.simulated},
-             {"slides", s.slides},
-             {"dissipated_j", s.dissipated_j},
-             {"a", ego},
-             {"b", other},
-             {"ego", std::move(ego)},
-             {"other", std::move(other)}};
-  if (s.simulated) {
-    entry["duration_s"] = s.duration_s;
-    entry["harm"] = s.harm;
-  }
-  return entry;
-}
-
-Json severity_json(const FurtherContact& contact, bool simulated) {
-  Json entry{{"simulated", simulated},
-             {"slides", contact.slides},
-             {"dissipated_j", contact.dissipated_j},
-             {"a", outcome_json(contact.outcome_a, simulated)},
-             {"b", outcome_json(contact.outcome_b, simulated)}};
-  if (simulated) {
-    entry["duration_s"] = contact.duration_s;
-    entry["harm"] = contact.harm;
-  }
-  return entry;
-}
 
 Json name_json(const Scenario& scenario, const std::optional<std::size_t>& actor) {
   return actor ? Json(scenario.actors[*actor].name) : Json(nullptr);
@@ -151,63 +68,6 @@ Json harm_json(const HarmOptions& harm) {
             {"all_models", r.all_models}}},
           {"least_struck_share", harm.least_struck_share},
           {"after_contact", after_contact_name(harm.after_contact)}};
-}
-
-void add_damage(Json& entry, const DamageSummary& first, const DamageSummary& second,
-                SideKeys keys = ego_other) {
-  entry["damaged_triangles"] = both(first.triangles, second.triangles, keys);
-  entry["damaged_area_m2"] = both(first.area_m2, second.area_m2, keys);
-  entry["damaged_parts"] = both(Json(first.parts), Json(second.parts), keys);
-}
-
-/// Corners of a region in body coordinates, null if the surfaces do not intersect.
-Json region(const Box& box) {
-  if (box.empty()) return nullptr;
-  return {{"min", vector(box.min.cast<double>())}, {"max", vector(box.max.cast<double>())}};
-}
-
-Json contact_json(const Scenario& scenario, View<const Model> models, const Contact& contact) {
-  Json entry{{"bodies", {"ego", scenario.actors[contact.actor].name}},
-             {"other", scenario.actors[contact.actor].name},
-             {"event", contact.event},
-             {"state", state_name(contact.state)},
-             {"time_of_impact_s", contact.time_of_impact_s},
-             {"closing_speed_mps", contact.closing_speed_mps},
-             {"beyond_crash_model", contact.closing_speed_mps > fastest_contact_mps},
-             {"normal_speed_mps", contact.normal_speed_mps},
-             {"closing_energy_j", contact.closing_energy_j},
-             {"gap_m", contact.gap_m},
-             {"point_m", vector(contact.point_m)},
-             {"normal", vector(contact.normal)},
-             {"crush_s", contact.crush_s},
-             {"crush_m", contact.crush_m},
-             {"region_m", both(region(contact.ego.region), region(contact.other.region))}};
-  entry["severity"] = severity_json(contact.severity);
-  add_damage(
-      entry, detail::summary_of(contact.ego, models[scenario.ego.model].mesh),
-      detail::summary_of(contact.other, detail::mesh_of_actor(scenario, models, contact.actor)));
-  return entry;
-}
-
-/// A contact between two others: what is stated of the ego's contacts as `ego` and `other` has the
-/// keys `a` and `b` here, in the order of `bodies`.
-Json contact_json(const Scenario& scenario, View<const Model> models, const FurtherContact& contact,
-                  bool simulated) {
-  Json entry{
-      {"bodies", {scenario.actors[contact.a].name, scenario.actors[contact.b].name}},
-      {"time_of_impact_s", contact.time_s},
-      {"closing_speed_mps", contact.closing_speed_mps},
-      {"beyond_crash_model", contact.closing_speed_mps > fastest_contact_mps},
-      {"closing_energy_j", contact.closing_energy_j},
-      {"point_m", vector(contact.point_m)},
-      {"region_m", both(region(contact.damage_a.region), region(contact.damage_b.region), a_b)}};
-  entry["severity"] = severity_json(contact, simulated);
-  add_damage(
-      entry,
-      detail::summary_of(contact.damage_a, detail::mesh_of_actor(scenario, models, contact.a)),
-      detail::summary_of(contact.damage_b, detail::mesh_of_actor(scenario, models, contact.b)),
-      a_b);
-  return entry;
 }
 
 /// Names of the candidates that share a place, the first `most_tied_names` of them: every entry of
@@ -288,9 +148,10 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       ranked.score || (ranked.searched && result.infeasible != Infeasible::keep);
   Json contacts = Json::array();
   for (const detail::AnyContact& contact : detail::contacts_in_order(ranked)) {
-    contacts.push_back(contact.own != nullptr ? contact_json(scenario, models, *contact.own)
-                                              : contact_json(scenario, models, *contact.further,
-                                                             needs_crash(result.measure)));
+    contacts.push_back(contact.own != nullptr
+                           ? detail::contact_json(scenario, models, *contact.own)
+                           : detail::contact_json(scenario, models, *contact.further,
+                                                  needs_crash(result.measure)));
   }
   Json grazes = Json::array();
   for (const Graze& graze : ranked.grazes) {
@@ -348,8 +209,8 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
     entry["pdof_deg"] = both(crash.ego.pdof_deg, crash.other.pdof_deg);
   }
   if (ranked.score) {
-    add_damage(entry, detail::summary_of(ranked.ego, models[scenario.ego.model].mesh),
-               detail::summary_of_others(scenario, models, ranked));
+    detail::add_damage(entry, detail::summary_of(ranked.ego, models[scenario.ego.model].mesh),
+                       detail::summary_of_others(scenario, models, ranked));
   } else {
     for (const char* key : {"damaged_triangles", "damaged_area_m2", "damaged_parts"}) {
       entry[key] = nullptr;

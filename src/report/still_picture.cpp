@@ -1,6 +1,6 @@
 #include "report/still_picture.hpp"
 
-#include "crashrank/report/picture.hpp"
+#include "crashrank/report/ranking.hpp"
 #include "report/scene_views.hpp"
 
 #include <vector>

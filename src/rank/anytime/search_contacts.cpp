@@ -1,0 +1,196 @@
+#include "rank/anytime/estimate.hpp"
+#include "rank/anytime/refine_steps.hpp"
+#include "rank/combine_futures.hpp"
+#include "rank/ego_motion.hpp"
+#include "rank/hits.hpp"
+#include "rank/manoeuvre.hpp"
+#include "rank/measure_table.hpp"
+#include "rank/nearby_actors.hpp"
+#include "rank/road_leaving.hpp"
+
+#include <algorithm>
+
+namespace crashrank::detail {
+namespace {
+
+/// Fills in demand, feasibility, clearances and the speed at the horizon. Returns false if time was
+/// up.
+bool fill_manoeuvre(const RefineQuery& q, const FollowedPlan& followed, CandidateState& state,
+                    Scratch& scratch) {
+  const ManoeuvreFacts facts =
+      evaluate_manoeuvre(q.scene, q.candidate, followed, state.leaving, scratch);
+  if (!followed.touches && scratch.stopped()) return false;
+  RankedCandidate& result = state.result;
+  result.feasible = facts.feasible || q.scene.infeasible == Infeasible::keep;
+  result.leaves_road = facts.leaves_road.has_value();
+  result.least_distance_m = facts.clearance.distance_m;
+  result.least_time_gap_s = facts.clearance.time_gap_s;
+  result.end_speed_mps = result.collides ? 0.0 : facts.at_horizon.speed_mps;
+  state.demand_known = true;
+  return true;
+}
+
+/// Returns true if an actor may come near the ego in any future.
+bool comes_near(const RefineQuery& q, Scratch& scratch, RankWork& work) {
+  const Futures& futures = q.scene.futures;
+  for (std::size_t f = 0; f < futures.size(); f = futures.group(f).end) {
+    const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
+    find_nearby_actors(q.scene, ego, futures.group(f), 0.0, q.scene.slice_s.back(), scratch, work);
+    // After the deadline the search may be incomplete: assume that an actor is near.
+    if (!scratch.near.empty() || (f > 0 && q.deadline.expired())) return true;
+  }
+  return false;
+}
+
+/// Sets the scores of a candidate without contact in any future. Returns false if time was up.
+bool settle_without_contact(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
+  const Futures& futures = q.scene.futures;
+  if (!futures.displaces_ego()) {
+    settle(state, leaving_score(q.scene, state.leaving, no_contact_s));
+    return true;
+  }
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
+    const double score = leaving_score(q.scene, leaving_of(q, state, ego, scratch), no_contact_s);
+    if (scratch.stopped()) return false;
+    state.futures[f].score = score;
+  }
+  combine(q, state, scratch);
+  return true;
+}
+
+/// Estimate of the score of the crash that begins with a contact; `upper_bound` if the first
+/// contact alone says nothing about the measure.
+double estimate_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit,
+                   double upper_bound, Scratch& scratch) {
+  if (scored_by_damage(q.scene.measure)) return upper_bound;
+  const double estimate = estimate_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
+                                         first_contact_of(q, ego, hit), scratch.tally);
+  const bool says_nothing = !(estimate > 0.0) && !measure_row(q.scene.measure).counts_people;
+  return says_nothing ? upper_bound : estimate;
+}
+
+/// Stores the hits of the last search that are the first contact of a future of the group, in their
+/// order, and the estimates of their crashes.
+void store_first_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
+                      CandidateState& state, Scratch& scratch) {
+  const Futures& futures = q.scene.futures;
+  for (const Scratch::Hit& hit : scratch.hits) {
+    if (!hit.impact.hit()) continue;
+    const auto index = static_cast<std::uint32_t>(state.first_hits.size());
+    double estimate = FutureScore::unknown;
+    for (std::size_t f = group.begin; f < group.end; ++f) {
+      FutureScore& future = state.futures[f];
+      if (future.first != FutureScore::no_contact || !futures.follows(f, hit.plan)) continue;
+      if (estimate < 0.0) {
+        estimate = estimate_of(q, ego, hit, state.upper_bound, scratch);
+        state.first_hits.push_back(hit);
+      }
+      future.first = index;
+      future.estimate = estimate;
+    }
+  }
+}
+
+/// Stores the results of the search in a group of futures.
+void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
+                CandidateState& state, FollowedPlan& followed, Scratch& scratch) {
+  const std::size_t likeliest = q.scene.futures.likeliest();
+  const auto leaving = leaving_of(q, state, ego, scratch);
+  store_first_hits(q, group, ego, state, scratch);
+  for (std::size_t f = group.begin; f < group.end; ++f) {
+    FutureScore& future = state.futures[f];
+    const bool touches = future.first != FutureScore::no_contact;
+    const double until_s = touches ? state.first_hits[future.first].impact.time_s : no_contact_s;
+    followed.touches = followed.touches || touches;
+    followed.longest_s = std::max(followed.longest_s, touches ? until_s : q.scene.slice_s.back());
+    const double left = leaving_score(q.scene, leaving, until_s);
+    if (touches) {
+      future.lower_bound = left;
+      future.estimate += left;
+    } else {
+      future.score = left;
+    }
+    if (f != likeliest) continue;
+    followed.first_s = until_s;
+    RankedCandidate& result = state.result;
+    result.collides = touches;
+    result.grazes = grazes_before(q.scene, scratch, f, until_s);
+    if (!touches) continue;
+    const Contact first = first_contact_of(q, ego, state.first_hits[future.first]);
+    result.actor = first.actor;
+    result.time_of_impact_s = first.time_of_impact_s;
+    result.closing_speed_mps = first.closing_speed_mps;
+  }
+}
+
+}  // namespace
+
+std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const CandidateState& state,
+                                      const Motion& ego, const Scratch& scratch) {
+  if (&ego == &q.candidate.motion) return state.leaving;
+  return find_leaving(q.scene.road, q.scene.ego, ego, q.scene.slice_s.back(), scratch.stop);
+}
+
+Contact first_contact_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit) {
+  return first_contact(q.scene, ego, hit.actor, q.scene.futures.plans[hit.plan].motion, hit.impact);
+}
+
+bool find_nearby(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
+  const double horizon_s = q.scene.slice_s.back();
+  const auto leaving =
+      find_leaving(q.scene.road, q.scene.ego, q.candidate.motion, horizon_s, scratch.stop);
+  if (q.scene.road.ends() && scratch.stopped()) return false;
+  state.leaving = leaving;
+  if (!comes_near(q, scratch, work)) {
+    if (!fill_manoeuvre(q, {horizon_s, no_contact_s, false}, state, scratch) ||
+        !settle_without_contact(q, state, scratch)) {
+      return false;
+    }
+    state.result.stage = RankStage::near;
+    return true;
+  }
+  state.result.stage = RankStage::near;
+  // A plan that is feasible until the horizon is feasible until any contact.
+  state.demand_known =
+      q.scene.infeasible == Infeasible::keep ||
+      is_feasible(q.candidate, demand_until(q.scene, q.candidate, horizon_s, state.leaving));
+  return true;
+}
+
+bool search_contacts(const RefineQuery& q, CandidateState& state, Scratch& scratch,
+                     RankWork& work) {
+  const Futures& futures = q.scene.futures;
+  const auto restore = [&state, before = state.result] {
+    state.result = before;
+    state.futures.assign(state.futures.size(), {});
+    state.first_hits.clear();
+    return false;
+  };
+  bool decided = true;
+  double probability = 0.0;
+  FollowedPlan followed;
+  for (std::size_t f = 0; f < futures.size(); f = futures.group(f).end) {
+    const FutureGroup group = futures.group(f);
+    const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
+    const bool known = find_hits(q.scene, ego, group, scratch, work);
+    const bool in_time = known && group.size() == futures.size();
+    if (!in_time && scratch.stopped()) return restore();
+    decided = decided && known;
+    probability = collision_probability(q.scene, group, scratch, probability);
+    store_hits(q, group, ego, state, followed, scratch);
+    if (!in_time && scratch.stopped()) return restore();
+  }
+  state.unresolved = !decided;
+  if (!decided) {
+    restore();
+    return true;
+  }
+  state.result.stage = RankStage::searched;
+  state.result.collision_probability = probability;
+  if (!fill_manoeuvre(q, followed, state, scratch)) return restore();
+  combine(q, state, scratch);
+  return true;
+}
+
+}  // namespace crashrank::detail

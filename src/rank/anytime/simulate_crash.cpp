@@ -1,0 +1,116 @@
+#include "rank/anytime/refine_steps.hpp"
+#include "rank/ego_motion.hpp"
+#include "rank/manoeuvre.hpp"
+#include "rank/road_leaving.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace crashrank::detail {
+namespace {
+
+/// Limit for the first simulation of a crash while the first place is open, in outline pieces
+/// moved: about the first contact of two cars.
+constexpr std::uint64_t first_quota = 20'000;
+
+/// Selects the future to simulate next: the one with the least simulated work relative to its
+/// probability.
+std::size_t next_future(const Futures& futures, const CandidateState& state) {
+  std::size_t next = futures.size();
+  double least = 0.0;
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    const double probability = futures.probability(f);
+    if (state.futures[f].known() || !(probability > 0.0)) continue;
+    const double simulated = static_cast<double>(first_quota + state.futures[f].simulated);
+    if (next < futures.size() && simulated >= least * probability) continue;
+    next = f;
+    least = simulated / probability;
+  }
+  return next;
+}
+
+/// Copies the result of a simulation to all futures that have the same relevant plans so far.
+/// Returns false if the crash reaches an actor that was left out: then the result is invalid.
+bool share_score(const Scene& scene, std::size_t future, CandidateState& state, Scratch& scratch) {
+  const FutureScore found = state.futures[future];
+  const FutureGroup group = scene.futures.group(future);
+  if (group.size() == 1 && !scene.futures.leaves_out()) return true;
+  std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
+  for (std::uint32_t k = 0; k <= found.first; ++k) scratch.relevant[state.first_hits[k].plan] = 1;
+  scratch.chain.mark_relevant_plans(scene, scratch.relevant);
+  if (scene.futures.needs_left_out(scratch.relevant)) return false;
+  scratch.same.clear();
+  scratch.others.clear();
+  for (std::size_t f = group.begin; f < group.end; ++f) {
+    if (f == future || !state.futures[f].known()) {
+      scratch.same.push_back(static_cast<std::uint32_t>(f));
+    }
+  }
+  scene.futures.split(future, scratch.relevant, scratch.same, scratch.others);
+  for (const std::uint32_t f : scratch.same) {
+    FutureScore& same = state.futures[f];
+    same.score = found.score;
+    same.lower_bound = std::max(same.lower_bound, found.lower_bound);
+    same.simulated = std::max(same.simulated, found.simulated);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
+  constexpr int steps_at_a_time = 4;
+  constexpr std::uint64_t quota_growth = 3;
+  const std::size_t index = next_future(q.scene.futures, state);
+  FutureScore& future = state.futures[index];
+  const FutureScore before = future;
+  const RankedCandidate result_before = state.result;
+  const bool is_limited = q.stop_above < std::numeric_limits<double>::infinity();
+  const std::uint64_t quota = std::max(first_quota, quota_growth * future.simulated);
+  const HarmSample& nominal = q.scene.nominal;
+  CrashChain& chain = scratch.chain;
+  const Motion& ego = ego_motion(q.scene, q.candidate, index, scratch.ego);
+  const Contact first = first_contact_of(q, ego, state.first_hits[future.first]);
+  chain.begin(q.scene, ego, index, first, nominal);
+  std::size_t added = 0;
+  scratch.tally.begin();
+  bool going = true;
+  bool in_time = true;
+  const double left =
+      leaving_score(q.scene, leaving_of(q, state, ego, scratch), first.time_of_impact_s);
+  if (scratch.stopped()) return false;
+  while (going) {
+    going = chain.advance(steps_at_a_time);
+    if (!going) break;
+    const bool has_new_contacts = added < chain.contacts().size();
+    for (; added < chain.contacts().size(); ++added) {
+      scratch.tally.add(q.scene, chain.effect(added), nominal);
+    }
+    if (has_new_contacts) {
+      future.lower_bound = std::max(future.lower_bound, left + scratch.tally.lower_bound(q.scene));
+      combine(q, state, scratch);
+    }
+    in_time = !q.deadline.expired();
+    if (!in_time || state.result.interval.lowest > q.stop_above) break;
+    if (is_limited && chain.run().work() > quota) break;
+  }
+  future.simulated = std::max(future.simulated, chain.run().work());
+  work.crash_steps += chain.run().steps();
+  work.crash_pieces += chain.run().work();
+  if (!going) {
+    chain.effects(scratch.effects, scratch.order);
+    scratch.tally.begin();
+    for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, nominal);
+    future.score = left + scratch.tally.score(q.scene);
+  }
+  if (!share_score(q.scene, index, state, scratch)) {
+    future = before;
+    state.result = result_before;
+    state.unresolved = state.needs_left_out = true;
+    return in_time;
+  }
+  combine(q, state, scratch);
+  return in_time;
+}
+
+}  // namespace crashrank::detail
