@@ -44,6 +44,7 @@ void name_standard_input(std::string& text, const std::string& path) {
 /// As options take them.
 std::vector<std::string> axes() {
   std::vector<std::string> names;
+  names.reserve(std::size(axis_names));
   for (const auto& [name, axis] : axis_names) names.emplace_back(name);
   return names;
 }

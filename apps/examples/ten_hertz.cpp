@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
     const double time_s = 0.1 * cycle;
     scenario->ego.pose = ego.pose_at(time_s);
     std::vector<Motion> motions;
+    motions.reserve(others.size());
     for (const Motion& other : others) {
       motions.emplace_back(FreeMotion{other.pose_at(time_s), other.velocity_at(time_s)});
     }

@@ -115,7 +115,7 @@ Image averaged(const std::vector<Colour>& fine, int width, int height) {
   Image image;
   image.width = width;
   image.height = height;
-  image.rgb.reserve(3 * fine.size() / (samples * samples));
+  image.rgb.reserve(3 * fine.size() / samples / samples);
   const auto stride = static_cast<std::size_t>(width) * samples;
   for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
     for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {

@@ -11,6 +11,7 @@ Result<std::string> still_picture(const Scenario& scenario, View<const Model> mo
                                   const RankResult& result, std::size_t place) {
   const std::vector<SceneView> views = scene_views(scenario, models, result, place);
   std::vector<PictureBody> bodies;
+  bodies.reserve(views.size());
   for (const SceneView& view : views) {
     bodies.push_back({&models[view.model].mesh, view.damage.pose, view.damage.triangles});
   }

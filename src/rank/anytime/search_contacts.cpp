@@ -101,7 +101,8 @@ void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& eg
   for (std::size_t f = group.begin; f < group.end; ++f) {
     FutureScore& future = state.futures[f];
     const bool touches = future.first != FutureScore::no_contact;
-    const double until_s = touches ? state.first_hits[future.first].impact.time_s : no_contact_s;
+    double until_s = no_contact_s;
+    if (touches) until_s = state.first_hits[future.first].impact.time_s;
     followed.touches = followed.touches || touches;
     followed.longest_s = std::max(followed.longest_s, touches ? until_s : q.scene.slice_s.back());
     const double left = leaving_score(q.scene, leaving, until_s);

@@ -105,7 +105,7 @@ inline Status validate_sizes(const AabbTree& tree, const TriangleMesh& mesh) {
 
 /// Bytes, so that a zero of the other sign is another coordinate.
 inline bool same_bytes(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  return std::memcmp(a.data(), b.data(), 3 * sizeof(float)) == 0;
+  return std::memcmp(a.data(), b.data(), 3 * sizeof(float)) == 0;  // NOLINT(*memory*,*flp37-c)
 }
 
 /// Which slot it is that breaks a rule, once it is known that one does.
