@@ -96,7 +96,8 @@ private:
       return unbounded;
     }
     const double apart = at(i, reach);
-    return apart < reach ? apart : unbounded;
+    if (apart < reach) return apart;
+    return unbounded;
   }
   double at_time(double time_s, double cutoff_m) {
     return outline_distance_m(a_.outline, a_.at(time_s), b_.outline, b_.at(time_s), cutoff_m,

@@ -111,6 +111,7 @@ std::optional<double> difference_error(const RiskMeasure& risk, const std::vecto
   const auto quantile = [&risk](const std::vector<double>& scores) {
     if (risk.kind != RiskKind::cvar) return 0.0;
     std::vector<WeightedScore> weighted;
+    weighted.reserve(scores.size());
     for (const double score : scores) {
       weighted.push_back({score, 1.0 / static_cast<double>(scores.size())});
     }
