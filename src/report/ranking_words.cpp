@@ -192,7 +192,7 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
 }  // namespace
 
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
-  const std::string likeliest = outcome_of_likeliest(scenario, ranked);
+  std::string likeliest = outcome_of_likeliest(scenario, ranked);
   if (ranked.futures.size() < 2) return likeliest;
   return likeliest + fmt::format(" in the likeliest future ({:.0f} % of all futures collide)",
                                  100.0 * ranked.collision_probability);
