@@ -70,6 +70,13 @@ void ContactRun::limit_delta_v(const VelocityChange& change, double inverse_mass
   contact.delta_yaw_rate_radps *= share;
 }
 
+Vector3d ContactRun::squeeze_mps(bool of_first, const BodyContact& contact) const {
+  const VelocityChange& change = of_first ? change_first_ : change_second_;
+  const double change_mps = contact.delta_v_mps.norm();
+  if (!change.partial || !(change_mps > change.along_mps)) return Vector3d::Zero();
+  return (1.0 - change.along_mps / change_mps) * contact.delta_v_mps;
+}
+
 ContactOutcome ContactRun::outcome(bool swapped) const {
   ContactOutcome result;
   result.steps = steps_;

@@ -322,7 +322,13 @@ void ContactRun::add_velocity_change(bool first, const Eigen::Vector2d& change_m
   VelocityChange& body = first ? change_first_ : change_second_;
   body.now_mps += change_mps;
   body.partial = body.partial || shared || counted_.share < 1.0;
-  if (presses()) body.most_mps = std::max(body.most_mps, body.now_mps.norm());
+  if (!presses()) return;
+  body.most_mps = std::max(body.most_mps, body.now_mps.norm());
+  const PlanarForce& own = first ? impulse_on_first_ : state_->pairs[pairs_[0]].impulse_on_second;
+  const PlanarForce& excluded = first ? excluded_first_ : excluded_second_;
+  const Eigen::Vector2d counted(own.x - excluded.x, own.y - excluded.y);
+  const double size = counted.norm();
+  if (size > 0.0) body.along_mps = std::max(body.along_mps, body.now_mps.dot(counted) / size);
 }
 
 void ContactRun::end_step() {

@@ -153,6 +153,11 @@ public:
   /// The outcome up to now; `swapped`: the first body is B.
   ContactOutcome outcome(bool swapped) const;
 
+  /// Part of the delta-v of a body in the outcome by which its velocity did not change, m/s: while
+  /// several contacts press on it their impulses cancel, and what is left of the delta-v expresses
+  /// its crush.
+  Eigen::Vector3d squeeze_mps(bool of_first, const BodyContact& contact) const;
+
   /// Kinetic energy lost so far, J.
   double dissipated_j() const { return std::max(0.0, dissipated_j_); }
   /// Number of outline pieces moved so far: the amount of work done.
@@ -180,7 +185,8 @@ private:
   /// Velocity change of a body by all contacts that act on it, m/s.
   struct VelocityChange {
     Eigen::Vector2d now_mps = Eigen::Vector2d::Zero();
-    double most_mps = 0.0;  ///< greatest length after a step with a force
+    double most_mps = 0.0;   ///< greatest length after a step with a force
+    double along_mps = 0.0;  ///< greatest component along the delta-v of this contact so far
     /// The delta-v of this contact alone may overstate the change: other contacts act on the body
     /// at the same time, or some steps are excluded.
     bool partial = false;

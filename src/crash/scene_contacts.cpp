@@ -146,6 +146,8 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
       &run == first_run_ && (members_[partner_].state != State::fixed || second == partner_ ||
                              members_[second].state != State::fixed);
   contact.outcome = outcome;
+  contact.squeeze_a_mps = run.squeeze_mps(!swapped, outcome.a);
+  contact.squeeze_b_mps = run.squeeze_mps(swapped, outcome.b);
   const ContactBody given_second = second_is_fixed ? contact_body(second) : run.given_second();
   contact.given_a = swapped ? given_second : run.given_first();
   contact.given_b = swapped ? run.given_first() : given_second;

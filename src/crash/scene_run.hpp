@@ -72,6 +72,10 @@ struct SceneContact {
   ContactBody given_a;  ///< state at the beginning of the contact
   ContactBody given_b;
   ContactOutcome outcome;
+  /// Parts of the delta-v of `a` and of `b` that changed no velocity, see
+  /// `ContactRun::squeeze_mps`.
+  Eigen::Vector3d squeeze_a_mps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d squeeze_b_mps = Eigen::Vector3d::Zero();
   /// Adjoining fixed bodies that pressed on the other body, up to `most_pressed`.
   static constexpr std::size_t most_pressed = 8;
   std::array<std::uint32_t, most_pressed> pressed{};

@@ -16,10 +16,12 @@ using Eigen::Vector3d;
 /// Largest steering angle of the wheels, rad.
 constexpr double most_steering_rad = 0.7;
 
-SideEffect side_of(std::size_t body, const ContactBody& given, const BodyContact& contact) {
+SideEffect side_of(std::size_t body, const ContactBody& given, const BodyContact& contact,
+                   const Vector3d& squeeze_mps) {
   SideEffect side;
   side.body = body;
   side.delta_v_mps = contact.delta_v_mps;
+  side.squeeze_mps = squeeze_mps;
   side.impulse_ns = contact.impulse_ns;
   side.forward = given.pose.rotation.col(0);
   side.yaw_radps = contact.delta_yaw_rate_radps;
@@ -179,9 +181,9 @@ ContactEffect CrashChain::effect(std::size_t index) const {
   }
   e.restitution = contact.outcome.restitution;
   e.dissipated_j = contact.outcome.dissipated_j;
-  e.sides[0] = side_of(body(contact.a), contact.given_a, contact.outcome.a);
+  e.sides[0] = side_of(body(contact.a), contact.given_a, contact.outcome.a, contact.squeeze_a_mps);
   e.sides[1] = side_of(contact.is_first ? first_->actor : body(contact.b), contact.given_b,
-                       contact.outcome.b);
+                       contact.outcome.b, contact.squeeze_b_mps);
   return e;
 }
 

@@ -28,7 +28,7 @@ void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect&
   const SideEffect& own = effect.sides[side];
   const Body& other = body_of(scene, effect.sides[1 - side].body);
   event.end_s = std::max(event.end_s, effect.end_s);
-  event.delta_v_mps += own.delta_v_mps;
+  event.delta_v_mps += own.delta_v_mps - own.squeeze_mps;
   event.greatest_mps = std::max(event.greatest_mps, own.delta_v_mps.norm());
   event.impulse_ns += own.impulse_ns;
   event.yaw_radps += own.yaw_radps;
@@ -87,6 +87,7 @@ ContactEffect scale_restitution(const ContactEffect& effect, double factor) {
   e.restitution = std::min(most_restitution, factor * effect.restitution);
   for (SideEffect& side : e.sides) {
     side.delta_v_mps *= gain;
+    side.squeeze_mps *= gain;
     side.impulse_ns *= gain;
     side.yaw_radps *= gain;
     side.crush_j *= loss;

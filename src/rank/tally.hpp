@@ -24,7 +24,10 @@ inline constexpr double apart_s = 0.2;
 struct SideEffect {
   std::size_t body = ego_body;                            ///< index of an actor, or `ego_body`
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();  ///< world axes
-  Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();   ///< world axes
+  /// Part of the delta-v that changed no velocity: it counts in the contact's own delta-v, not in
+  /// the sum of an event.
+  Eigen::Vector3d squeeze_mps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();  ///< world axes
   /// forward axis of the body at the begin of the contact
   Eigen::Vector3d forward = Eigen::Vector3d::UnitX();
   double yaw_radps = 0.0;  ///< change of the yaw rate

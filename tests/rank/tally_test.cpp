@@ -67,6 +67,20 @@ TEST(Tally, ContactsWithinATenthOfASecondAreOneEvent) {
   EXPECT_DOUBLE_EQ(score(5.0), 14.0);
 }
 
+/// A body that is pressed from both sides: what its velocity did not change by is not added up.
+TEST(Tally, DeltaVThatChangedNoVelocityIsNotSummed) {
+  const Scene scene = scene_of(Measure::delta_v);
+  const ContactEffect first = effect(ego_body, 0, 1.0, 1.1, {10, 0, 0});
+  ContactEffect pressed = effect(ego_body, 0, 1.15, 1.3, {9, 0, 0});
+  EXPECT_DOUBLE_EQ(score_of(scene, {first, pressed}), 19.0);
+  pressed.sides[0].squeeze_mps = {8, 0, 0};
+  EXPECT_DOUBLE_EQ(score_of(scene, {first, pressed}), 11.0);
+  // Alone it counts whole, and so it does where it is the larger one.
+  EXPECT_DOUBLE_EQ(score_of(scene, {pressed}), 9.0);
+  const Scene harm = scene_of(Measure::harm);
+  EXPECT_EQ(score_of(harm, {pressed}), score_of(harm, {effect(ego_body, 0, 1.15, 1.3, {9, 0, 0})}));
+}
+
 /// Between 0.1 and 0.2 s after the end of an event it counts in the next one with a falling share.
 TEST(Tally, TheShareOfAnEarlierEventFallsWithoutAJump) {
   for (const Measure measure : {Measure::delta_v, Measure::harm}) {
