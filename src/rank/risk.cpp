@@ -38,6 +38,9 @@ double worst_of(const std::vector<WeightedScore>& scores) {
   return worst;
 }
 
+/// Scores of the same crash in two futures differ by rounding only, some 1e-16 of the score.
+constexpr double score_rounding = 1e-12;
+
 /// Whether the scores of so many drawn futures say how much another sample would change the risk.
 bool has_sampling_error(const RiskMeasure& risk, std::size_t sampled) {
   const auto count = static_cast<double>(sampled);
@@ -88,11 +91,12 @@ std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<Weight
   const double from = tail ? quantile_of(risk.level, scores) : 0.0;
   const auto value = [&](const WeightedScore& s) { return contribution(risk, s.score, from); };
   // Equal scores say nothing about the variance of futures that were not drawn.
-  double least = worst_of(scores);
+  const double worst = worst_of(scores);
+  double least = worst;
   for (const WeightedScore& s : scores) {
     if (s.probability > 0.0) least = std::min(least, s.score);
   }
-  if (least == worst_of(scores)) return std::nullopt;
+  if (worst - least <= score_rounding * worst) return std::nullopt;
   double mean = 0.0;
   for (const WeightedScore& s : scores) mean += s.probability * value(s);
   double variance = 0.0;
@@ -105,7 +109,10 @@ std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<Weight
 std::optional<double> difference_error(const RiskMeasure& risk, const std::vector<double>& a,
                                        const std::vector<double>& b) {
   bool alike = true;
-  for (std::size_t f = 1; f < a.size(); ++f) alike = alike && a[f] - b[f] == a[0] - b[0];
+  for (std::size_t f = 1; f < a.size(); ++f) {
+    const double other = std::abs(a[f] - b[f] - (a[0] - b[0]));
+    alike = alike && other <= score_rounding * std::max({a[f], b[f], a[0], b[0]});
+  }
   if (alike) return 0.0;
   if (!has_sampling_error(risk, a.size())) return std::nullopt;
   const auto quantile = [&risk](const std::vector<double>& scores) {

@@ -21,13 +21,13 @@ double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores);
 /// Standard error of `risk_of` if the scores are those of `sampled` futures drawn with equal
 /// probability. Mean: from the variance of the scores. CVaR: from the variance of their excess over
 /// the quantile. Absent for worst and quantile, for cvar with fewer than 10 drawn futures in the
-/// tail, and if all scores are equal, since futures that were not drawn may differ.
+/// tail, and if all scores are equal up to rounding, since futures that were not drawn may differ.
 std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
                                      std::size_t sampled);
 
 /// Standard error of the difference of two values of `risk_of`, each over the scores in the same
-/// futures drawn with equal probability: 0 if all scores differ by the same number. Absent where
-/// the error of one of them is, for reasons other than equal scores.
+/// futures drawn with equal probability: 0 if all scores differ by the same number up to rounding.
+/// Absent where the error of one of them is, for reasons other than equal scores.
 std::optional<double> difference_error(const RiskMeasure& risk, const std::vector<double>& a,
                                        const std::vector<double>& b);
 

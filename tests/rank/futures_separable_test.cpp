@@ -116,5 +116,24 @@ TEST(FuturesSeparable, TheErrorOfADifferenceIsThatOfItsMean) {
               std::sqrt(variance / 63.0), 1e-12);
 }
 
+TEST(FuturesSeparable, RoundingIsNoSamplingError) {
+  const RiskMeasure mean = *risk_from_name("expected");
+  const std::vector<double> a(64, 0.3);
+  std::vector<double> b = a;
+  b.back() = std::nextafter(0.3, 1.0);
+  const auto error = [&mean](const std::vector<double>& scores) {
+    std::vector<detail::WeightedScore> weighted;
+    weighted.reserve(scores.size());
+    for (const double score : scores) weighted.push_back({score, 1.0 / 64.0});
+    return detail::sampling_error(mean, weighted, 64);
+  };
+  EXPECT_FALSE(error(a).has_value());
+  EXPECT_FALSE(error(b).has_value());
+  EXPECT_EQ(detail::difference_error(mean, a, b), 0.0);
+  b.back() = 0.3 + 1e-6;
+  EXPECT_GT(error(b), 0.0);
+  EXPECT_GT(detail::difference_error(mean, a, b), 0.0);
+}
+
 }  // namespace
 }  // namespace crashrank
