@@ -28,6 +28,7 @@
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/rank/anytime/ranker.hpp"
+#include "crashrank/rank/contact.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/candidate.hpp"

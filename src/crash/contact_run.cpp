@@ -1,5 +1,6 @@
 #include "crash/contact_run.hpp"
 
+#include "crash/event_times.hpp"
 #include "crash/pair_order.hpp"
 
 #include <algorithm>
@@ -33,20 +34,30 @@ bool can_press(const Vehicle& a, const Vehicle& b) {
 }
 
 void CountedShare::pass(double time_s) {
-  constexpr double decay_s = 0.3;
-  share = std::max(0.0, share - std::max(0.0, time_s - hold_s) / decay_s);
+  share = std::max(0.0, share - std::max(0.0, time_s - hold_s) / share_falls_s);
   hold_s = std::max(0.0, hold_s - time_s);
 }
 
 void CountedShare::take(double acceleration_mps2) {
-  constexpr double braking_mps2 = 0.3 * gravity_mps2;
-  constexpr double strong_mps2 = 1.0 * gravity_mps2;
-  const double strength =
-      std::clamp((acceleration_mps2 - braking_mps2) / (strong_mps2 - braking_mps2), 0.0, 1.0);
+  // 0.8 km/h in 20 ms.
+  constexpr double end_of_event_mps2 = 0.8 / 3.6 / 0.02;
+  const double strength = std::clamp(acceleration_mps2 / end_of_event_mps2 - 1.0, 0.0, 1.0);
   if (strength < share) return;
   share = strength;
   constexpr double strong_hold_s = 0.15;
   hold_s = std::max(hold_s, strong_hold_s);
+}
+
+double CountedShare::lasts_s() const { return hold_s + share * share_falls_s; }
+
+CountedShare CountedShare::of_further_contact(double gap_s) const {
+  CountedShare further = *this;
+  further.pass(gap_s);
+  const CountedShare fresh;
+  const double weight = shared_weight(gap_s);
+  further.share += (1.0 - weight) * (fresh.share - further.share);
+  further.hold_s += (1.0 - weight) * (fresh.hold_s - further.hold_s);
+  return further;
 }
 
 void BodyPair::begin(std::size_t a, std::size_t b) {
@@ -54,7 +65,7 @@ void BodyPair::begin(std::size_t a, std::size_t b) {
   second = static_cast<std::uint32_t>(b);
   of_first.begin();
   of_second.begin();
-  push_s = -1e9;
+  last_force_s = -1e9;
   in_first = {};
   in_second = {};
   earlier_first_m = earlier_second_m = 0.0;
@@ -292,18 +303,12 @@ Eigen::Vector2d ContactRun::step_change_mps(bool of_first) const {
 
 /// Both bodies use the same share, so that the counted impulses stay equal and opposite.
 void ContactRun::compute_counted_share() {
-  counted_ = counted_share();
+  counted_.pass(std::max(0.0, time_s_ - counted_s_));
   counted_s_ = time_s_;
   const double change_mps = std::max(step_change_mps(true).norm(), step_change_mps(false).norm());
   counted_.take(change_mps / step_s_);
   add_excluded(true, 1.0 - counted_.share);
   add_excluded(false, 1.0 - counted_.share);
-}
-
-CountedShare ContactRun::counted_share() const {
-  CountedShare now = counted_;
-  now.pass(std::max(0.0, time_s_ - counted_s_));
-  return now;
 }
 
 void ContactRun::exclude(bool from_first, double share) {
@@ -355,9 +360,8 @@ void ContactRun::end_step() {
   over_ =
       forceless_travel_m_ > (acts_ ? separation_m : no_contact_m) || time_s_ > longest_contact_s;
   if (acts_ && time_s_ - window_start_s_ > window_s && window_travel_m_ > window_m) {
-    ended_on_low_force_ = window_impulse_ns_ < low_force_share * impulse_ns_ &&
-                          impulse_ns_ > min_impulse_share * momentum_before_ns_;
-    over_ = over_ || ended_on_low_force_;
+    over_ = over_ || (window_impulse_ns_ < low_force_share * impulse_ns_ &&
+                      impulse_ns_ > min_impulse_share * momentum_before_ns_);
     window_impulse_ns_ = 0.0;
     window_start_s_ = time_s_;
     window_travel_m_ = 0.0;

@@ -16,10 +16,12 @@ namespace crashrank {
 namespace detail {
 
 /// Share of a contact's force that counts towards delta-v. Injury risk curves describe impacts of
-/// about 0.1 s; a push or scrape that accelerates both bodies no more than everyday braking is not
-/// an impact, whatever velocity change it adds up to. The share is 1 at 1 g, 0 at 0.3 g, in
-/// proportion between. It begins at 1 and stays for 0.3 s, so that slow impacts, whose forces are
-/// as small, count entirely; after a strong force it stays for 0.15 s. Then it falls by 1 in 0.3 s.
+/// about 0.1 s; a push or scrape that accelerates both bodies no more than hard braking is not an
+/// impact, whatever velocity change it adds up to. The share is 0 up to 11.1 m/s² (1.13 g), the 0.8
+/// km/h in 20 ms at which event data recorders end an event (49 CFR 563.5), 1 from twice that, in
+/// proportion between. It begins at 1 and stays for 0.3 s, the time for which they record the
+/// greatest delta-v, so that slow impacts, whose forces are as small, count entirely; after a
+/// strong force it stays for 0.15 s. Then it falls by 1 in 0.3 s.
 struct CountedShare {
   double share = 1.0;
   double hold_s = 0.3;  ///< the share does not fall for this time
@@ -28,6 +30,11 @@ struct CountedShare {
   void pass(double time_s);
   /// Takes a force that accelerates the body that it moves more by `acceleration_mps2`.
   void take(double acceleration_mps2);
+  /// The share at the begin of a further contact of the same bodies, `gap_s` after this force. A
+  /// scrape that loses touch for a moment goes on as it was; see `shared_weight`.
+  CountedShare of_further_contact(double gap_s) const;
+  /// Time after which the share is 0 without another force, s.
+  double lasts_s() const;
 };
 
 /// Two bodies of a contact: the pieces of each outline near the other body, what they have crushed
@@ -48,8 +55,8 @@ struct BodyPair {
   double earlier_first_m = 0.0;     ///< greatest intrusion into the first in earlier contacts
   double earlier_second_m = 0.0;    ///< greatest intrusion into the second in earlier contacts
   std::uint64_t last_end_step = 0;  ///< scene step in which their last contact ended
-  double push_s = -1e9;             ///< scene time of the last end on a negligible force
-  CountedShare push_share;          ///< at that time
+  double last_force_s = -1e9;       ///< scene time of their last force
+  CountedShare last_share;          ///< of that force
 
   /// Clears the pair; keeps allocated memory.
   void begin(std::size_t a, std::size_t b);
@@ -116,10 +123,12 @@ public:
   void apply_forces();
   /// Velocity change of the first or the second body by the force of this step, m/s.
   Eigen::Vector2d step_change_mps(bool of_first) const;
-  /// Marks the contact as the continuation of a push, which does not begin with an impact.
-  void begin_as_push(const CountedShare& share) noexcept { counted_ = share; }
-  /// Share of the force that counts at present.
-  CountedShare counted_share() const;
+  /// Begins with the share that an earlier contact of the same bodies left.
+  void set_counted_share(const CountedShare& share) noexcept { counted_ = share; }
+  /// Share of the last force that counts.
+  const CountedShare& counted_share() const noexcept { return counted_; }
+  /// Time since that force, s.
+  double forceless_s() const noexcept { return time_s_ - counted_s_; }
   /// Computes, after `apply_forces`, the share of the force of this step that counts towards
   /// delta-v: less than 1 in long pushes and scrapes.
   void compute_counted_share();
@@ -133,9 +142,6 @@ public:
   /// over.
   void end_step();
   bool over() const noexcept { return over_; }
-  /// Returns true if the contact ended because its force became negligible; the bodies may still
-  /// touch.
-  bool ended_on_low_force() const noexcept { return ended_on_low_force_; }
 
   std::size_t first() const noexcept { return first_; }
   /// Index of the body that the contact began with, besides the first.
@@ -229,7 +235,6 @@ private:
   double radius_m_ = 0.0;  ///< no outline point is further from its centre of mass
 
   bool over_ = false;
-  bool ended_on_low_force_ = false;
   bool acts_ = false;
   Totals totals_;         ///< sums of this step
   PlanarForce on_first_;  ///< force in this step, moment about its centre of mass

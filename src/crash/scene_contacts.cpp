@@ -31,10 +31,9 @@ void SceneRun::close_contact(ContactRun& run) {
   ended_work_ += run.work();
   for (const std::uint32_t k : run.pairs()) {
     memory_.pairs[k].last_end_step = steps_;
-    if (run.ended_on_low_force()) {
-      memory_.pairs[k].push_s = now_s_;
-      memory_.pairs[k].push_share = run.counted_share();
-    }
+    if (!run.acts()) continue;
+    memory_.pairs[k].last_force_s = now_s_ - run.forceless_s();
+    memory_.pairs[k].last_share = run.counted_share();
   }
   if (run.acts()) {
     const std::size_t first = run.first();
@@ -118,6 +117,7 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
   const auto a = static_cast<std::uint32_t>(swapped ? second : first);
   const auto b = static_cast<std::uint32_t>(swapped ? first : second);
   const double begin_s = begun_s_[static_cast<std::size_t>(&run - runs_.data())];
+  const double counts_until_s = now_s_ - run.forceless_s() + run.counted_share().lasts_s();
   for (std::size_t k = contacts_.size(); k > 0; --k) {
     SceneContact& earlier = contacts_[k - 1];
     if (earlier.a != a || earlier.b != b) continue;
@@ -129,6 +129,7 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
         net_change_share(outcome.a, given_a, earlier.outcome.a) * outcome.a.delta_v_mps.norm(),
         net_change_share(outcome.b, given_b, earlier.outcome.b) * outcome.b.delta_v_mps.norm());
     if (change > SceneContact::max_merged_mps) break;
+    earlier.counts_until_s = std::max(earlier.counts_until_s, counts_until_s);
     merge_outcome(outcome, later_s, earlier.outcome);
     if (second_is_fixed) record_pressed(run, earlier);
     return;
@@ -142,6 +143,7 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
   contact.a = a;
   contact.b = b;
   contact.begin_s = begin_s;
+  contact.counts_until_s = counts_until_s;
   contact.is_first =
       &run == first_run_ && (members_[partner_].state != State::fixed || second == partner_ ||
                              members_[second].state != State::fixed);

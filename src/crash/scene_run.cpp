@@ -244,10 +244,23 @@ void SceneRun::open_contact(std::size_t i, std::size_t j) {
   begun_s_[k] = now_s_;
   runs_[k].begin(memory_, first, index, contact_body(first), contact_body(second), origin_m_,
                  options_.variant, options_.contact);
-  if (!(now_s_ - pair.push_s < SceneContact::push_window_s)) return;
-  CountedShare share = pair.push_share;
-  share.pass(now_s_ - pair.push_s);
-  runs_[k].begin_as_push(share);
+}
+
+/// Share that counts of the first force of a contact: what the last contact of the same bodies, or
+/// with a body that adjoins the other, has left of it.
+CountedShare SceneRun::share_at_first_force(const ContactRun& run) const {
+  double last_force_s = -1e9;
+  CountedShare share;
+  const View<const std::uint32_t> own = run.pairs();
+  for (std::size_t k = 0; k < memory_.pairs_in_use; ++k) {
+    const BodyPair& pair = memory_.pairs[k];
+    if (pair.first != run.first() || !(pair.last_force_s > last_force_s)) continue;
+    const bool same = std::find(own.begin(), own.end(), k) != own.end();
+    if (!same && !adjoins_any(pair.second, run)) continue;
+    last_force_s = pair.last_force_s;
+    share = pair.last_share.of_further_contact(now_s_ - last_force_s);
+  }
+  return share;
 }
 
 void SceneRun::open_contacts() {
@@ -330,6 +343,7 @@ void SceneRun::step() {
     last_force_s_ = now_s_;
     if (!run.acts() && &run != first_run_) {
       run.begin_at_first_force(contact_body(run.first()), contact_body(run.second()));
+      run.set_counted_share(share_at_first_force(run));
       begun_s_[k] = now_s_;
     }
     mark_touched(run.first());

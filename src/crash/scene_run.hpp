@@ -57,9 +57,6 @@ struct SceneOptions {
 struct SceneContact {
   static constexpr double merge_window_s = 0.1;
   static constexpr double max_merged_mps = 0.5;
-  /// A force that begins within this time after the contact law has ended a contact on a negligible
-  /// force continues the push, s.
-  static constexpr double push_window_s = 0.1;
 
   std::uint32_t a = 0;  ///< index of the movable body; of two movable bodies the lower index
   /// Index of the other body; of several adjoining fixed bodies the one with the largest impulse.
@@ -69,6 +66,8 @@ struct SceneContact {
   /// is fixed and another fixed body of the contact receives more impulse, the contact is reported
   /// for that body and this is false.
   bool is_first = false;
+  /// Time from which on nothing of its force would count, on the same clock; see `CountedShare`.
+  double counts_until_s = 0.0;
   ContactBody given_a;  ///< state at the beginning of the contact
   ContactBody given_b;
   ContactOutcome outcome;
@@ -219,6 +218,7 @@ private:
   void open_contact(std::size_t i, std::size_t j);
   ContactRun* live_with(std::size_t i, std::size_t j);
   bool adjoins_any(std::size_t i, const ContactRun& run) const;
+  CountedShare share_at_first_force(const ContactRun& run) const;
   std::uint32_t pair_of(std::size_t i, std::size_t j, bool& seen_before);
   void close_contact(ContactRun& run);
   void record_contact(const ContactRun& run, const ContactOutcome& outcome, bool swapped);

@@ -174,6 +174,7 @@ ContactEffect CrashChain::effect(std::size_t index) const {
   ContactEffect e;
   e.begin_s = contact.begin_s;
   e.end_s = contact.begin_s + contact.outcome.duration_s;
+  e.counts_until_s = contact.counts_until_s;
   e.closing_mps = contact.is_first ? first_->closing_speed_mps : closing_of(contact).norm();
   if (!again) {
     e.closing_energy_j = closing_energy_j(contact.given_a.vehicle->mass_kg,

@@ -51,13 +51,16 @@ double damage_score(const std::map<std::size_t, BodyDamage>& damage, const Measu
   return score;
 }
 
-/// Final values of all events. Needed because a contact is tallied before later contacts extend its
-/// event.
+/// The largest values of all events. Needed because a contact is tallied before later contacts
+/// extend its event.
 struct EventTotals {
-  /// by body and number of the event
-  std::map<std::pair<std::size_t, std::size_t>, BodyEvent> last;
+  /// by body and number of the event: as it was with its largest delta-v
+  std::map<std::pair<std::size_t, std::size_t>, BodyEvent> largest;
 
-  void note(std::size_t body, const BodyEvent& event) { last[{body, event.number}] = event; }
+  void note(std::size_t body, const BodyEvent& event) {
+    BodyEvent& noted = largest[{body, event.number}];
+    if (noted.number == 0 || event.size_mps() >= noted.size_mps()) noted = event;
+  }
 };
 
 /// Returns the score of the nominal sample and sets the event and the added harm of each contact.
@@ -95,7 +98,7 @@ double score_nominal(const Scene& scene, const SimulatedOutcome& from, Tally& ta
   for (std::size_t k = 0; k < effects.size(); ++k) {
     const OutcomePair outcomes = outcomes_of(result, from.reported[k]);
     const auto fill_event = [&](std::size_t side, BodyOutcome& outcome) {
-      const BodyEvent& event = events.last[{effects[k].sides[side].body, numbers[k][side]}];
+      const BodyEvent& event = events.largest[{effects[k].sides[side].body, numbers[k][side]}];
       outcome.event_delta_v_mps = event.size_mps();
       outcome.event_yaw_rate_change_radps = event.yaw_radps;
     };

@@ -1,5 +1,6 @@
 #include "rank/tally.hpp"
 
+#include "crash/event_times.hpp"
 #include "crash/rebound.hpp"
 #include "crashrank/crash/contact_law.hpp"
 #include "rank/measure_table.hpp"
@@ -28,6 +29,7 @@ void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect&
   const SideEffect& own = effect.sides[side];
   const Body& other = body_of(scene, effect.sides[1 - side].body);
   event.end_s = std::max(event.end_s, effect.end_s);
+  event.counts_until_s = std::max(event.counts_until_s, effect.counts_until_s);
   event.delta_v_mps += own.delta_v_mps - own.squeeze_mps;
   event.greatest_mps = std::max(event.greatest_mps, own.delta_v_mps.norm());
   event.impulse_ns += own.impulse_ns;
@@ -56,15 +58,9 @@ BodyEvent new_event(const SideEffect& side) {
   return event;
 }
 
-/// Share of an event that still counts in a contact which begins `gap_s` after its end.
-double shared_weight(double gap_s) {
-  return std::clamp((apart_s - gap_s) / (apart_s - same_event_s), 0.0, 1.0);
-}
-
-/// The event that a contact opens, with a share in [0, 1) of the event before it.
+/// The event of a contact that counts a share in [0, 1) of what was before it.
 BodyEvent next_event(const BodyEvent& before, const SideEffect& side, double share) {
   BodyEvent event = before.scaled(share);
-  event.number = before.number + 1;
   event.forward = (share * before.forward + (1.0 - share) * side.forward).normalized();
   event.road_mps = share * before.road_mps + (1.0 - share) * side.road_mps;
   return event;
@@ -150,14 +146,18 @@ void Tally::add_side(const Scene& scene, const ContactEffect& effect, std::size_
                      const HarmSample& sample) {
   const SideEffect& own = effect.sides[side];
   Entry& e = entry(own.body);
-  const double share = e.open.number == 0 ? 0.0 : shared_weight(effect.begin_s - e.open.end_s);
+  const double gap_s = effect.begin_s - e.open.end_s;
+  const bool is_first = e.open.number == 0;
+  const double share =
+      is_first ? 0.0 : shared_weight(gap_s) * share_left(e.open.counts_until_s, effect.begin_s);
   if (share < 1.0) {
-    // What the new event does not keep of the one before it is closed. Its risk is the one that,
+    // What is not kept of the contacts before is closed. Its risk is the one that,
     // combined with the risk kept, gives the risk before: the score does not fall.
     BodyEvent rest = e.open.scaled(1.0 - share);
     rest.risk /= 1.0 - share * e.open.risk;
     e.closed = term(scene, e, rest);
     e.open = next_event(e.open, own, share);
+    if (is_first || gap_s >= same_event_s) ++e.open.number;
   }
   add_contact_side(e.open, scene, effect, side);
   if (!measure_row(scene.measure).counts_people) return;

@@ -9,16 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace crashrank::detail {
-
-/// A contact of a body that begins less than `same_event_s` after the end of an earlier one belongs
-/// to the same event, s. The delta-v of an event is the sum over its contacts. A contact that
-/// begins later opens a new event, in which the earlier one counts with a share that falls linearly
-/// to 0 at `apart_s`: two hits in a row are not twice as harmful at 0.09 s as at 0.11 s.
-inline constexpr double same_event_s = 0.1;
-inline constexpr double apart_s = 0.2;
 
 /// Effect of a contact on one of its two bodies.
 struct SideEffect {
@@ -40,6 +34,8 @@ struct SideEffect {
 struct ContactEffect {
   double begin_s = 0.0;
   double end_s = 0.0;
+  /// time from which on nothing of its force would count
+  double counts_until_s = std::numeric_limits<double>::infinity();
   double closing_mps = 0.0;  ///< closing speed at the begin
   double restitution = 0.0;
   double dissipated_j = 0.0;
@@ -54,10 +50,13 @@ ContactEffect scale_restitution(const ContactEffect& effect, double factor);
 /// Upper bound on the intrusion: the depth of the middle of the passenger compartment, m.
 double max_intrusion_m(const Vehicle& v);
 
-/// The contacts of one event of a body, taken together.
+/// The contacts of one event of a body, taken together. Where a weak force, such as that of a
+/// scrape, leads from one impact to the next, the earlier impact counts with the share that is left
+/// of it when the later one begins.
 struct BodyEvent {
   std::size_t number = 0;  ///< from 1; 0: none yet
   double end_s = 0.0;
+  double counts_until_s = 0.0;  ///< latest of its contacts
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();
   double greatest_mps = 0.0;  ///< largest delta-v of one of its contacts
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();

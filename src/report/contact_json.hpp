@@ -2,7 +2,7 @@
 
 #include "crashrank/base/view.hpp"
 #include "crashrank/model/model.hpp"
-#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/contact.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "report/damage_summary.hpp"
 

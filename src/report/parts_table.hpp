@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/mesh/triangle_mesh.hpp"
-#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/contact.hpp"
 
 #include <string>
 

@@ -399,25 +399,5 @@ TEST(Aftermath, LeadingEdgeHeightIsThatOfTheMesh) {
   EXPECT_GT(risk(0.55F), 1.1 * risk(0.4F));
 }
 
-// Scraping along a barrier decelerates a car less than its brakes do; hitting it at an angle
-// decelerates it more.
-TEST(Aftermath, HarmOfAScrapeRisesWithTheAngle) {
-  double last = 0.0;
-  for (const double angle_deg : {3.0, 8.0, 15.0, 30.0}) {
-    Scene scene = road();
-    scene.scenario.grip = 0.8;
-    const double yaw = angle_deg * std::numbers::pi / 180.0;
-    scene.scenario.ego.pose = pose_from_angles({0, 0, 0}, yaw, 0.0, 0.0);
-    const std::size_t wall =
-        scene.add_model("wall", box_mesh({200.0F, 0.25F, 1.0F}), BodyKind::barrier, {});
-    scene.add_actor("wall", wall, 190.0, 4.0);
-    const RankResult result = scene.ranked();
-    const CandidateResult& on = of(result, "on");
-    ASSERT_FALSE(on.contacts.empty()) << angle_deg;
-    EXPECT_GT(*on.score, last) << angle_deg;
-    last = *on.score;
-  }
-}
-
 }  // namespace
 }  // namespace crashrank

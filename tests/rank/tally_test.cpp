@@ -109,6 +109,38 @@ TEST(Tally, TheShareOfAnEarlierEventFallsWithoutAJump) {
               3.0 + std::hypot(3.0, 8.0), 1e-12);
 }
 
+/// A scrape leads from one impact to the next: what is left of the first by then adds up with the
+/// second, the rest is an impact of its own.
+TEST(Tally, AWeakForceBetweenTwoImpactsDoesNotAddThemUp) {
+  const Scene scene = scene_of(Measure::delta_v);
+  ContactEffect first = effect(ego_body, 0, 1.0, 2.0, {-6, 0, 0});
+  const ContactEffect second = effect(ego_body, 1, 2.05, 2.1, {0, 8, 0});
+  const auto score = [&](double counts_until_s) {
+    first.counts_until_s = counts_until_s;
+    return score_of(scene, {first, second});
+  };
+  EXPECT_DOUBLE_EQ(score(2.5), 10.0);
+  EXPECT_NEAR(score(2.2), 3.0 + std::hypot(3.0, 8.0), 1e-12);
+  EXPECT_DOUBLE_EQ(score(2.05), 14.0);
+  EXPECT_DOUBLE_EQ(score(1.6), 14.0);
+  // It stays one event: by its number contacts are less than 0.1 s apart.
+  Tally tally;
+  tally.add(scene, first, scene.nominal);
+  tally.add(scene, second, scene.nominal);
+  EXPECT_EQ(tally.event(ego_body).number, 1U);
+  const Scene harm = scene_of(Measure::harm);
+  double before = score_of(harm, {first});
+  for (double until_s = 1.9; until_s < 2.5; until_s += 0.01) {
+    first.counts_until_s = until_s;
+    const double now = score_of(harm, {first, second});
+    EXPECT_GE(now, score_of(harm, {first}));
+    if (until_s > 1.9) {
+      EXPECT_NEAR(now, before, 0.05 * now);
+    }
+    before = now;
+  }
+}
+
 TEST(Tally, AnEventExtendsToTheLatestEnd) {
   const Scene scene = scene_of(Measure::delta_v);
   Tally tally;
