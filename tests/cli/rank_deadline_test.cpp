@@ -12,7 +12,7 @@ using cli_test::Json;
 using cli_test::Outcome;
 using cli_test::Workplace;
 
-Outcome ranked(const Workplace& place, const std::vector<std::string>& more) {
+Outcome run_rank(const Workplace& place, const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"rank", "scenario.json", "--json"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return place.crashrank(arguments);
@@ -29,11 +29,11 @@ std::map<std::string, double> scores(const Json& answer) {
 TEST(RankDeadline, WithoutWorkOnlyIntervalsAreKnownAndTheCodeIsThatOfABudget) {
   const Workplace place;
   cli_test::write_box_scenario(place);
-  const std::map<std::string, double> all = scores(ranked(place, {}).json());
+  const std::map<std::string, double> all = scores(run_rank(place, {}).json());
   const std::vector<std::vector<std::string>> budgets{{"--work-budget", "0"},
                                                       {"--deadline-ms", "0"}};
   for (const std::vector<std::string>& none : budgets) {
-    const Outcome run = ranked(place, none);
+    const Outcome run = run_rank(place, none);
     EXPECT_EQ(run.code, 4);
     const Json answer = run.json();
     EXPECT_EQ(answer.at("complete"), false);
@@ -50,7 +50,7 @@ TEST(RankDeadline, WithoutWorkOnlyIntervalsAreKnownAndTheCodeIsThatOfABudget) {
       }
     }
     // Where the full answer puts somebody the intervals have to allow.
-    const Json full = ranked(place, {"--deadline-ms", "100000"}).json();
+    const Json full = run_rank(place, {"--deadline-ms", "100000"}).json();
     for (std::size_t at = 0; at < full.at("ranking").size(); ++at) {
       for (const Json& one : answer.at("ranking")) {
         if (one.at("candidate") != full.at("ranking")[at].at("candidate")) continue;
@@ -65,14 +65,14 @@ TEST(RankDeadline, WithoutWorkOnlyIntervalsAreKnownAndTheCodeIsThatOfABudget) {
 TEST(RankDeadline, APartialAnswerAndOptionsWithoutPartAreToldOnStandardError) {
   const Workplace place;
   cli_test::write_box_scenario(place);
-  const Outcome cut = ranked(place, {"--work-budget", "0"});
+  const Outcome cut = run_rank(place, {"--work-budget", "0"});
   EXPECT_NE(cut.err.find("a partial answer, its first place not proved"), std::string::npos)
       << cut.err;
   EXPECT_TRUE(cli_test::is_one_message(cut.err)) << cut.err;
   ASSERT_EQ(cut.json().at("warnings").size(), 1U);
   EXPECT_NE(cut.err.find(cut.json().at("warnings")[0].get<std::string>()), std::string::npos);
-  EXPECT_EQ(ranked(place, {"--deadline-ms", "100000"}).err, "");
-  const Outcome idle = ranked(place, {"--deadline-ms", "100000", "--policy", "random"});
+  EXPECT_EQ(run_rank(place, {"--deadline-ms", "100000"}).err, "");
+  const Outcome idle = run_rank(place, {"--deadline-ms", "100000", "--policy", "random"});
   EXPECT_EQ(idle.code, 0);
   EXPECT_NE(idle.err.find("--policy and --depth have no part"), std::string::npos) << idle.err;
 }
@@ -81,8 +81,8 @@ TEST(RankDeadline, TimeEnoughGivesThePlainScores) {
   const Workplace place;
   cli_test::write_box_scenario(place);
   for (const std::string measure : {"harm", "polygons"}) {
-    const Json plain = ranked(place, {"--measure", measure}).json();
-    const Outcome run = ranked(place, {"--measure", measure, "--deadline-ms", "100000"});
+    const Json plain = run_rank(place, {"--measure", measure}).json();
+    const Outcome run = run_rank(place, {"--measure", measure, "--deadline-ms", "100000"});
     EXPECT_EQ(run.code, 0);
     EXPECT_EQ(scores(run.json()), scores(plain));
     EXPECT_EQ(run.json().at("effort").at("left_early"), 0);
@@ -94,9 +94,9 @@ TEST(RankDeadline, WhatIsNoTimeAndAReportThatCannotBeWrittenAreRefusedBeforeTheW
   const Workplace place;
   cli_test::write_box_scenario(place);
   for (const char* text : {"nan", "inf", "-1", "soon"}) {
-    EXPECT_EQ(ranked(place, {"--deadline-ms", text}).code, 2) << text;
+    EXPECT_EQ(run_rank(place, {"--deadline-ms", text}).code, 2) << text;
   }
-  const Outcome run = ranked(place, {"--report", "no/such/folder/page.html"});
+  const Outcome run = run_rank(place, {"--report", "no/such/folder/page.html"});
   EXPECT_EQ(run.code, 3);
   EXPECT_NE(run.err.find("no/such/folder/page.html"), std::string::npos) << run.err;
 }
@@ -105,8 +105,9 @@ TEST(RankDeadline, ABudgetOfWorkCutsTheSameEveryTime) {
   const Workplace place;
   cli_test::write_box_scenario(place);
   for (const char* work : {"50", "500", "5000", "50000"}) {
-    Json one = ranked(place, {"--measure", "harm", "--work-budget", work}).json();
-    Json two = ranked(place, {"--measure", "harm", "--work-budget", work, "--workers", "3"}).json();
+    Json one = run_rank(place, {"--measure", "harm", "--work-budget", work}).json();
+    Json two =
+        run_rank(place, {"--measure", "harm", "--work-budget", work, "--workers", "3"}).json();
     EXPECT_EQ(one.at("ranking"), two.at("ranking")) << work;
     EXPECT_EQ(one.at("in_race"), two.at("in_race")) << work;
     EXPECT_EQ(one.at("effort").at("work"), two.at("effort").at("work")) << work;
@@ -116,8 +117,8 @@ TEST(RankDeadline, ABudgetOfWorkCutsTheSameEveryTime) {
 TEST(RankDeadline, TheFirstPlaceIsEnoughWhereItIsAskedFor) {
   const Workplace place;
   cli_test::write_box_scenario(place);
-  const Json plain = ranked(place, {"--measure", "harm"}).json();
-  const Outcome run = ranked(place, {"--measure", "harm", "--first-place"});
+  const Json plain = run_rank(place, {"--measure", "harm"}).json();
+  const Outcome run = run_rank(place, {"--measure", "harm", "--first-place"});
   EXPECT_EQ(run.code, 0);
   EXPECT_EQ(run.json().at("proved"), true);
   EXPECT_EQ(run.json().at("ranking").at(0).at("candidate"),
@@ -127,9 +128,9 @@ TEST(RankDeadline, TheFirstPlaceIsEnoughWhereItIsAskedFor) {
 TEST(RankDeadline, BudgetsThatAreNoneAreRefused) {
   const Workplace place;
   cli_test::write_box_scenario(place);
-  EXPECT_EQ(ranked(place, {"--deadline-ms", "-1"}).code, 2);
-  EXPECT_EQ(ranked(place, {"--deadline-ms", "soon"}).code, 2);
-  EXPECT_EQ(ranked(place, {"--work-budget", "-3"}).code, 2);
+  EXPECT_EQ(run_rank(place, {"--deadline-ms", "-1"}).code, 2);
+  EXPECT_EQ(run_rank(place, {"--deadline-ms", "soon"}).code, 2);
+  EXPECT_EQ(run_rank(place, {"--work-budget", "-3"}).code, 2);
 }
 
 }  // namespace
