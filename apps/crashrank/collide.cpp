@@ -190,7 +190,7 @@ std::string time_us(double seconds) {
 
 std::string cost_text(const Cost& cost) {
   if (!std::isfinite(cost.cb_s)) return "Cb and Cp cannot be computed from so few tests";
-  const std::string boxes = fmt::format("Cb = {:.2f} ns a box test", cost.cb_s * 1e9);
+  std::string boxes = fmt::format("Cb = {:.2f} ns a box test", cost.cb_s * 1e9);
   if (!std::isfinite(cost.cp_s)) return boxes;
   return boxes + fmt::format(", Cp = {:.2f} ns a triangle test", cost.cp_s * 1e9);
 }

@@ -28,6 +28,8 @@ std::atomic<std::thread::id> answering{};
 
 /// The terminal is one, and so is what is drawn on it.
 struct Shown {
+  Shown() noexcept = default;
+
   std::mutex mutex;
   std::vector<Progress*> all;
   std::chrono::steady_clock::time_point next;
