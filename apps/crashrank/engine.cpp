@@ -116,7 +116,7 @@ Result<Engine> make_engine(const EngineArguments& arguments, const Model& a, con
   const Result<std::shared_ptr<Workers>> started =
       fast ? start(arguments.workers, a, b) : start(arguments.workers, a.tree, b.tree);
   if (!started) return started.error();
-  const std::shared_ptr<Workers> workers = *started;
+  const std::shared_ptr<Workers>& workers = *started;
   DispatchOptions how;
   how.policy = *policy_from_name(arguments.policy);
   how.depth = *depth_from_text(arguments.depth);
