@@ -34,7 +34,8 @@ bool can_press(const Vehicle& a, const Vehicle& b) {
 }
 
 void CountedShare::pass(double time_s) {
-  share = std::max(0.0, share - std::max(0.0, time_s - hold_s) / share_falls_s);
+  constexpr double decay_s = 0.3;
+  share = std::max(0.0, share - std::max(0.0, time_s - hold_s) / decay_s);
   hold_s = std::max(0.0, hold_s - time_s);
 }
 
@@ -47,8 +48,6 @@ void CountedShare::take(double acceleration_mps2) {
   constexpr double strong_hold_s = 0.15;
   hold_s = std::max(hold_s, strong_hold_s);
 }
-
-double CountedShare::lasts_s() const { return hold_s + share * share_falls_s; }
 
 CountedShare CountedShare::of_further_contact(double gap_s) const {
   CountedShare further = *this;
@@ -307,6 +306,9 @@ void ContactRun::compute_counted_share() {
   counted_s_ = time_s_;
   const double change_mps = std::max(step_change_mps(true).norm(), step_change_mps(false).norm());
   counted_.take(change_mps / step_s_);
+  const double counted_mps = counted_.share * change_mps;
+  counted_mps_ += counted_mps;
+  counted_moment_m_ += counted_mps * (time_s_ + 0.5 * step_s_);
   add_excluded(true, 1.0 - counted_.share);
   add_excluded(false, 1.0 - counted_.share);
 }

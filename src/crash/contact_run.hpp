@@ -33,8 +33,6 @@ struct CountedShare {
   /// The share at the begin of a further contact of the same bodies, `gap_s` after this force. A
   /// scrape that loses touch for a moment goes on as it was; see `shared_weight`.
   CountedShare of_further_contact(double gap_s) const;
-  /// Time after which the share is 0 without another force, s.
-  double lasts_s() const;
 };
 
 /// Two bodies of a contact: the pieces of each outline near the other body, what they have crushed
@@ -127,6 +125,10 @@ public:
   void set_counted_share(const CountedShare& share) noexcept { counted_ = share; }
   /// Share of the last force that counts.
   const CountedShare& counted_share() const noexcept { return counted_; }
+  /// Mean time of the force that counts, weighted by the velocity change, since the beginning, s.
+  double mean_force_s() const {
+    return counted_mps_ > 0.0 ? counted_moment_m_ / counted_mps_ : 0.0;
+  }
   /// Time since that force, s.
   double forceless_s() const noexcept { return time_s_ - counted_s_; }
   /// Computes, after `apply_forces`, the share of the force of this step that counts towards
@@ -240,11 +242,13 @@ private:
   PlanarForce on_first_;  ///< force in this step, moment about its centre of mass
   /// Impulse on the first body since the last rebound, moment about the origin.
   PlanarForce since_rebound_;
-  PlanarForce impulse_on_first_;  ///< impulse of the contact, moment about its centre of mass
-  double applied_s_ = 0.0;        ///< time for which the force of this step was applied
-  CountedShare counted_;          ///< share of the force that counts
-  double counted_s_ = 0.0;        ///< its time, s
-  PlanarForce excluded_first_;    ///< impulses that do not count, see `exclude`
+  PlanarForce impulse_on_first_;   ///< impulse of the contact, moment about its centre of mass
+  double applied_s_ = 0.0;         ///< time for which the force of this step was applied
+  CountedShare counted_;           ///< share of the force that counts
+  double counted_s_ = 0.0;         ///< its time, s
+  double counted_mps_ = 0.0;       ///< sum of the velocity changes that counted
+  double counted_moment_m_ = 0.0;  ///< that sum weighted by their times
+  PlanarForce excluded_first_;     ///< impulses that do not count, see `exclude`
   PlanarForce excluded_second_;
   VelocityChange change_first_;
   VelocityChange change_second_;

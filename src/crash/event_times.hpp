@@ -16,12 +16,13 @@ inline double shared_weight(double gap_s) {
   return std::clamp((apart_s - gap_s) / (apart_s - same_event_s), 0.0, 1.0);
 }
 
-/// Time in which the share of a force that counts falls from 1 to 0, s; see `CountedShare`.
-inline constexpr double share_falls_s = 0.3;
-
-/// Share of an impact that still counts at `time_s` if none does from `until_s` on.
-inline double share_left(double until_s, double time_s) {
-  return std::clamp((until_s - time_s) / share_falls_s, 0.0, 1.0);
+/// Share with which an earlier impact, whose force had its mean at `force_s`, counts for one that
+/// begins at `time_s`, if a weak force leads from one to the other: 1 up to 0.3 s later, 0 from 0.6
+/// s on. The same times as those of `CountedShare`.
+inline double share_left(double force_s, double time_s) {
+  constexpr double whole_s = 0.3;
+  constexpr double falls_s = 0.3;
+  return std::clamp((force_s + whole_s + falls_s - time_s) / falls_s, 0.0, 1.0);
 }
 
 }  // namespace crashrank::detail

@@ -117,7 +117,6 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
   const auto a = static_cast<std::uint32_t>(swapped ? second : first);
   const auto b = static_cast<std::uint32_t>(swapped ? first : second);
   const double begin_s = begun_s_[static_cast<std::size_t>(&run - runs_.data())];
-  const double counts_until_s = now_s_ - run.forceless_s() + run.counted_share().lasts_s();
   for (std::size_t k = contacts_.size(); k > 0; --k) {
     SceneContact& earlier = contacts_[k - 1];
     if (earlier.a != a || earlier.b != b) continue;
@@ -129,7 +128,6 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
         net_change_share(outcome.a, given_a, earlier.outcome.a) * outcome.a.delta_v_mps.norm(),
         net_change_share(outcome.b, given_b, earlier.outcome.b) * outcome.b.delta_v_mps.norm());
     if (change > SceneContact::max_merged_mps) break;
-    earlier.counts_until_s = std::max(earlier.counts_until_s, counts_until_s);
     merge_outcome(outcome, later_s, earlier.outcome);
     if (second_is_fixed) record_pressed(run, earlier);
     return;
@@ -143,7 +141,7 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
   contact.a = a;
   contact.b = b;
   contact.begin_s = begin_s;
-  contact.counts_until_s = counts_until_s;
+  contact.mean_force_s = begin_s + run.mean_force_s();
   contact.is_first =
       &run == first_run_ && (members_[partner_].state != State::fixed || second == partner_ ||
                              members_[second].state != State::fixed);

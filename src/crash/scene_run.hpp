@@ -66,9 +66,8 @@ struct SceneContact {
   /// is fixed and another fixed body of the contact receives more impulse, the contact is reported
   /// for that body and this is false.
   bool is_first = false;
-  /// Time from which on nothing of its force would count, on the same clock; see `CountedShare`.
-  double counts_until_s = 0.0;
-  ContactBody given_a;  ///< state at the beginning of the contact
+  double mean_force_s = 0.0;  ///< mean time of its counted force on that clock
+  ContactBody given_a;        ///< state at the beginning of the contact
   ContactBody given_b;
   ContactOutcome outcome;
   /// Parts of the delta-v of `a` and of `b` that changed no velocity, see

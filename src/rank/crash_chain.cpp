@@ -174,7 +174,7 @@ ContactEffect CrashChain::effect(std::size_t index) const {
   ContactEffect e;
   e.begin_s = contact.begin_s;
   e.end_s = contact.begin_s + contact.outcome.duration_s;
-  e.counts_until_s = contact.counts_until_s;
+  e.mean_force_s = contact.mean_force_s;
   e.closing_mps = contact.is_first ? first_->closing_speed_mps : closing_of(contact).norm();
   if (!again) {
     e.closing_energy_j = closing_energy_j(contact.given_a.vehicle->mass_kg,
@@ -216,7 +216,7 @@ void CrashChain::effects(std::vector<ContactEffect>& effects,
   if (!acts) {
     order.insert(order.begin(), without_force);
     ContactEffect touch;
-    touch.begin_s = touch.end_s = first_->time_of_impact_s;
+    touch.begin_s = touch.end_s = touch.mean_force_s = first_->time_of_impact_s;
     touch.closing_mps = first_->closing_speed_mps;
     touch.sides[1].body = first_->actor;
     // If the same bodies have a contact with force later, their closing energy is counted in that

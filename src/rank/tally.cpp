@@ -29,9 +29,11 @@ void add_contact_side(BodyEvent& event, const Scene& scene, const ContactEffect&
   const SideEffect& own = effect.sides[side];
   const Body& other = body_of(scene, effect.sides[1 - side].body);
   event.end_s = std::max(event.end_s, effect.end_s);
-  event.counts_until_s = std::max(event.counts_until_s, effect.counts_until_s);
+  const double size_mps = own.delta_v_mps.norm();
+  event.summed_mps += size_mps;
+  event.moment_m += size_mps * effect.mean_force_s;
   event.delta_v_mps += own.delta_v_mps - own.squeeze_mps;
-  event.greatest_mps = std::max(event.greatest_mps, own.delta_v_mps.norm());
+  event.greatest_mps = std::max(event.greatest_mps, size_mps);
   event.impulse_ns += own.impulse_ns;
   event.yaw_radps += own.yaw_radps;
   // The intrusion of a contact is the increase over earlier contacts of the same two bodies.
@@ -91,10 +93,16 @@ ContactEffect scale_restitution(const ContactEffect& effect, double factor) {
   return e;
 }
 
+double BodyEvent::left_at(double time_s) const {
+  return summed_mps > 0.0 ? share_left(moment_m / summed_mps, time_s) : 1.0;
+}
+
 BodyEvent BodyEvent::scaled(double share) const {
   BodyEvent event = *this;
   event.delta_v_mps *= share;
   event.greatest_mps *= share;
+  event.summed_mps *= share;
+  event.moment_m *= share;
   event.impulse_ns *= share;
   event.yaw_radps *= share;
   event.closing_mps *= share;
@@ -148,8 +156,7 @@ void Tally::add_side(const Scene& scene, const ContactEffect& effect, std::size_
   Entry& e = entry(own.body);
   const double gap_s = effect.begin_s - e.open.end_s;
   const bool is_first = e.open.number == 0;
-  const double share =
-      is_first ? 0.0 : shared_weight(gap_s) * share_left(e.open.counts_until_s, effect.begin_s);
+  const double share = is_first ? 0.0 : shared_weight(gap_s) * e.open.left_at(effect.begin_s);
   if (share < 1.0) {
     // What is not kept of the contacts before is closed. Its risk is the one that,
     // combined with the risk kept, gives the risk before: the score does not fall.

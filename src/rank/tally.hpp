@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 namespace crashrank::detail {
@@ -34,9 +33,8 @@ struct SideEffect {
 struct ContactEffect {
   double begin_s = 0.0;
   double end_s = 0.0;
-  /// time from which on nothing of its force would count
-  double counts_until_s = std::numeric_limits<double>::infinity();
-  double closing_mps = 0.0;  ///< closing speed at the begin
+  double mean_force_s = 0.0;  ///< mean time of the force that counts
+  double closing_mps = 0.0;   ///< closing speed at the begin
   double restitution = 0.0;
   double dissipated_j = 0.0;
   double closing_energy_j = 0.0;  ///< see Contact; 0 except in the first contact of the pair
@@ -56,7 +54,8 @@ double max_intrusion_m(const Vehicle& v);
 struct BodyEvent {
   std::size_t number = 0;  ///< from 1; 0: none yet
   double end_s = 0.0;
-  double counts_until_s = 0.0;  ///< latest of its contacts
+  double summed_mps = 0.0;  ///< sum of the delta-v of its contacts, without directions
+  double moment_m = 0.0;    ///< that sum weighted by the mean times of their forces
   Eigen::Vector3d delta_v_mps = Eigen::Vector3d::Zero();
   double greatest_mps = 0.0;  ///< largest delta-v of one of its contacts
   Eigen::Vector3d impulse_ns = Eigen::Vector3d::Zero();
@@ -77,6 +76,8 @@ struct BodyEvent {
 
   /// The same event with all that adds up multiplied by a share in [0, 1].
   BodyEvent scaled(double share) const;
+  /// Share of it that is left at `time_s` where a weak force leads on to then.
+  double left_at(double time_s) const;
 
   /// Delta-v of the event, m/s. Contacts on opposite sides cancel in the sum, so it is at least
   /// that of any single contact.

@@ -51,6 +51,7 @@ ContactEffect any_effect(Random& random, const Scene& scene, double begin_s) {
   ContactEffect e;
   e.begin_s = begin_s;
   e.end_s = begin_s + random.uniform(0.0, 0.3);
+  e.mean_force_s = random.uniform(begin_s, e.end_s);
   e.closing_mps = log_uniform(random, 0.1, 70.0);
   e.restitution = random.uniform(0.0, 0.5);
   e.dissipated_j = log_uniform(random, 1e2, 1e7);

@@ -17,7 +17,7 @@ ContactEffect effect(std::size_t a, std::size_t b, double begin_s, double end_s,
                      const Vector3d& delta_v) {
   ContactEffect e;
   e.begin_s = begin_s;
-  e.end_s = end_s;
+  e.end_s = e.mean_force_s = end_s;
   e.closing_mps = delta_v.norm();
   e.sides[0].body = a;
   e.sides[0].delta_v_mps = delta_v;
@@ -115,26 +115,31 @@ TEST(Tally, AWeakForceBetweenTwoImpactsDoesNotAddThemUp) {
   const Scene scene = scene_of(Measure::delta_v);
   ContactEffect first = effect(ego_body, 0, 1.0, 2.0, {-6, 0, 0});
   const ContactEffect second = effect(ego_body, 1, 2.05, 2.1, {0, 8, 0});
-  const auto score = [&](double counts_until_s) {
-    first.counts_until_s = counts_until_s;
+  const auto score = [&](double mean_force_s) {
+    first.mean_force_s = mean_force_s;
     return score_of(scene, {first, second});
   };
-  EXPECT_DOUBLE_EQ(score(2.5), 10.0);
-  EXPECT_NEAR(score(2.2), 3.0 + std::hypot(3.0, 8.0), 1e-12);
-  EXPECT_DOUBLE_EQ(score(2.05), 14.0);
-  EXPECT_DOUBLE_EQ(score(1.6), 14.0);
+  EXPECT_DOUBLE_EQ(score(1.8), 10.0);
+  EXPECT_NEAR(score(1.6), 3.0 + std::hypot(3.0, 8.0), 1e-12);
+  EXPECT_DOUBLE_EQ(score(1.4), 14.0);
+  EXPECT_DOUBLE_EQ(score(1.1), 14.0);
   // It stays one event: by its number contacts are less than 0.1 s apart.
   Tally tally;
   tally.add(scene, first, scene.nominal);
   tally.add(scene, second, scene.nominal);
   EXPECT_EQ(tally.event(ego_body).number, 1U);
+  // A contact in which little happens leads on, and does not make the first impact later.
+  const ContactEffect scrape = effect(ego_body, 0, 1.2, 2.0, {-0.1, 0, 0});
+  first.end_s = 1.15;
+  EXPECT_NEAR(score_of(scene, {first, scrape, second}), 14.1, 0.05);
+  first.end_s = 2.0;
   const Scene harm = scene_of(Measure::harm);
   double before = score_of(harm, {first});
-  for (double until_s = 1.9; until_s < 2.5; until_s += 0.01) {
-    first.counts_until_s = until_s;
+  for (double mean_s = 1.3; mean_s < 1.9; mean_s += 0.01) {
+    first.mean_force_s = mean_s;
     const double now = score_of(harm, {first, second});
     EXPECT_GE(now, score_of(harm, {first}));
-    if (until_s > 1.9) {
+    if (mean_s > 1.3) {
       EXPECT_NEAR(now, before, 0.05 * now);
     }
     before = now;

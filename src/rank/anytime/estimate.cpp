@@ -66,7 +66,7 @@ double estimate_score(const Scene& scene, const Motion& ego, const Motion& other
   const double other_kg = scene.actors[first.actor].mass_kg;
   const Eigen::Vector3d stopped = stopped_part(first, scene.nominal.friction);
   ContactEffect effect;
-  effect.begin_s = effect.end_s = first.time_of_impact_s;
+  effect.begin_s = effect.end_s = effect.mean_force_s = first.time_of_impact_s;
   effect.closing_mps = stopped.norm();
   effect.dissipated_j = closing_energy_j(own_kg, other_kg, effect.closing_mps);
   effect.closing_energy_j = first.closing_energy_j;
