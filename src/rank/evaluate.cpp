@@ -90,6 +90,8 @@ double score_nominal(const Scene& scene, const SimulatedOutcome& from, Tally& ta
     if (!reported.is_further) result.contacts[reported.index].event = numbers.back()[0];
     if (!row.counts_people) continue;
     const OutcomePair outcomes = outcomes_of(result, reported);
+    // A difference of two sums: rounding can make what adds nothing negative.
+    for (double& added : harm) added = std::max(added, 0.0);
     outcomes.a.harm = harm[0];
     outcomes.b.harm = harm[1];
     (reported.is_further ? result.further[reported.index].harm
