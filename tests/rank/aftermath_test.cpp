@@ -20,18 +20,8 @@ constexpr double speed_mps = 16.0;
 
 TriangleMesh car_mesh() { return box_mesh({2.0F, 0.9F, 0.7F}, 6, {0, 0, 0.7F}); }
 
-/// An ego of 1000 kg at 16 m/s on a straight road.
-Scene road() {
-  Scene scene;
-  scene.scenario.ego.model = scene.add_model("car", car_mesh(), BodyKind::car, 1000.0);
-  scene.scenario.ego.speed_mps = speed_mps;
-  scene.scenario.horizon_s = 6.0;
-  scene.scenario.measure = Measure::harm;
-  // Almost no friction on the road: motion between contacts is tested separately.
-  scene.scenario.grip = 0.01;
-  scene.add_candidate("on", 0.0);
-  return scene;
-}
+/// Almost no friction on the road: motion between contacts is tested separately.
+Scene road() { return scenes::car_on_road(0.01); }
 
 /// A post at the corner of the front, hit just before a wall across the lane.
 TEST(Aftermath, ForceIsThatOfTheWallAndNotOfThePostTouchedFirst) {

@@ -141,4 +141,17 @@ inline Scene car_and_wall(std::optional<double> wall_kg = std::nullopt) {
   return scene;
 }
 
+/// A car of 4 × 1.8 × 1.4 m and 1000 kg at 16 m/s on a straight road, ranked by harm.
+inline Scene car_on_road(double grip) {
+  Scene scene;
+  scene.scenario.ego.model =
+      scene.add_model("car", box_mesh({2.0F, 0.9F, 0.7F}, 6, {0, 0, 0.7F}), BodyKind::car, 1000.0);
+  scene.scenario.ego.speed_mps = 16.0;
+  scene.scenario.horizon_s = 6.0;
+  scene.scenario.measure = Measure::harm;
+  scene.scenario.grip = grip;
+  scene.add_candidate("on", 0.0);
+  return scene;
+}
+
 }  // namespace crashrank::scenes

@@ -15,24 +15,11 @@ using scenes::box_mesh;
 using scenes::of;
 using scenes::Scene;
 
-/// An ego of 1000 kg at 16 m/s on a straight, dry road.
-Scene dry_road() {
-  Scene scene;
-  scene.scenario.ego.model =
-      scene.add_model("car", box_mesh({2.0F, 0.9F, 0.7F}, 6, {0, 0, 0.7F}), BodyKind::car, 1000.0);
-  scene.scenario.ego.speed_mps = 16.0;
-  scene.scenario.horizon_s = 6.0;
-  scene.scenario.measure = Measure::harm;
-  scene.scenario.grip = 0.8;
-  scene.add_candidate("on", 0.0);
-  return scene;
-}
-
 /// What follows the impact of a long scrape is no more than hard braking, and whether the car loses
 /// touch with the wall for a moment changes little.
 TEST(Scrape, AFasterScrapeAlongAWallIsHardlyMilder) {
   for (const double angle_deg : {10.0, 15.0, 20.0, 30.0, 45.0}) {
-    Scene scene = dry_road();
+    Scene scene = scenes::car_on_road(0.8);
     const std::size_t wall = scene.add_model(
         "wall", box_mesh({30.0F, 0.2F, 1.2F}, 30, {20, -0.2F, 1.2F}), BodyKind::building);
     scene.add_actor("wall", wall, 14.0, 0.0, angle_deg * std::numbers::pi / 180.0);
@@ -55,7 +42,7 @@ TEST(Scrape, AFasterScrapeAlongAWallIsHardlyMilder) {
 TEST(Scrape, HarmOfAScrapeRisesWithTheAngle) {
   double last = 0.0;
   for (const double angle_deg : {3.0, 8.0, 15.0, 30.0}) {
-    Scene scene = dry_road();
+    Scene scene = scenes::car_on_road(0.8);
     const double yaw = angle_deg * std::numbers::pi / 180.0;
     scene.scenario.ego.pose = pose_from_angles({0, 0, 0}, yaw, 0.0, 0.0);
     const std::size_t wall =
