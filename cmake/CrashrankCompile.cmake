@@ -17,6 +17,8 @@ function(crashrank_compile target)
     -Wold-style-cast -Woverloaded-virtual
     -ffp-contract=off $<$<BOOL:${CRASHRANK_WERROR}>:-Werror>)
   if(CMAKE_UNITY_BUILD)
+    # Reading the headers takes most of a compiler's time: fewer joined sources are read more often.
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
     # GCC 12 takes a header's names for a source's own, and sees less of what is set where. A local
     # name that hides a neighbour's constant hides nothing where each source is compiled alone.
     target_compile_options(${target} PRIVATE -Wno-shadow

@@ -35,7 +35,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr OutputKind pair_list{"a list of pairs", "query,a,b\n"};
 
-struct Options {
+struct CollideArguments {
   std::string a;
   std::string b;
   MeshArguments mesh;
@@ -65,7 +65,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-Status check(const Options& options) {
+Status check(const CollideArguments& options) {
   if (const Status single = one_standard_input({options.a, options.b, options.poses_file});
       !single) {
     return single.error();
@@ -86,13 +86,14 @@ Status check(const Options& options) {
   return Success{};
 }
 
-Result<Body> load_one(const std::string& path, const MeshArguments& mesh, const Options& options) {
+Result<Body> load_one(const std::string& path, const MeshArguments& mesh,
+                      const CollideArguments& options) {
   Result<LoadedBody> loaded = load_body(path, mesh, options.tree, true);
   if (!loaded) return loaded.error();
   return Body{std::move(loaded->stored.model), loaded->build_s};
 }
 
-Result<std::vector<Pose>> load_poses(const Options& options) {
+Result<std::vector<Pose>> load_poses(const CollideArguments& options) {
   std::vector<Pose> poses;
   for (const std::string& text : options.poses) {
     const Result<Pose> pose = parse_pose_option(text);
@@ -109,7 +110,7 @@ Result<std::vector<Pose>> load_poses(const Options& options) {
 }
 
 /// Runs one query `repeat` times; `pairs` ends sorted.
-Result<Query> ask(const Engine& engine, const Pose& pose, const Options& options,
+Result<Query> ask(const Engine& engine, const Pose& pose, const CollideArguments& options,
                   std::vector<Pair>& pairs) {
   std::vector<double> seconds(static_cast<std::size_t>(options.repeat));
   Result<Answer> answer = Answer{};
@@ -159,7 +160,7 @@ std::string kernel_name(const EngineArguments& engine) {
   return engine.kernel == "scalar" ? "scalar" : vector_unit();
 }
 
-Json to_json(const Options& options, const Body& a, const Body& b,
+Json to_json(const CollideArguments& options, const Body& a, const Body& b,
              const std::vector<Query>& queries, const Cost& cost) {
   Json list = Json::array();
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -195,7 +196,8 @@ std::string cost_text(const Cost& cost) {
   return boxes + fmt::format(", Cp = {:.2f} ns a triangle test", cost.cp_s * 1e9);
 }
 
-std::string to_text(const Options& options, const std::vector<Query>& queries, const Cost& cost) {
+std::string to_text(const CollideArguments& options, const std::vector<Query>& queries,
+                    const Cost& cost) {
   Table table({{"query", true},
                {"touch"},
                {"pairs", true},
@@ -216,7 +218,7 @@ std::string to_text(const Options& options, const std::vector<Query>& queries, c
          fmt::format("{}, measured here ({}).\n", cost_text(cost), kernel_name(options.engine));
 }
 
-Interruption interrupted_after(const Options& options, const Body& a, const Body& b,
+Interruption interrupted_after(const CollideArguments& options, const Body& a, const Body& b,
                                const std::vector<Query>& queries, std::size_t all,
                                const Cost& cost) {
   Interruption known;
@@ -228,7 +230,7 @@ Interruption interrupted_after(const Options& options, const Body& a, const Body
   return known;
 }
 
-int run(const Options& options) {
+int run(const CollideArguments& options) {
   if (const Status sound = check(options); !sound) return fail(sound.error());
   const std::vector<std::string> inputs{options.a, options.b, options.poses_file};
   if (const Status sound = can_be_written(options.pairs_file, pair_list, inputs); !sound) {
@@ -281,7 +283,7 @@ int run(const Options& options) {
   return exit_done;
 }
 
-constexpr const char* epilogue =
+constexpr const char* collide_epilogue =
     R"(B stands at each pose in A's frame: R = Rz(yaw) Ry(pitch) Rx(roll), then the translation.
 A triangle's number is its place in the file. hash is the first 16 hex digits of SHA-256 over the
 sorted pairs as little-endian int32. seconds runs from the call to all pairs in the buffer, unsorted.
@@ -293,7 +295,7 @@ Examples:
 }  // namespace
 
 void add_collide(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CollideArguments>();
   CLI::App* command =
       app.add_subcommand("collide", "Find the triangles of two bodies that touch, exactly");
   add_file(*command, "A", options->a, "Mesh or model file of body A; - is standard input")
@@ -318,7 +320,7 @@ void add_collide(CLI::App& app, Action& action) {
   options->tree.add_to(*command);
   options->mesh.add_to(*command);
   options->mesh_b.add_to(*command);
-  command->footer(epilogue);
+  command->footer(collide_epilogue);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -35,7 +35,7 @@ constexpr OutputKind model_file{"a model file",
                                 "\x93"
                                 "CRM\r\n\x1a\n"sv};
 
-struct Options {
+struct CompileArguments {
   std::string mesh_file;
   std::string output;
   std::optional<double> mass_kg;
@@ -66,7 +66,7 @@ Result<std::vector<double>> parse_center(const std::string& text) {
   return *numbers;
 }
 
-Status check_options(const Options& options) {
+Status check_options(const CompileArguments& options) {
   if (is_standard(options.output)) {
     return make_error(ErrorCode::usage, "a model is written to a file, not to standard output",
                       "name one with -o");
@@ -105,7 +105,7 @@ Status check_options(const Options& options) {
 
 /// What the options state over what a model file that is compiled again does. Errors: usage;
 /// bad_input where the body cannot have it.
-Status state_mass(const Options& options, const Box& bounds, StatedMass& stated) {
+Status state_mass(const CompileArguments& options, const Box& bounds, StatedMass& stated) {
   if (options.mass_kg) stated.mass_kg = options.mass_kg;
   if (options.yaw_inertia_kgm2) stated.yaw_inertia_kgm2 = options.yaw_inertia_kgm2;
   if (!options.center_of_mass_m.empty()) {
@@ -122,7 +122,7 @@ Status state_mass(const Options& options, const Box& bounds, StatedMass& stated)
 }
 
 /// What a model file that is compiled again states and the options do not replace.
-StatedMass find_kept(const Options& options, StatedMass stated) {
+StatedMass find_kept(const CompileArguments& options, StatedMass stated) {
   if (options.mass_kg) stated.mass_kg.reset();
   if (!options.center_of_mass_m.empty()) stated.center_of_mass_m.reset();
   if (options.yaw_inertia_kgm2) stated.yaw_inertia_kgm2.reset();
@@ -155,7 +155,7 @@ std::string to_text(const StatedMass& kept) {
   return "  kept from the input, as no option replaces it: " + values.substr(2) + "\n";
 }
 
-int run(const Options& options) {
+int run(const CompileArguments& options) {
   if (const Status sound = check_options(options); !sound) return fail(sound.error());
   const PartialAnswer partial([&] { return Interruption{{}, options.output + " is not written"}; });
   Result<LoadedBody> body = load_body(options.mesh_file, options.mesh, options.tree, true);
@@ -201,7 +201,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_compile(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompileArguments>();
   CLI::App* command = app.add_subcommand(
       "compile", "Write a mesh and its trees as one checked file that loads at once");
   add_file(*command, "MESH", options->mesh_file, "Mesh or model file; - is standard input")

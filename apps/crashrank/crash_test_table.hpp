@@ -11,6 +11,8 @@
 
 namespace crashrank::cli {
 
+inline constexpr double kmh_per_mps = 3.6;
+
 /// A line of a table of crash tests, read by the names of the columns. Keeps the first error.
 class TestLine {
 public:

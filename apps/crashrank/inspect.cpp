@@ -22,7 +22,7 @@
 namespace crashrank::cli {
 namespace {
 
-struct Options {
+struct InspectArguments {
   std::vector<std::string> files;
   bool json = false;
   MeshArguments mesh;
@@ -167,7 +167,7 @@ Result<ImportedMesh> look_at(const std::string& file, const MeshArguments& argum
   return mesh;
 }
 
-int run(const Options& options) {
+int run(const InspectArguments& options) {
   if (const Status single = one_standard_input(options.files); !single) return fail(single.error());
   int code = exit_done;
   Json files = Json::array();
@@ -208,7 +208,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_inspect(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InspectArguments>();
   CLI::App* command =
       app.add_subcommand("inspect", "Look a mesh or model file over before trusting it");
   command->add_option("MESH", options->files, "Mesh or model files; - is standard input")

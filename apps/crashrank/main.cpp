@@ -18,7 +18,7 @@
 namespace crashrank::cli {
 namespace {
 
-constexpr const char* epilogue =
+constexpr const char* program_epilogue =
     R"(Data goes to standard output, messages to standard error; - names a standard stream.
 Exit codes: 0 done, 1 internal failure, 2 usage, 3 bad input, 4 a budget or Ctrl-C ended it
 with a partial answer, or the memory.
@@ -124,7 +124,7 @@ int run(int argc, char** argv) {
   const std::vector<const char*> words = without_help_command(argc, argv);
   CLI::App app("Ranks the crashes a vehicle can still choose, least harmful first.", "crashrank");
   app.set_version_flag("--version", std::string("crashrank ") + library_version());
-  app.footer(epilogue);
+  app.footer(program_epilogue);
   app.require_subcommand(1);
   Action action;
   add_inspect(app, action);

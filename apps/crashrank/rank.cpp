@@ -35,7 +35,7 @@ namespace {
 
 constexpr OutputKind html_page{"an HTML page", "<!DOCTYPE html"};
 
-struct Options {
+struct RankArguments {
   std::string scenario;
   std::string measure;
   std::string risk_model;
@@ -65,7 +65,7 @@ struct Options {
   std::vector<std::string> allowed_folders;
 };
 
-Result<Scenario> read_scenario(const Options& options) {
+Result<Scenario> read_scenario(const RankArguments& options) {
   ScenarioPaths paths;
   paths.allowed_folders = options.allowed_folders;
   if (!is_standard(options.scenario)) {
@@ -101,7 +101,7 @@ bool is_scenario(const std::string& path) {
 }
 
 /// The scenario's own, the profile over it, the command line over both.
-Result<HarmOptions> read_harm(const Options& options, const Scenario& scenario) {
+Result<HarmOptions> read_harm(const RankArguments& options, const Scenario& scenario) {
   HarmOptions harm = scenario.harm;
   if (!options.profile.empty()) {
     const Result<HarmOptions> profile = load_profile_file(options.profile, harm);
@@ -158,7 +158,7 @@ Status write_report(const std::string& path, const std::string& page) {
   return file->close();
 }
 
-RankBudget budget_of(const Options& options) {
+RankBudget budget_of(const RankArguments& options) {
   RankBudget budget;
   budget.deadline_s = 1e-3 * options.deadline_ms;
   budget.work = options.work_budget;
@@ -167,7 +167,7 @@ RankBudget budget_of(const Options& options) {
 }
 
 /// Says what is to be warned of in the options and the end of the ranking, and adds it.
-void warn_of_end(const Options& options, const RankResult& ranked, bool answered,
+void warn_of_end(const RankArguments& options, const RankResult& ranked, bool answered,
                  std::vector<std::string>& warnings) {
   const std::size_t before = warnings.size();
   if (options.engine_given && options.bounded()) {
@@ -179,7 +179,7 @@ void warn_of_end(const Options& options, const RankResult& ranked, bool answered
   for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
 }
 
-int run(const Options& options) {
+int run(const RankArguments& options) {
   if (options.json && is_standard(options.report)) {
     return fail(make_error(ErrorCode::usage,
                            "--json and --report - would both write standard output",
@@ -287,7 +287,7 @@ int run(const Options& options) {
   return answered ? exit_done : exit_budget;
 }
 
-constexpr const char* epilogue =
+constexpr const char* rank_epilogue =
     R"(Least harmful first. The scenario's format is data/scenario.schema.json. Meshes and model files have to lie in the
 scenario's folder or below, or below a folder above it that holds a file named crashrank.root.
 
@@ -301,7 +301,7 @@ Examples:
 }  // namespace
 
 void add_rank(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RankArguments>();
   CLI::App* command =
       app.add_subcommand("rank", "Rank the crashes that a scenario leaves, least harmful first");
   add_file(*command, "SCENARIO", options->scenario,
@@ -392,7 +392,7 @@ void add_rank(CLI::App& app, Action& action) {
       ->type_size(1)
       ->allow_extra_args(false);
   options->tree.add_to(*command);
-  command->footer(epilogue);
+  command->footer(rank_epilogue);
   command->callback([options, policy, depth, workers, &action] {
     options->engine_given = policy->count() > 0 || depth->count() > 0;
     options->workers_given = workers->count() > 0;

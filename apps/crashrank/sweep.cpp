@@ -31,7 +31,7 @@ namespace {
 
 constexpr OutputKind svg_picture{"an SVG picture", "<svg "};
 
-struct Options {
+struct SweepArguments {
   std::string a;
   std::string b;
   MeshArguments mesh;
@@ -104,7 +104,7 @@ Result<std::vector<Policy>> parse_policies(const std::string& text) {
   return policies;
 }
 
-Result<SweepOptions> sweep_options(const Options& options) {
+Result<SweepOptions> sweep_options(const SweepArguments& options) {
   if (const Status single = one_standard_input({options.a, options.b, options.poses_file});
       !single) {
     return single.error();
@@ -136,7 +136,8 @@ Result<SweepOptions> sweep_options(const Options& options) {
   return how;
 }
 
-Result<Model> load_one(const std::string& path, const MeshArguments& mesh, const Options& options) {
+Result<Model> load_one(const std::string& path, const MeshArguments& mesh,
+                       const SweepArguments& options) {
   Result<LoadedBody> loaded = load_body(path, mesh, options.tree, true);
   if (!loaded) return loaded.error();
   return std::move(loaded->stored.model);
@@ -187,7 +188,7 @@ Json to_json(const SweepRow& row, const Sweep& sweep) {
           {"status", status_of(row)}};
 }
 
-Json to_json(const Options& options, const Sweep& sweep) {
+Json to_json(const SweepArguments& options, const Sweep& sweep) {
   Json rows = Json::array();
   for (const SweepRow& row : sweep.rows) rows.push_back(to_json(row, sweep));
   const VirtualMachine& machine = sweep.machine;
@@ -233,7 +234,7 @@ std::string to_csv(const Sweep& sweep) {
   return text;
 }
 
-std::string to_text(const Options& options, const Sweep& sweep) {
+std::string to_text(const SweepArguments& options, const Sweep& sweep) {
   Table table({{"depth", true},
                {"policy"},
                {"jobs", true},
@@ -265,7 +266,7 @@ std::string to_text(const Options& options, const Sweep& sweep) {
                      options.workers, sweep.processors, options.workers);
 }
 
-int run(const Options& options) {
+int run(const SweepArguments& options) {
   Result<SweepOptions> how = sweep_options(options);
   if (!how) return fail(how.error());
   for (const MeshArguments& mesh : {options.mesh, options.mesh_b.over(options.mesh)}) {
@@ -322,7 +323,7 @@ int run(const Options& options) {
   return exit_done;
 }
 
-constexpr const char* epilogue =
+constexpr const char* sweep_epilogue =
     R"(Every pose is a query of its own with empty stores; --batch makes them one dispatch. A row's
 numbers are means over the poses. serial_seconds is measured at each depth, in turn with the
 dispatches that it is compared with. A row without jobs has no speedup; one above the number of
@@ -338,7 +339,7 @@ Examples:
 }  // namespace
 
 void add_sweep(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand(
       "sweep", "Compare the policies that hand a query's node pairs to cores, depth by depth");
   add_file(*command, "A", options->a, "Mesh or model file of body A; - is standard input")
@@ -375,7 +376,7 @@ void add_sweep(CLI::App& app, Action& action) {
   options->tree.add_to(*command);
   options->mesh.add_to(*command);
   options->mesh_b.add_to(*command);
-  command->footer(epilogue);
+  command->footer(sweep_epilogue);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

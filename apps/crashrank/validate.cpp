@@ -25,9 +25,7 @@
 namespace crashrank::cli {
 namespace {
 
-constexpr double kmh = 3.6;
-
-struct Options {
+struct ValidateArguments {
   std::string rows;
   std::string car;
   bool json = false;
@@ -118,10 +116,10 @@ std::string table_text(const std::vector<CrashTestRow>& rows, const std::vector<
       barrier +=
           fmt::format(" r {:.0f} mm, {:.0f} %", 1e3 * row.test.radius_m, 1e2 * row.test.overlap);
     }
-    table.add_row({row.test.id, barrier, measured_text(row.measured_delta_v_mps, kmh),
-                   fmt::format("{:.1f}", kmh * o.delta_v_mps()),
+    table.add_row({row.test.id, barrier, measured_text(row.measured_delta_v_mps, kmh_per_mps),
+                   fmt::format("{:.1f}", kmh_per_mps * o.delta_v_mps()),
                    relative_error_text(o.delta_v_mps(), row.measured_delta_v_mps),
-                   fmt::format("{:.1f}", kmh * boxes[i].delta_v_mps()),
+                   fmt::format("{:.1f}", kmh_per_mps * boxes[i].delta_v_mps()),
                    relative_error_text(boxes[i].delta_v_mps(), row.measured_delta_v_mps),
                    measured_text(row.measured_yaw_rate_dps, 1.0),
                    fmt::format("{:.0f}", std::round(o.yaw_rate_dps()) + 0.0),
@@ -135,7 +133,7 @@ std::string table_text(const std::vector<CrashTestRow>& rows, const std::vector<
   return text;
 }
 
-std::string barriers_text(const Options& options, const std::vector<CrashTestRow>& rows,
+std::string barriers_text(const ValidateArguments& options, const std::vector<CrashTestRow>& rows,
                           const std::vector<Outcome>& outcomes, const std::vector<Outcome>& boxes) {
   if (!options.json) return table_text(rows, outcomes, boxes);
   Json entries = Json::array();
@@ -150,7 +148,8 @@ template <class T> std::vector<T> first_of(const std::vector<T>& all, std::size_
   return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-int run_barriers(const Options& options, const RigCar& car, const std::vector<CrashTestRow>& rows) {
+int run_barriers(const ValidateArguments& options, const RigCar& car,
+                 const std::vector<CrashTestRow>& rows) {
   const bool both = !options.json && !options.boxes;
   Progress progress("crashing", rows.size() * (both ? 2 : 1));
   Outcomes outcomes;
@@ -177,7 +176,7 @@ int run_barriers(const Options& options, const RigCar& car, const std::vector<Cr
   return exit_done;
 }
 
-std::string pairs_answer(const Options& options, const std::vector<PairTest>& tests,
+std::string pairs_answer(const ValidateArguments& options, const std::vector<PairTest>& tests,
                          const std::vector<PairOutcome>& outcomes) {
   if (!options.json) return pairs_text(tests, outcomes);
   Json document = pairs_json(tests, outcomes);
@@ -185,7 +184,8 @@ std::string pairs_answer(const Options& options, const std::vector<PairTest>& te
   return json_text(document);
 }
 
-int run_pairs(const Options& options, const RigCar& car, const std::vector<PairTest>& tests) {
+int run_pairs(const ValidateArguments& options, const RigCar& car,
+              const std::vector<PairTest>& tests) {
   const RigShape shape = options.boxes ? RigShape::boxes : RigShape::meshes;
   Progress progress("crashing", tests.size());
   std::mutex mutex;
@@ -209,7 +209,7 @@ int run_pairs(const Options& options, const RigCar& car, const std::vector<PairT
   return exit_done;
 }
 
-int run(const Options& options) {
+int run(const ValidateArguments& options) {
   constexpr std::size_t most_bytes = std::size_t{16} << 20U;
   const Result<std::string> text = read_text(options.rows, most_bytes);
   if (!text) return fail(text.error());
@@ -236,7 +236,7 @@ int run(const Options& options) {
   return pairs ? run_pairs(options, *car, *tests) : run_barriers(options, *car, *rows);
 }
 
-constexpr const char* epilogue =
+constexpr const char* validate_epilogue =
     R"(A car mesh is stretched to each row's size and mass and crashed: first contact of the meshes, then
 the contact as `rank` simulates it, with one set of parameters for all rows. Values in columns
 measured_... are compared with. The columns decide between two kinds of ROWS.csv:
@@ -260,14 +260,14 @@ Examples:
 }  // namespace
 
 void add_validate(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ValidateArguments>();
   CLI::App* command = app.add_subcommand("validate", "Simulate measured crash tests from meshes");
   add_file(*command, "ROWS", options->rows, "Table of tests; - is standard input")->required();
   add_file(*command, "--car", options->car,
            "Mesh of the car, listed in models.json beside it [default: the shipped saloon]");
   command->add_flag("--json", options->json, "Answer in JSON");
   command->add_flag("--boxes", options->boxes, "Replace both bodies by their bounding boxes");
-  command->footer(epilogue);
+  command->footer(validate_epilogue);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -14,8 +14,6 @@
 namespace crashrank::cli {
 namespace {
 
-constexpr double kmh = 3.6;
-
 double degrees(double radians) { return radians * (180.0 / std::numbers::pi); }
 
 const BodyOutcome& side_of(const PairOutcome& outcome, std::size_t car) {
@@ -148,8 +146,9 @@ std::string pairs_text(const std::vector<PairTest>& tests,
       const BodyOutcome& side = side_of(outcomes[i], k);
       const double delta_v = side.delta_v_mps;
       const double yaw_rate = degrees(side.yaw_rate_change_radps);
-      table.add_row({tests[i].id, std::to_string(k + 1), measured(car.measured_delta_v_mps, kmh),
-                     fmt::format("{:.1f}", kmh * delta_v),
+      table.add_row({tests[i].id, std::to_string(k + 1),
+                     measured(car.measured_delta_v_mps, kmh_per_mps),
+                     fmt::format("{:.1f}", kmh_per_mps * delta_v),
                      relative_error_text(delta_v, car.measured_delta_v_mps),
                      measured(car.measured_yaw_rate_dps, 1.0), fmt::format("{:.0f}", yaw_rate),
                      relative_error_text(yaw_rate, car.measured_yaw_rate_dps),

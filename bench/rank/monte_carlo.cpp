@@ -245,6 +245,7 @@ double compare(const std::string& file, const Options& o) {
   }
 
   double furthest = 0.0;
+  const CandidateResult* furthest_told = nullptr;
   double widest = 0.0;
   double highest = 0.0;
   std::size_t beyond = 0;
@@ -265,7 +266,10 @@ double compare(const std::string& file, const Options& o) {
     constexpr double rounding = 1e-12;
     if (away <= rounding * mean.mean()) continue;
     if (away > 2.0 * error) ++beyond;
-    furthest = std::max(furthest, away / error);
+    if (away / error > furthest) {
+      furthest = away / error;
+      furthest_told = &told;
+    }
   }
   std::printf("%s,%zu,%zu,%zu,%s,%zu,%zu,%.4g,%.4g,%zu,%zu,%.2f,%s\n", made->name.c_str(),
               means.size(), drawn_worlds, ranked_worlds, method_name(stratified->futures.method),
@@ -273,6 +277,13 @@ double compare(const std::string& file, const Options& o) {
               compared == 0 ? 0 : beyond * 100 / compared, furthest,
               stratified->ranking.front().candidate == first ? "yes" : "no");
   std::fflush(stdout);
+  if (furthest_told != nullptr) {
+    const Mean& mean = means[furthest_told->candidate];
+    std::fprintf(stderr, "%s: furthest is \"%s\": %.4g +- %.2g sampled, %.4g +- %.2g drawn\n",
+                 made->name.c_str(), (*candidates)[furthest_told->candidate].name.c_str(),
+                 *furthest_told->score, furthest_told->sampling_error.value_or(0.0), mean.mean(),
+                 mean.error());
+  }
   return furthest;
 }
 

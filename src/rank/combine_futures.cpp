@@ -93,7 +93,8 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
   combined.people = std::move(people);
   combined.score = score;
   if (summary.method == FutureMethod::sampled) {
-    combined.sampling_error = sampling_error(summary.risk, scratch.weighted, summary.sampled);
+    combined.sampling_error =
+        sampling_error(summary.risk, {scores.data(), scores.size()}, summary.drawn);
     scores.resize(summary.sampled);
     combined.drawn_scores = std::move(scores);
   }

@@ -79,7 +79,14 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   made.choices_.prepare(made.first_plan_, made.existence_);
   if (!scenario.futures.empty()) made.read_joint(scenario);
   made.update_choices();
+  made.by_seed_.resize(made.actors_);
+  std::iota(made.by_seed_.begin(), made.by_seed_.end(), std::size_t{0});
+  std::stable_sort(made.by_seed_.begin(), made.by_seed_.end(),
+                   [&](std::size_t p, std::size_t q) { return made.seed_[p] < made.seed_[q]; });
   made.strata_.prepare(summary.sampled);
+  made.sample_.prepare(summary.sampled, std::max<std::size_t>(made.actors_, 1),
+                       std::max(made.own_plans_ + made.actors_, made.joint_.written()));
+  summary.drawn.reserve(summary.sampled);
   if (summary.has_state_errors) made.read_errors(scenario);
   made.reserve();
   made.list_futures();
@@ -128,7 +135,8 @@ void Futures::update_motions() {
 void Futures::list_futures() {
   const double combined = is_joint() ? summary.combinations : count_combinations();
   const bool lists = is_joint() || combined <= double{max_combinations};
-  summary.sampled = 0;
+  summary.sampled = summary.undrawn = 0;
+  summary.drawn.clear();
   if (summary.has_state_errors || !lists) {
     summary.method = FutureMethod::sampled;
     summary.sampled = strata_.samples();
@@ -279,18 +287,14 @@ void Futures::read_errors(const Scenario& scenario) {
 
 void Futures::add_sample() {
   const std::size_t count = summary.sampled;
-  probability_.assign(count, 1.0 / static_cast<double>(count));
-  probability_.push_back(0.0);
   plan_of_.assign((count + 1) * actors_, absent);
   likeliest_ = count;
-  if (is_joint()) {
-    draw_joint();
-  } else {
-    for (std::size_t i = 0; i < actors_; ++i) {
-      draw(i);
-      plan_of_[count * actors_ + i] = choices_.plan(i, choices_.likeliest(i));
-    }
-  }
+  draw_plans();
+  summary.drawn.assign(sample_.drawn().begin(), sample_.drawn().end());
+  summary.undrawn = sample_.undrawn();
+  probability_.clear();
+  for (const DrawnFuture& drawn : summary.drawn) probability_.push_back(drawn.probability);
+  probability_.push_back(0.0);
   mark_followed_plans();
   std::fill(base_plans_.begin(), base_plans_.end(), absent);
   for (std::size_t i = 0; i < displaced_.size(); ++i) {
@@ -318,36 +322,35 @@ void Futures::displace_plans() {
   }
 }
 
-void Futures::draw(std::size_t actor) {
-  const std::vector<double>& shares = strata_.draw(seed_[actor]);
-  for (std::size_t f = 0; f < shares.size(); ++f) {
-    double cumulative = 0.0;
-    std::size_t choice = 0;
-    for (; choice + 1 < choices_.count(actor); ++choice) {
-      cumulative += choices_.probability(actor, choice);
-      if (shares[f] < cumulative) break;
+/// Draws what every actor does. Variables are in the order of their seeds, so that the order of
+/// actors has no effect.
+void Futures::draw_plans() {
+  sample_.clear();
+  if (is_joint()) {
+    sample_.add_variable(reserved_seed("futures"));
+    for (std::size_t k = 0; k < joint_.size(); ++k) sample_.add_choice(joint_.probability(k));
+  } else {
+    for (const std::size_t i : by_seed_) {
+      if (choices_.count(i) == 1) continue;
+      sample_.add_variable(seed_[i]);
+      for (std::size_t k = 0; k < choices_.count(i); ++k) {
+        sample_.add_choice(choices_.probability(i, k));
+      }
     }
-    plan_of_[f * actors_ + actor] = choices_.plan(actor, choice);
   }
-}
-
-void Futures::draw_joint() {
-  const auto follow = [&](std::size_t future, std::size_t joint) {
-    for (std::size_t i = 0; i < actors_; ++i) {
-      plan_of_[future * actors_ + i] = joint_.plan(choices_, joint, i);
+  sample_.draw(strata_);
+  std::size_t variable = 0;
+  for (const std::size_t i : by_seed_) {
+    const bool drawn = !is_joint() && choices_.count(i) > 1;
+    for (std::size_t f = 0; f < summary.sampled; ++f) {
+      plan_of_[f * actors_ + i] = is_joint() ? joint_.plan(choices_, sample_.choice(f, 0), i)
+                                  : drawn    ? choices_.plan(i, sample_.choice(f, variable))
+                                             : choices_.plan(i, 0);
     }
-  };
-  const std::vector<double>& shares = strata_.draw(reserved_seed("futures"));
-  for (std::size_t f = 0; f < shares.size(); ++f) {
-    double cumulative = 0.0;
-    std::size_t joint = 0;
-    for (; joint + 1 < joint_.size(); ++joint) {
-      cumulative += joint_.probability(joint);
-      if (shares[f] < cumulative) break;
-    }
-    follow(f, joint);
+    plan_of_[likeliest_ * actors_ + i] = is_joint() ? joint_.plan(choices_, joint_.likeliest(), i)
+                                                    : choices_.plan(i, choices_.likeliest(i));
+    if (drawn) ++variable;
   }
-  follow(likeliest_, joint_.likeliest());
 }
 
 void Futures::split(std::size_t future, const std::vector<char>& relevant,

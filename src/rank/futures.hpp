@@ -6,6 +6,7 @@
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "rank/choices.hpp"
+#include "rank/future_sample.hpp"
 #include "rank/strata.hpp"
 
 #include <algorithm>
@@ -124,8 +125,7 @@ private:
   void reserve();
   void add_combinations();
   void add_sample();
-  void draw(std::size_t actor);
-  void draw_joint();
+  void draw_plans();
   /// Compares the motions of all plans. Returns true if the choices changed.
   bool update_choices();
   void displace_plans();
@@ -139,6 +139,7 @@ private:
   std::vector<std::uint32_t> first_plan_;  ///< by actor, plus the end
   std::vector<double> existence_;          ///< by actor
   std::vector<std::uint64_t> seed_;        ///< by actor, derived from its name
+  std::vector<std::size_t> by_seed_;       ///< actors sorted by seed
   std::vector<double> probability_;        ///< by future
   std::vector<std::uint32_t> plan_of_;     ///< by future and actor
   std::vector<char> followed_;             ///< by plan
@@ -148,6 +149,7 @@ private:
   Choices choices_;
   JointChoices joint_;
   Strata strata_;
+  FutureSample sample_;
   // The members below are used if states have errors.
   StateUncertainty ego_uncertainty_;
   std::vector<StateError> ego_errors_;  ///< by future

@@ -56,6 +56,65 @@ double contribution(const RiskMeasure& risk, double score, double from) {
   return risk.kind == RiskKind::cvar ? std::max(score - from, 0.0) / (1.0 - risk.level) : score;
 }
 
+/// The quantile above which scores count; 0 for the mean.
+double tail_begin(const RiskMeasure& risk, View<const double> scores,
+                  const std::vector<DrawnFuture>& drawn) {
+  if (risk.kind != RiskKind::cvar) return 0.0;
+  std::vector<WeightedScore> weighted;
+  weighted.reserve(drawn.size());
+  for (std::size_t f = 0; f < drawn.size(); ++f) {
+    weighted.push_back({scores[f], drawn[f].probability});
+  }
+  return quantile_of(risk.level, weighted);
+}
+
+/// Calls `visit` with begin and end of every stratum: its futures are neighbours.
+template <class Visit>
+void for_each_stratum(const std::vector<DrawnFuture>& drawn, const Visit& visit) {
+  for (std::size_t begin = 0, end = 0; begin < drawn.size(); begin = end) {
+    while (end < drawn.size() && drawn[end].stratum == drawn[begin].stratum) ++end;
+    visit(begin, end);
+  }
+}
+
+/// Whether values of one stratum differ by more than the rounding of scores of up to `largest`.
+template <class Value>
+bool differs_within_strata(const std::vector<DrawnFuture>& drawn, const Value& value,
+                           double largest) {
+  bool differs = false;
+  for_each_stratum(drawn, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin + 1; f < end; ++f) {
+      differs = differs || std::abs(value(f) - value(begin)) > score_rounding * largest;
+    }
+  });
+  return differs;
+}
+
+/// Standard error of the sum of the values, each times its probability.
+template <class Value>
+double error_within_strata(const std::vector<DrawnFuture>& drawn, const Value& value) {
+  double variance = 0.0;
+  for_each_stratum(drawn, [&](std::size_t begin, std::size_t end) {
+    if (end - begin < 2) return;
+    double weight = 0.0;
+    double mean = 0.0;
+    for (std::size_t f = begin; f < end; ++f) {
+      weight += drawn[f].probability;
+      mean += drawn[f].probability * value(f);
+    }
+    if (!(weight > 0.0)) return;
+    mean /= weight;
+    double squares = 0.0;
+    for (std::size_t f = begin; f < end; ++f) {
+      const double away = drawn[f].probability * (value(f) - mean);
+      squares += away * away;
+    }
+    const auto count = static_cast<double>(end - begin);
+    variance += squares * count / (count - 1.0);
+  });
+  return std::sqrt(variance);
+}
+
 }  // namespace
 
 double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores) {
@@ -83,60 +142,31 @@ double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores) {
   return mean_of(scores);
 }
 
-std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
-                                     std::size_t sampled) {
-  if (!has_sampling_error(risk, sampled)) return std::nullopt;
-  const bool tail = risk.kind == RiskKind::cvar;
-  const auto count = static_cast<double>(sampled);
-  const double from = tail ? quantile_of(risk.level, scores) : 0.0;
-  const auto value = [&](const WeightedScore& s) { return contribution(risk, s.score, from); };
-  // Equal scores say nothing about the variance of futures that were not drawn.
-  const double worst = worst_of(scores);
-  double least = worst;
-  for (const WeightedScore& s : scores) {
-    if (s.probability > 0.0) least = std::min(least, s.score);
-  }
-  if (worst - least <= score_rounding * worst) return std::nullopt;
-  double mean = 0.0;
-  for (const WeightedScore& s : scores) mean += s.probability * value(s);
-  double variance = 0.0;
-  for (const WeightedScore& s : scores) {
-    variance += s.probability * (value(s) - mean) * (value(s) - mean);
-  }
-  return std::sqrt(variance / (count - 1.0));
+std::optional<double> sampling_error(const RiskMeasure& risk, View<const double> scores,
+                                     const std::vector<DrawnFuture>& drawn) {
+  if (!has_sampling_error(risk, drawn.size())) return std::nullopt;
+  const auto score = [&](std::size_t f) { return scores[f]; };
+  double worst = 0.0;
+  for (std::size_t f = 0; f < drawn.size(); ++f) worst = std::max(worst, scores[f]);
+  if (!differs_within_strata(drawn, score, worst)) return std::nullopt;
+  const double from = tail_begin(risk, scores, drawn);
+  return error_within_strata(drawn,
+                             [&](std::size_t f) { return contribution(risk, scores[f], from); });
 }
 
-std::optional<double> difference_error(const RiskMeasure& risk, const std::vector<double>& a,
-                                       const std::vector<double>& b) {
-  bool alike = true;
-  for (std::size_t f = 1; f < a.size(); ++f) {
-    const double other = std::abs(a[f] - b[f] - (a[0] - b[0]));
-    alike = alike && other <= score_rounding * std::max({a[f], b[f], a[0], b[0]});
-  }
-  if (alike) return 0.0;
-  if (!has_sampling_error(risk, a.size())) return std::nullopt;
-  const auto quantile = [&risk](const std::vector<double>& scores) {
-    if (risk.kind != RiskKind::cvar) return 0.0;
-    std::vector<WeightedScore> weighted;
-    weighted.reserve(scores.size());
-    for (const double score : scores) {
-      weighted.push_back({score, 1.0 / static_cast<double>(scores.size())});
-    }
-    return quantile_of(risk.level, weighted);
-  };
-  const double from_a = quantile(a);
-  const double from_b = quantile(b);
-  const auto difference = [&](std::size_t f) {
+std::optional<double> difference_error(const RiskMeasure& risk, View<const double> a,
+                                       View<const double> b,
+                                       const std::vector<DrawnFuture>& drawn) {
+  double worst = 0.0;
+  for (std::size_t f = 0; f < drawn.size(); ++f) worst = std::max({worst, a[f], b[f]});
+  const auto apart = [&](std::size_t f) { return a[f] - b[f]; };
+  if (!differs_within_strata(drawn, apart, worst)) return 0.0;
+  if (!has_sampling_error(risk, drawn.size())) return std::nullopt;
+  const double from_a = tail_begin(risk, a, drawn);
+  const double from_b = tail_begin(risk, b, drawn);
+  return error_within_strata(drawn, [&](std::size_t f) {
     return contribution(risk, a[f], from_a) - contribution(risk, b[f], from_b);
-  };
-  const auto count = static_cast<double>(a.size());
-  double mean = 0.0;
-  for (std::size_t f = 0; f < a.size(); ++f) mean += difference(f) / count;
-  double variance = 0.0;
-  for (std::size_t f = 0; f < a.size(); ++f) {
-    variance += (difference(f) - mean) * (difference(f) - mean) / count;
-  }
-  return std::sqrt(variance / (count - 1.0));
+  });
 }
 
 }  // namespace crashrank::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/base/view.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/harm_options.hpp"
 
@@ -18,17 +19,19 @@ struct WeightedScore {
 /// probability 0 have no effect. Sorts the scores, except for the mean.
 double risk_of(const RiskMeasure& risk, std::vector<WeightedScore>& scores);
 
-/// Standard error of `risk_of` if the scores are those of `sampled` futures drawn with equal
-/// probability. Mean: from the variance of the scores. CVaR: from the variance of their excess over
-/// the quantile. Absent for worst and quantile, for cvar with fewer than 10 drawn futures in the
-/// tail, and if all scores are equal up to rounding, since futures that were not drawn may differ.
-std::optional<double> sampling_error(const RiskMeasure& risk, std::vector<WeightedScore>& scores,
-                                     std::size_t sampled);
+/// Standard error of `risk_of` over the scores in the futures of a sample. Mean: from the variance
+/// of the scores within each stratum, as if the futures of a stratum were drawn independently.
+/// CVaR: from that of their excess over the quantile. Absent for worst and quantile, for cvar with
+/// fewer than 10 drawn futures in the tail, and if the scores of every stratum are equal up to
+/// rounding, since futures that were not drawn may differ. `scores` may have more elements than
+/// `drawn`.
+std::optional<double> sampling_error(const RiskMeasure& risk, View<const double> scores,
+                                     const std::vector<DrawnFuture>& drawn);
 
 /// Standard error of the difference of two values of `risk_of`, each over the scores in the same
-/// futures drawn with equal probability: 0 if all scores differ by the same number up to rounding.
+/// drawn futures: 0 if within every stratum all scores differ by the same number up to rounding.
 /// Absent where the error of one of them is, for reasons other than equal scores.
-std::optional<double> difference_error(const RiskMeasure& risk, const std::vector<double>& a,
-                                       const std::vector<double>& b);
+std::optional<double> difference_error(const RiskMeasure& risk, View<const double> a,
+                                       View<const double> b, const std::vector<DrawnFuture>& drawn);
 
 }  // namespace crashrank::detail

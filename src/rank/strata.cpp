@@ -53,13 +53,15 @@ std::uint64_t reserved_seed(const std::string& name) {
 }
 
 void Strata::prepare(std::size_t samples) {
+  samples_ = samples;
   order_.resize(samples);
   shares_.resize(samples);
 }
 
-const std::vector<double>& Strata::draw(std::uint64_t seed) {
+const std::vector<double>& Strata::draw(std::uint64_t seed, std::size_t count) {
   std::uint64_t state = seed;
-  const std::size_t count = order_.size();
+  order_.resize(count);
+  shares_.resize(count);
   std::iota(order_.begin(), order_.end(), 0U);
   for (std::size_t k = count; k > 1; --k) {
     std::swap(order_[k - 1], order_[next_word(state) % k]);

@@ -17,14 +17,17 @@ class Strata {
 public:
   /// Allocates for a number of samples; no other member allocates.
   void prepare(std::size_t samples);
-  std::size_t samples() const noexcept { return order_.size(); }
-  /// One number in [0, 1) for each sample, valid until the next draw.
-  const std::vector<double>& draw(std::uint64_t seed);
+  std::size_t samples() const noexcept { return samples_; }
+  /// One number in [0, 1) for each of `count` samples, at most the prepared number; valid until the
+  /// next draw.
+  const std::vector<double>& draw(std::uint64_t seed, std::size_t count);
+  const std::vector<double>& draw(std::uint64_t seed) { return draw(seed, samples_); }
   /// Draws the errors of the state of a body, one for each sample: four dimensions derived from the
   /// seed.
   void draw(std::uint64_t seed, const StateUncertainty& uncertainty, StateError* errors);
 
 private:
+  std::size_t samples_ = 0;
   std::vector<std::uint32_t> order_;
   std::vector<double> shares_;
 };

@@ -26,7 +26,7 @@ std::string contact_table(const Scenario& scenario, Measure measure,
   const bool has_harm = measure == Measure::harm;
   std::string html =
       "<table class='parts contacts'><caption>contacts</caption><thead><tr><th>bodies</th>"
-      "<th>after s</th><th>closing m/s</th><th>delta-v of the event m/s, first</th><th>second</th>";
+      "<th>after s</th><th>closing m/s</th><th>event delta-v m/s, first</th><th>second</th>";
   if (has_harm) html += "<th>harm</th>";
   html += "</tr></thead><tbody>\n";
   for (const AnyContact& contact : contacts_in_order(ranked)) {

@@ -67,8 +67,16 @@ std::string error_words(const RankResult& result) {
   const double seldom =
       1.0 -
       std::pow(0.05, 1.0 / static_cast<double>(std::max<std::size_t>(1, result.futures.sampled)));
-  const std::string missing =
-      fmt::format(" What happens with less than {:.2g} % may not be drawn at all.", 100.0 * seldom);
+  const FutureSummary& futures = result.futures;
+  std::string missing =
+      futures.undrawn == 0
+          ? std::string(" Every prediction and absence is drawn, however improbable;")
+          : fmt::format(" The {} least probable predictions and absences are not drawn;",
+                        futures.undrawn);
+  missing += fmt::format(" {} that happen with less than {:.2g} % may not be drawn at all.",
+                         futures.has_state_errors ? "combinations of these and errors of states"
+                                                  : "combinations of these",
+                         100.0 * seldom);
   if (!most) return "What the choice of the sample leaves open of a score is not known." + missing;
   return fmt::format("Another sample may change a score by a standard error of up to {:.2g} {}.",
                      *most, measure_unit(result.measure)) +

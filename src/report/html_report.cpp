@@ -3,6 +3,7 @@
 #include "crashrank/internal/report/escape.hpp"
 #include "report/base64.hpp"
 #include "report/contact_table.hpp"
+#include "report/crash_summary.hpp"
 #include "report/damage_summary.hpp"
 #include "report/future_words.hpp"
 #include "report/manoeuvre_words.hpp"
@@ -283,33 +284,16 @@ private:
     return lines;
   }
 
-  /// Of all contacts: the ego's changes of velocity and harm add up; of the others', those hit by
-  /// others included, the greatest change of velocity and the sum of harm; crush is the deepest. As
-  /// many digits as the ranges leave of anything.
+  /// As many digits as the ranges leave of anything.
   static std::string severity_lines(const CandidateResult& ranked) {
-    BodyOutcome ego;
-    BodyOutcome other;
-    const auto add_other = [&other](const BodyOutcome& outcome) {
-      other.delta_v_mps = std::max(other.delta_v_mps, outcome.delta_v_mps);
-      other.crush_m = std::max(other.crush_m, outcome.crush_m);
-      other.harm += outcome.harm;
-    };
-    for (const Contact& contact : ranked.contacts) {
-      ego.delta_v_mps += contact.severity.ego.delta_v_mps;
-      ego.crush_m = std::max(ego.crush_m, contact.severity.ego.crush_m);
-      ego.harm += contact.severity.ego.harm;
-      add_other(contact.severity.other);
-    }
-    for (const FurtherContact& contact : ranked.further) {
-      add_other(contact.outcome_a);
-      add_other(contact.outcome_b);
-    }
+    const detail::CrashSummary ego = detail::crash_of_ego(ranked);
+    const detail::CrashSummary others = detail::crash_of_others(ranked);
     return fmt::format(
-        "<br>delta-v m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
+        "<br>event delta-v m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
         "<br>harm: ego {:.2g}, others {:.2g}",
-        detail::fixed_text(ego.delta_v_mps, 1), detail::fixed_text(other.delta_v_mps, 1),
-        detail::fixed_text(ego.crush_m, 2), detail::fixed_text(other.crush_m, 2), ego.harm,
-        other.harm);
+        detail::fixed_text(ego.event_delta_v_mps, 1),
+        detail::fixed_text(others.event_delta_v_mps, 1), detail::fixed_text(ego.crush_m, 2),
+        detail::fixed_text(others.crush_m, 2), ego.harm, others.harm);
   }
 
   void candidate(std::size_t place) {

@@ -294,6 +294,7 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
                  {{"method", detail::future_method_name(result.futures.method)},
                   {"evaluated", result.futures.futures},
                   {"sampled", result.futures.sampled},
+                  {"undrawn", result.futures.undrawn},
                   {"combinations", result.futures.combinations},
                   {"left_out", result.futures.left_out},
                   {"risk", risk_name(result.futures.risk)}}},

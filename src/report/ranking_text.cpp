@@ -1,6 +1,7 @@
 #include "crashrank/internal/report/escape.hpp"
 #include "crashrank/internal/report/table.hpp"
 #include "crashrank/report/ranking.hpp"
+#include "report/crash_summary.hpp"
 #include "report/damage_summary.hpp"
 #include "report/future_words.hpp"
 #include "report/manoeuvre_words.hpp"
@@ -43,7 +44,7 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   }
   if (result.futures.method != FutureMethod::certain) {
     row.push_back(ranked.score || ranked.searched
-                      ? fmt::format("{:.0f} %", 100.0 * ranked.collision_probability)
+                      ? detail::percent_text(ranked.collision_probability)
                       : std::string());
   }
   if (ranked.contacts.empty()) {
@@ -67,14 +68,9 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   row.push_back(fmt::format("{:.3f}", first.time_of_impact_s));
   row.push_back(detail::fixed_text(first.closing_speed_mps, 1));
   if (simulated) {
-    double delta_v = 0.0;
-    double crush = 0.0;
-    for (const Contact& contact : ranked.contacts) {
-      delta_v += contact.severity.ego.delta_v_mps;
-      crush = std::max(crush, contact.severity.ego.crush_m);
-    }
-    row.push_back(detail::fixed_text(delta_v, 1));
-    row.push_back(detail::fixed_text(crush, 2));
+    const detail::CrashSummary crash = detail::crash_of_ego(ranked);
+    row.push_back(detail::fixed_text(crash.event_delta_v_mps, 1));
+    row.push_back(detail::fixed_text(crash.crush_m, 2));
   } else {
     row.push_back(fmt::format("{} + {}", ego.triangles, other.triangles));
     row.push_back(detail::fixed_text(ego.area_m2, 2) + " + " +
@@ -125,7 +121,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   columns.push_back({result.futures.method == FutureMethod::certain ? "hits" : "likeliest hits"});
   columns.push_back({"after s", true});
   columns.push_back({"closing m/s", true});
-  columns.push_back({simulated ? "delta-v m/s" : "triangles", true});
+  columns.push_back({simulated ? "event delta-v m/s" : "triangles", true});
   columns.push_back({simulated ? "crush m" : "area m2", true});
   columns.push_back({"ego's parts"});
   const std::vector<std::string> scores = detail::score_texts(result);

@@ -194,8 +194,8 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
   std::string likeliest = outcome_of_likeliest(scenario, ranked);
   if (ranked.futures.size() < 2) return likeliest;
-  return likeliest + fmt::format(" in the likeliest future ({:.0f} % of all futures collide)",
-                                 100.0 * ranked.collision_probability);
+  return likeliest + fmt::format(" in the likeliest future (the probability of a collision is {})",
+                                 detail::percent_text(ranked.collision_probability));
 }
 
 std::string reason_words(const Scenario& scenario, View<const Model> models,

@@ -160,6 +160,13 @@ std::string fixed_text(double value, int decimals) {
   return vanishes ? fmt::format("{:.1g}", value) : fmt::format("{:.{}f}", value, decimals);
 }
 
+std::string percent_text(double probability) {
+  constexpr double half = 0.005;
+  if (probability > 0.0 && probability < half) return "<1 %";
+  if (probability < 1.0 && probability > 1.0 - half) return ">99 %";
+  return fmt::format("{:.0f} %", 100.0 * probability);
+}
+
 std::string place_text(const CandidateResult& ranked) {
   return std::to_string(ranked.place) + (ranked.sharing > 1 ? " tied" : "");
 }

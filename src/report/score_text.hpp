@@ -22,6 +22,9 @@ std::vector<std::string> score_texts(const RankResult& result);
 /// than 0 as 0.
 std::string fixed_text(double value, int decimals);
 
+/// A probability in whole percent; "<1 %" and ">99 %" where 0 or 100 would say that it is certain.
+std::string percent_text(double probability);
+
 /// The interval, ends rounded outwards to that digit: "0.1 to 0.4"; empty where it is a point.
 std::string interval_text(const CandidateResult& ranked);
 

@@ -24,8 +24,8 @@ using cli_test::Json;
 using cli_test::Outcome;
 using cli_test::Workplace;
 
-const std::string data = CRASHRANK_SOURCE_DATA;
-const std::string car = data + "/models/sedan.obj";
+const std::string data_folder = CRASHRANK_SOURCE_DATA;
+const std::string car_mesh = data_folder + "/models/sedan.obj";
 
 using Row = std::map<std::string, std::string>;
 using Point = std::array<double, 2>;
@@ -45,7 +45,7 @@ std::vector<std::string> fields_of(const std::string& line) {
 }
 
 std::vector<Row> rows_of(const std::string& table) {
-  std::ifstream file(data + "/validation/" + table + ".csv");
+  std::ifstream file(data_folder + "/validation/" + table + ".csv");
   std::vector<std::string> header;
   std::vector<Row> rows;
   for (std::string line; std::getline(file, line);) {
@@ -61,9 +61,9 @@ std::vector<Row> rows_of(const std::string& table) {
   return rows;
 }
 
-Json validated(const Workplace& place, const std::string& table) {
-  const Outcome run =
-      place.crashrank({"validate", data + "/validation/" + table + ".csv", "--json", "--car", car});
+Json validated_rows(const Workplace& place, const std::string& table) {
+  const Outcome run = place.crashrank(
+      {"validate", data_folder + "/validation/" + table + ".csv", "--json", "--car", car_mesh});
   EXPECT_EQ(run.code, 0) << run.err;
   return run.json().at("rows");
 }
@@ -80,7 +80,7 @@ struct Sedan {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
   explicit Sedan(const Workplace& place) {
-    EXPECT_EQ(place.crashrank({"compile", car, "-o", "sedan.model"}).code, 0);
+    EXPECT_EQ(place.crashrank({"compile", car_mesh, "-o", "sedan.model"}).code, 0);
     const std::string file = place.read("sedan.model");
     std::array<std::uint32_t, 4> counts{};  // parts, bytes of names, vertices, triangles
     std::memcpy(counts.data(), file.data() + 24, sizeof counts);
@@ -244,7 +244,7 @@ TEST(ValidateRank, BarrierCrashesHaveTheNumbersOfTheirScenarios) {
   std::size_t crashes = 0;
   std::size_t events_of_one = 0;
   for (const char* const table : {"small_overlap", "full_width"}) {
-    const Json answers = validated(place, table);
+    const Json answers = validated_rows(place, table);
     const std::vector<Row> rows = rows_of(table);
     ASSERT_EQ(answers.size(), rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -310,7 +310,7 @@ Json motion_json(const Row& row, const std::string& suffix) {
 TEST(ValidateRank, CarToCarCrashesHaveTheNumbersOfTheirScenariosWithEitherCarAsTheEgo) {
   const Workplace place;
   const Sedan sedan(place);
-  const Json answers = validated(place, "car_to_car");
+  const Json answers = validated_rows(place, "car_to_car");
   const std::vector<Row> rows = rows_of("car_to_car");
   ASSERT_EQ(rows.size(), 4U);
   ASSERT_EQ(answers.size(), rows.size());

@@ -1,5 +1,6 @@
 #include "crashrank/collide/collide.hpp"
 
+#include "collide/triangles.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 #include "crashrank/tree/build.hpp"
 
@@ -13,9 +14,7 @@
 namespace crashrank {
 namespace {
 
-using Point = Eigen::Vector3d;
-
-TriangleD triangle(const Point& a, const Point& b, const Point& c) { return {{a, b, c}}; }
+using test::triangle;
 
 // The same kind whichever comes first and however the corners are numbered.
 void expect_kind(PairKind kind, const TriangleD& a, const TriangleD& b, const char* what) {

@@ -1,4 +1,5 @@
 #include "crashrank/internal/collide/triangle_test.hpp"
+#include "collide/triangles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +9,7 @@ namespace crashrank {
 namespace {
 
 using Point = Eigen::Vector3d;
-
-TriangleD triangle(Point a, Point b, Point c) { return {{a, b, c}}; }
+using test::triangle;
 
 // Every order of corners and of triangles has to give the same answer.
 void expect_meets(const TriangleD& a, const TriangleD& b, bool expected) {

@@ -12,12 +12,6 @@ namespace {
 
 using test::Body;
 
-PoolOptions with_workers(std::uint32_t workers) {
-  PoolOptions options;
-  options.workers = workers;
-  return options;
-}
-
 TEST(Dispatcher, GivesTheSerialAnswer) {
   const Body ego(test::hull(40, 50, 1));
   const Body other(test::hull(30, 70, 2));
@@ -33,7 +27,7 @@ TEST(Dispatcher, GivesTheSerialAnswer) {
   PairLists lists;
   std::vector<Pair> pairs;
   for (const std::uint32_t workers : {0U, 1U, 4U}) {
-    Result<Dispatcher> dispatcher = Dispatcher::start(with_workers(workers));
+    Result<Dispatcher> dispatcher = Dispatcher::start(test::with_workers(workers));
     ASSERT_TRUE(dispatcher.ok());
     for (const Policy policy : all_policies()) {
       for (const StoreMode store : {StoreMode::shared, StoreMode::private_copy}) {
@@ -66,7 +60,7 @@ TEST(Dispatcher, GivesTheSerialAnswer) {
 }
 
 TEST(Dispatcher, RefusesOptionsWithoutMeaning) {
-  Result<Dispatcher> dispatcher = Dispatcher::start(with_workers(1));
+  Result<Dispatcher> dispatcher = Dispatcher::start(test::with_workers(1));
   ASSERT_TRUE(dispatcher.ok());
   PairLists lists;
   DispatchOptions options;
@@ -93,7 +87,7 @@ TEST(Dispatcher, EndsOnABudgetAndGoesOn) {
   const Body other(test::hull(30, 70, 2));
   const std::vector<DispatchQuery> queries =
       test::queries_for(ego, other, test::crash_poses(3, 0.8, 3));
-  Result<Dispatcher> dispatcher = Dispatcher::start(with_workers(4));
+  Result<Dispatcher> dispatcher = Dispatcher::start(test::with_workers(4));
   ASSERT_TRUE(dispatcher.ok());
   PairLists lists;
   DispatchOptions options;
@@ -130,7 +124,7 @@ TEST(Dispatcher, CanBeCancelled) {
   const std::vector<DispatchQuery> queries =
       test::queries_for(ego, other, test::crash_poses(3, 0.8, 3));
   for (const std::uint32_t workers : {0U, 2U}) {
-    Result<Dispatcher> dispatcher = Dispatcher::start(with_workers(workers));
+    Result<Dispatcher> dispatcher = Dispatcher::start(test::with_workers(workers));
     ASSERT_TRUE(dispatcher.ok());
     PairLists lists;
     std::atomic<bool> cancel{true};

@@ -20,6 +20,12 @@ inline double unit(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
+inline PoolOptions with_workers(std::uint32_t workers) {
+  PoolOptions options;
+  options.workers = workers;
+  return options;
+}
+
 /// A closed, dented hull of about a car's size: 2·rings·segments triangles.
 inline TriangleMesh hull(std::uint32_t rings, std::uint32_t segments, std::uint64_t seed) {
   std::mt19937_64 random(seed);

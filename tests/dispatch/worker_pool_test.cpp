@@ -1,4 +1,5 @@
 #include "crashrank/dispatch/worker_pool.hpp"
+#include "dispatch/sample_bodies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,15 +14,9 @@
 namespace crashrank {
 namespace {
 
-PoolOptions with_workers(std::uint32_t workers) {
-  PoolOptions options;
-  options.workers = workers;
-  return options;
-}
-
 TEST(WorkerPool, RunsEveryIndexOnce) {
   for (const std::uint32_t workers : {0U, 1U, 2U, 4U, 7U}) {
-    Result<WorkerPool> pool = WorkerPool::start(with_workers(workers));
+    Result<WorkerPool> pool = WorkerPool::start(test::with_workers(workers));
     ASSERT_TRUE(pool.ok());
     for (const std::size_t count : {0U, 1U, 3U, 1000U}) {
       std::vector<std::atomic<int>> calls(count);
@@ -36,7 +31,7 @@ TEST(WorkerPool, RunsEveryIndexOnce) {
 }
 
 TEST(WorkerPool, TasksOfAWorkerRunInOrderAndAreNeverLost) {
-  Result<WorkerPool> pool = WorkerPool::start(with_workers(3));
+  Result<WorkerPool> pool = WorkerPool::start(test::with_workers(3));
   ASSERT_TRUE(pool.ok());
   struct Log {
     std::vector<int> seen;
@@ -73,7 +68,7 @@ TEST(WorkerPool, TasksOfAWorkerRunInOrderAndAreNeverLost) {
 
 // Every task runs once, in a worker or by the owner who took it back, however the two race.
 TEST(WorkerPool, TasksTakenBackRunOnce) {
-  Result<WorkerPool> pool = WorkerPool::start(with_workers(3));
+  Result<WorkerPool> pool = WorkerPool::start(test::with_workers(3));
   ASSERT_TRUE(pool.ok());
   constexpr std::size_t count = 6000;
   std::vector<std::atomic<int>> ran(count);
@@ -108,7 +103,7 @@ TEST(WorkerPool, WaitsForAllUntilATimeAtTheLatest) {
   using Clock = std::chrono::steady_clock;
   using std::chrono::milliseconds;
   for (const std::int32_t spin_us : {0, 50}) {
-    PoolOptions options = with_workers(2);
+    PoolOptions options = test::with_workers(2);
     options.spin_us = spin_us;
     Result<WorkerPool> pool = WorkerPool::start(options);
     ASSERT_TRUE(pool.ok());
@@ -144,7 +139,7 @@ TEST(WorkerPool, WaitsForAllUntilATimeAtTheLatest) {
 TEST(WorkerPool, EndsAtAnyMoment) {
   for (int round = 0; round < 200; ++round) {
     std::atomic<int> ran{0};
-    Result<WorkerPool> pool = WorkerPool::start(with_workers(4));
+    Result<WorkerPool> pool = WorkerPool::start(test::with_workers(4));
     ASSERT_TRUE(pool.ok());
     for (int i = 0; i < round % 9; ++i) {
       const auto worker = static_cast<std::uint32_t>(i) % 4;
@@ -161,7 +156,7 @@ TEST(WorkerPool, EndsAtAnyMoment) {
 }
 
 TEST(WorkerPool, AnExceptionBecomesOneErrorAndThePoolGoesOn) {
-  Result<WorkerPool> pool = WorkerPool::start(with_workers(4));
+  Result<WorkerPool> pool = WorkerPool::start(test::with_workers(4));
   ASSERT_TRUE(pool.ok());
   Status status = pool->for_each(100, [](std::size_t index, std::uint32_t) {
     if (index % 10 == 3) throw std::runtime_error("index " + std::to_string(index % 10));
@@ -192,7 +187,7 @@ double process_seconds() {
 // A spinning pool of eight would burn up to eight seconds of processor time a second; a sleeping
 // one burns next to none.
 TEST(WorkerPool, IdleWorkersSleep) {
-  Result<WorkerPool> pool = WorkerPool::start(with_workers(8));
+  Result<WorkerPool> pool = WorkerPool::start(test::with_workers(8));
   ASSERT_TRUE(pool.ok());
   ASSERT_TRUE(pool->for_each(100, [](std::size_t, std::uint32_t) {}).ok());
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -202,11 +197,11 @@ TEST(WorkerPool, IdleWorkersSleep) {
 }
 
 TEST(WorkerPool, RefusesNumbersOutOfRange) {
-  EXPECT_FALSE(WorkerPool::start(with_workers(65)).ok());
+  EXPECT_FALSE(WorkerPool::start(test::with_workers(65)).ok());
   PoolOptions options;
   options.spin_us = 2000;
   EXPECT_FALSE(WorkerPool::start(options).ok());
-  options = with_workers(4);
+  options = test::with_workers(4);
   options.pinned = true;
   EXPECT_TRUE(WorkerPool::start(options).ok());
 }

@@ -10,7 +10,9 @@
 namespace crashrank {
 namespace {
 
-Pose at(double x, double y, double yaw = 0.0) { return pose_from_angles({x, y, 0.5}, yaw, 0, 0); }
+Pose placed(double x, double y, double yaw = 0.0) {
+  return pose_from_angles({x, y, 0.5}, yaw, 0, 0);
+}
 
 void expect_same(const Motion& a, const Motion& b, double tolerance) {
   for (double t = 0.0; t < 6.0; t += 0.17) {
@@ -27,11 +29,11 @@ Motion displaced(Motion motion, const StateError& error) {
 
 TEST(Displace, ArcsAndTurnsBeginAtTheDisplacedState) {
   for (const double acceleration : {-3.0, 0.0, 2.0}) {
-    ArcMotion arc{at(4, -2, 0.3), 9.0, 0.05, acceleration, 14.0};
-    TurnMotion turn{at(4, -2, 0.3), -9.0, 0.2, acceleration, 14.0};
+    ArcMotion arc{placed(4, -2, 0.3), 9.0, 0.05, acceleration, 14.0};
+    TurnMotion turn{placed(4, -2, 0.3), -9.0, 0.2, acceleration, 14.0};
     const Motion arc_moved = displaced(arc, {0.5, -0.25, 0.1, 1.5});
     const Motion turn_moved = displaced(turn, {0.5, -0.25, 0.1, 1.5});
-    arc.start = turn.start = at(4.5, -2.25, 0.4);
+    arc.start = turn.start = placed(4.5, -2.25, 0.4);
     arc.speed_mps = 10.5;
     turn.speed_mps = -7.5;
     expect_same(arc_moved, arc, 1e-12);
@@ -40,7 +42,8 @@ TEST(Displace, ArcsAndTurnsBeginAtTheDisplacedState) {
 }
 
 TEST(Displace, TimedPosesMoveAsOneBody) {
-  const std::vector<TimedPose> poses{{0, at(1, 2, 0.2)}, {1, at(6, 3, 0.3)}, {3, at(9, 9, 1.0)}};
+  const std::vector<TimedPose> poses{
+      {0, placed(1, 2, 0.2)}, {1, placed(6, 3, 0.3)}, {3, placed(9, 9, 1.0)}};
   const Motion motion = *Motion::timed(poses);
   const Motion moved = displaced(motion, {0.3, -0.4, 0.25, 0.0});
   // About the first pose.
@@ -49,8 +52,8 @@ TEST(Displace, TimedPosesMoveAsOneBody) {
     const Eigen::Vector3d arm = each.pose.translation - poses.front().pose.translation;
     const double c = std::cos(0.25);
     const double s = std::sin(0.25);
-    each.pose = at(1.3 + c * arm.x() - s * arm.y(), 1.6 + s * arm.x() + c * arm.y(),
-                   std::atan2(each.pose.rotation(1, 0), each.pose.rotation(0, 0)) + 0.25);
+    each.pose = placed(1.3 + c * arm.x() - s * arm.y(), 1.6 + s * arm.x() + c * arm.y(),
+                       std::atan2(each.pose.rotation(1, 0), each.pose.rotation(0, 0)) + 0.25);
   }
   expect_same(moved, *Motion::timed(expected), 1e-12);
 }
@@ -58,8 +61,10 @@ TEST(Displace, TimedPosesMoveAsOneBody) {
 TEST(Displace, TimedPosesGainTheSpeedWhileTheyMove) {
   // 4 m/s along y for two seconds, one second of rest, then 1 m/s backwards.
   const double left = 0.5 * std::numbers::pi;
-  const std::vector<TimedPose> poses{
-      {0, at(0, 0, left)}, {2, at(0, 8, left)}, {3, at(0, 8, left)}, {5, at(0, 6, left)}};
+  const std::vector<TimedPose> poses{{0, placed(0, 0, left)},
+                                     {2, placed(0, 8, left)},
+                                     {3, placed(0, 8, left)},
+                                     {5, placed(0, 6, left)}};
   const Motion faster = displaced(*Motion::timed(poses), {0, 0, 0, 1.5});
   EXPECT_NEAR(faster.pose_at(2).translation.y(), 11.0, 1e-12);
   EXPECT_NEAR(faster.pose_at(3).translation.y(), 11.0, 1e-12);
@@ -74,25 +79,25 @@ TEST(Displace, TimedPosesGainTheSpeedWhileTheyMove) {
 TEST(Displace, NothingReversesAndWhatStandsStays) {
   const StateError slower{0.0, 0.0, 0.0, -20.0};
   for (const double acceleration : {-4.0, 0.0}) {
-    const Motion braked = displaced(TurnMotion{at(1, 1), 5.0, 0.3, acceleration}, slower);
-    EXPECT_EQ(braked.pose_at(4).translation, at(1, 1).translation);
+    const Motion braked = displaced(TurnMotion{placed(1, 1), 5.0, 0.3, acceleration}, slower);
+    EXPECT_EQ(braked.pose_at(4).translation, placed(1, 1).translation);
     EXPECT_EQ(braked.rest_time(), 0.0);
     const Motion reversing =
-        displaced(TurnMotion{at(1, 1), -5.0, 0.3, -acceleration}, {0.0, 0.0, 0.0, 20.0});
-    EXPECT_EQ(reversing.pose_at(4).translation, at(1, 1).translation);
+        displaced(TurnMotion{placed(1, 1), -5.0, 0.3, -acceleration}, {0.0, 0.0, 0.0, 20.0});
+    EXPECT_EQ(reversing.pose_at(4).translation, placed(1, 1).translation);
   }
-  const Motion standing = displaced(TurnMotion{at(1, 1), 0.0, 0.0, 0.0}, {0.5, 0.0, 0.0, 3.0});
+  const Motion standing = displaced(TurnMotion{placed(1, 1), 0.0, 0.0, 0.0}, {0.5, 0.0, 0.0, 3.0});
   EXPECT_NEAR(standing.pose_at(4).translation.x(), 1.5, 1e-15);
   EXPECT_EQ(standing.velocity_at(1).linear_mps.norm(), 0.0);
-  const Motion resting = displaced(Motion::at_rest(at(1, 1)), {0.0, 0.5, 0.0, 3.0});
+  const Motion resting = displaced(Motion::at_rest(placed(1, 1)), {0.0, 0.5, 0.0, 3.0});
   EXPECT_NEAR(resting.pose_at(4).translation.y(), 1.5, 1e-15);
 }
 
 TEST(Displace, NoErrorChangesNoBit) {
   for (const Motion& motion :
-       {Motion(ArcMotion{at(4, -2, 0.3), 9.0, 0.05, -3.0}),
-        Motion(FreeMotion{at(1, 1, 2), {{1, 2, 0}, {0, 0, 1}}}),
-        *Motion::timed(std::vector<TimedPose>{{0, at(0, 0)}, {1, at(1, 2)}})}) {
+       {Motion(ArcMotion{placed(4, -2, 0.3), 9.0, 0.05, -3.0}),
+        Motion(FreeMotion{placed(1, 1, 2), {{1, 2, 0}, {0, 0, 1}}}),
+        *Motion::timed(std::vector<TimedPose>{{0, placed(0, 0)}, {1, placed(1, 2)}})}) {
     const Motion same = displaced(motion, {});
     for (const double t : {0.0, 0.7, 5.0}) {
       EXPECT_EQ(same.pose_at(t).translation, motion.pose_at(t).translation);

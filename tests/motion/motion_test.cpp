@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using std::numbers::pi;
 using test::Random;
-constexpr double pi = std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double yaw_of(const Pose& pose) { return std::atan2(pose.rotation(1, 0), pose.rotation(0, 0)); }

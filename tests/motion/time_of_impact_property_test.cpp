@@ -13,13 +13,13 @@ namespace crashrank {
 namespace {
 
 using Eigen::Vector3d;
+using std::numbers::pi;
 using test::box_mesh;
 using test::moving;
 using test::Random;
 using test::sphere_mesh;
 using test::tolerance;
 using test::tree_of;
-constexpr double pi = std::numbers::pi;
 
 class TimeOfImpactProperty : public test::TimeOfImpact {};
 

@@ -15,6 +15,7 @@ namespace crashrank {
 namespace {
 
 using Eigen::Vector3d;
+using std::numbers::pi;
 using test::box_mesh;
 using test::moving;
 using test::Random;
@@ -22,7 +23,6 @@ using test::sphere_mesh;
 using test::TimeOfImpact;
 using test::tolerance;
 using test::tree_of;
-constexpr double pi = std::numbers::pi;
 
 Pose at(double x, double y, double z) {
   Pose pose;

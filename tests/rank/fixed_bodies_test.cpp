@@ -70,10 +70,6 @@ std::vector<const Contact*> contacts_with(const RankResult& result, std::size_t 
   return found;
 }
 
-bool same_bits(double p, double q) {
-  return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
-}
-
 // The flank of the car still slides along the pole when its front reaches the wall 2 m behind.
 TEST(FixedBodies, SeparateBodiesHaveSeparateContacts) {
   Scene both = ice();
@@ -129,15 +125,16 @@ TEST(FixedBodies, TheOrderOfActorsChangesNoBit) {
   const RankResult q = other.ranked();
   const CandidateResult& a = of(p, "on");
   const CandidateResult& b = of(q, "on");
-  EXPECT_TRUE(same_bits(*a.score, *b.score));
+  EXPECT_TRUE(scenes::same_bits(*a.score, *b.score));
   ASSERT_EQ(a.contacts.size(), b.contacts.size());
   ASSERT_GE(a.contacts.size(), 2U);
   for (std::size_t i = 0; i < a.contacts.size(); ++i) {
     EXPECT_EQ(a.contacts[i].actor, 1 - b.contacts[i].actor);
-    EXPECT_TRUE(same_bits(a.contacts[i].time_of_impact_s, b.contacts[i].time_of_impact_s));
-    EXPECT_TRUE(same_bits(a.contacts[i].closing_speed_mps, b.contacts[i].closing_speed_mps));
+    EXPECT_TRUE(scenes::same_bits(a.contacts[i].time_of_impact_s, b.contacts[i].time_of_impact_s));
     EXPECT_TRUE(
-        same_bits(a.contacts[i].severity.ego.delta_v_mps, b.contacts[i].severity.ego.delta_v_mps));
+        scenes::same_bits(a.contacts[i].closing_speed_mps, b.contacts[i].closing_speed_mps));
+    EXPECT_TRUE(scenes::same_bits(a.contacts[i].severity.ego.delta_v_mps,
+                                  b.contacts[i].severity.ego.delta_v_mps));
     EXPECT_EQ(a.contacts[i].ego.triangles, b.contacts[i].ego.triangles);
   }
 }

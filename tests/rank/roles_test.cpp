@@ -22,10 +22,10 @@ struct Kind {
   const char* name;
   BodyKind kind;
 };
-constexpr std::array<Kind, 4> kinds{{{"sedan", BodyKind::car},
-                                     {"hatch", BodyKind::car},
-                                     {"truck", BodyKind::truck},
-                                     {"motorcycle", BodyKind::motorcycle}}};
+constexpr std::array<Kind, 4> role_kinds{{{"sedan", BodyKind::car},
+                                          {"hatch", BodyKind::car},
+                                          {"truck", BodyKind::truck},
+                                          {"motorcycle", BodyKind::motorcycle}}};
 
 /// Poses of a body that is at (x, y) at 1 s and moves and turns uniformly, or brakes and turns.
 std::vector<TimedPose> drive(double x, double y, double yaw, double speed_mps, double yaw_rate,
@@ -51,8 +51,8 @@ struct Pair {
     Scene scene;
     for (const std::size_t side : {ego, 1 - ego}) {
       ScenarioModel model;
-      model.name = kinds[kind[side]].name + std::to_string(side);
-      model.kind = kinds[kind[side]].kind;
+      model.name = role_kinds[kind[side]].name + std::to_string(side);
+      model.kind = role_kinds[kind[side]].kind;
       scene.scenario.models.push_back(model);
     }
     const std::vector<Model> both{models[kind[ego]], models[kind[1 - ego]]};
@@ -71,21 +71,18 @@ struct Pair {
   }
 };
 
-bool same_bits(double p, double q) {
-  return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
-}
-
 void expect_same_bits(const BodyOutcome& p, const BodyOutcome& q) {
-  EXPECT_TRUE(same_bits(p.delta_v_mps, q.delta_v_mps)) << p.delta_v_mps << " " << q.delta_v_mps;
-  EXPECT_TRUE(same_bits(p.delta_v_x_mps, q.delta_v_x_mps));
-  EXPECT_TRUE(same_bits(p.delta_v_y_mps, q.delta_v_y_mps));
-  EXPECT_TRUE(same_bits(p.yaw_rate_change_radps, q.yaw_rate_change_radps));
-  EXPECT_TRUE(same_bits(p.pdof_deg, q.pdof_deg));
-  EXPECT_TRUE(same_bits(p.crush_energy_j, q.crush_energy_j));
-  EXPECT_TRUE(same_bits(p.ees_mps, q.ees_mps));
-  EXPECT_TRUE(same_bits(p.crush_m, q.crush_m));
-  EXPECT_TRUE(same_bits(p.intrusion_m, q.intrusion_m));
-  EXPECT_TRUE(same_bits(p.harm, q.harm)) << p.harm << " " << q.harm;
+  EXPECT_TRUE(scenes::same_bits(p.delta_v_mps, q.delta_v_mps))
+      << p.delta_v_mps << " " << q.delta_v_mps;
+  EXPECT_TRUE(scenes::same_bits(p.delta_v_x_mps, q.delta_v_x_mps));
+  EXPECT_TRUE(scenes::same_bits(p.delta_v_y_mps, q.delta_v_y_mps));
+  EXPECT_TRUE(scenes::same_bits(p.yaw_rate_change_radps, q.yaw_rate_change_radps));
+  EXPECT_TRUE(scenes::same_bits(p.pdof_deg, q.pdof_deg));
+  EXPECT_TRUE(scenes::same_bits(p.crush_energy_j, q.crush_energy_j));
+  EXPECT_TRUE(scenes::same_bits(p.ees_mps, q.ees_mps));
+  EXPECT_TRUE(scenes::same_bits(p.crush_m, q.crush_m));
+  EXPECT_TRUE(scenes::same_bits(p.intrusion_m, q.intrusion_m));
+  EXPECT_TRUE(scenes::same_bits(p.harm, q.harm)) << p.harm << " " << q.harm;
   EXPECT_EQ(p.cdc, q.cdc);
 }
 
@@ -95,14 +92,14 @@ TEST(Roles, ExchangingEgoAndOtherChangesNoBitOfTheFirstContact) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   std::vector<Model> models;
-  for (const Kind& kind : kinds) models.push_back(scenes::shipped_model(kind.name));
+  for (const Kind& kind : role_kinds) models.push_back(scenes::shipped_model(kind.name));
   int met = 0;
   int twins = 0;
   for (int i = 0; i < cases; ++i) {
     SCOPED_TRACE("case " + std::to_string(i));
     Pair pair;
     for (std::size_t side = 0; side < 2; ++side) {
-      pair.kind[side] = random.below(kinds.size());
+      pair.kind[side] = random.below(role_kinds.size());
       pair.poses[side] =
           drive(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-3.1, 3.1),
                 random.uniform(8, 40), random.below(2) == 0 ? 0.0 : random.uniform(-0.5, 0.5),
@@ -121,20 +118,20 @@ TEST(Roles, ExchangingEgoAndOtherChangesNoBitOfTheFirstContact) {
     ASSERT_EQ(p.state, q.state);
     ++met;
     twins += pair.kind[0] == pair.kind[1] ? 1 : 0;
-    EXPECT_TRUE(same_bits(p.time_of_impact_s, q.time_of_impact_s));
-    EXPECT_TRUE(same_bits(p.gap_m, q.gap_m));
-    EXPECT_TRUE(same_bits(p.closing_speed_mps, q.closing_speed_mps));
-    EXPECT_TRUE(same_bits(p.normal_speed_mps, q.normal_speed_mps));
-    EXPECT_TRUE(same_bits(p.closing_energy_j, q.closing_energy_j));
+    EXPECT_TRUE(scenes::same_bits(p.time_of_impact_s, q.time_of_impact_s));
+    EXPECT_TRUE(scenes::same_bits(p.gap_m, q.gap_m));
+    EXPECT_TRUE(scenes::same_bits(p.closing_speed_mps, q.closing_speed_mps));
+    EXPECT_TRUE(scenes::same_bits(p.normal_speed_mps, q.normal_speed_mps));
+    EXPECT_TRUE(scenes::same_bits(p.closing_energy_j, q.closing_energy_j));
     EXPECT_TRUE((p.normal + q.normal).isZero(0.0));
     EXPECT_TRUE((p.closing + q.closing).isZero(0.0));
     for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_TRUE(same_bits(p.point_m[axis], q.point_m[axis]));
+      EXPECT_TRUE(scenes::same_bits(p.point_m[axis], q.point_m[axis]));
     }
     EXPECT_EQ(p.severity.slides, q.severity.slides);
-    EXPECT_TRUE(same_bits(p.severity.duration_s, q.severity.duration_s));
-    EXPECT_TRUE(same_bits(p.severity.dissipated_j, q.severity.dissipated_j));
-    EXPECT_TRUE(same_bits(p.severity.harm, q.severity.harm));
+    EXPECT_TRUE(scenes::same_bits(p.severity.duration_s, q.severity.duration_s));
+    EXPECT_TRUE(scenes::same_bits(p.severity.dissipated_j, q.severity.dissipated_j));
+    EXPECT_TRUE(scenes::same_bits(p.severity.harm, q.severity.harm));
     expect_same_bits(p.severity.ego, q.severity.other);
     expect_same_bits(p.severity.other, q.severity.ego);
   }

@@ -6,6 +6,7 @@
 #include "crashrank/scenario/scenario.hpp"
 
 #include <gtest/gtest.h>
+#include <bit>
 
 #include <array>
 #include <cstddef>
@@ -15,6 +16,10 @@
 #include <vector>
 
 namespace crashrank::scenes {
+
+inline bool same_bits(double p, double q) {
+  return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
+}
 
 /// A closed box with corners at plus and minus half, each face cut into n × n squares of two
 /// triangles, one part a face: rear, front, right, left, bottom, top.

@@ -1,4 +1,5 @@
 #include "crashrank/rank/rank.hpp"
+#include "rank/drawn_scenarios.hpp"
 #include "rank/futures_cases.hpp"
 #include "rank/random_scene.hpp"
 #include "rank/scenes.hpp"
@@ -19,6 +20,8 @@
 namespace crashrank {
 namespace {
 
+using futures::drawn;
+using futures::drawn_of_ego;
 using futures::scores_of;
 using scenes::Scene;
 
@@ -34,19 +37,6 @@ RankOptions harm_of(std::size_t futures) {
   options.harm->intervals = false;
   options.sampled_futures = futures;
   return options;
-}
-
-std::vector<StateError> drawn(std::uint64_t seed, const StateUncertainty& uncertainty,
-                              std::size_t count) {
-  detail::Strata strata;
-  strata.prepare(count);
-  std::vector<StateError> errors(count);
-  strata.draw(seed, uncertainty, errors.data());
-  return errors;
-}
-
-std::vector<StateError> drawn_of_ego(const Scenario& scenario, std::size_t count) {
-  return drawn(detail::reserved_seed("ego"), scenario.ego.uncertainty, count);
 }
 
 TEST(StateErrors, NormalDeviateInvertsTheNormalDistribution) {
@@ -96,36 +86,6 @@ TEST(StateErrors, SamplesAreStratifiedWithTheStatedMeanAndDeviation) {
   EXPECT_NE(detail::seed_of("ego"), detail::reserved_seed("ego"));
 }
 
-Pose displaced(const Pose& pose, const StateError& error) {
-  Pose moved = pose;
-  const Eigen::AngleAxisd turn(error.heading_rad, Eigen::Vector3d::UnitZ());
-  moved.rotation = turn.toRotationMatrix() * pose.rotation;
-  moved.translation += Eigen::Vector3d(error.x_m, error.y_m, 0.0);
-  return moved;
-}
-
-double changed(double speed, double error) {
-  return speed == 0.0 ? 0.0 : std::max(speed + error, 0.0);
-}
-
-void displace(ActorMotion& motion, const StateError& error) {
-  motion.pose = displaced(motion.pose, error);
-  const double speed = changed(motion.speed_mps, error.speed_mps);
-  if (speed == 0.0 && motion.acceleration_mps2 <= 0.0) motion.yaw_rate_radps = 0.0;
-  motion.speed_mps = speed;
-}
-
-/// Index of the choice for a number in [0, 1).
-template <class Weighted>
-std::size_t chosen(double share, const std::vector<Weighted>& choices, double scale = 1.0) {
-  double reached = 0.0;
-  for (std::size_t k = 0; k + 1 < choices.size(); ++k) {
-    reached += scale * choices[k].probability;
-    if (share < reached) return k;
-  }
-  return choices.size() - 1;
-}
-
 /// Traffic whose candidates do not depend on the speed of the ego.
 Scene uncertain_traffic(std::uint64_t seed) {
   Scene scene = seed % 2 == 0 ? scenes::traffic(seed) : scenes::congestion(seed);
@@ -142,62 +102,6 @@ Scene uncertain_traffic(std::uint64_t seed) {
   return scene;
 }
 
-/// The scenario with its alternatives in the order in which they are drawn: the faster one first,
-/// then the one that turns further to the left.
-Scenario sorted(Scenario scenario) {
-  const auto precedes = [](const ActorMotion& p, const ActorMotion& q) {
-    return p.speed_mps != q.speed_mps ? p.speed_mps > q.speed_mps
-                                      : p.yaw_rate_radps > q.yaw_rate_radps;
-  };
-  for (ScenarioActor& actor : scenario.actors) {
-    std::sort(actor.predictions.begin(), actor.predictions.end(), precedes);
-  }
-  std::sort(scenario.futures.begin(), scenario.futures.end(),
-            [&](const JointFuture& p, const JointFuture& q) {
-              return precedes(p.motions.front().motion, q.motions.front().motion);
-            });
-  return scenario;
-}
-
-/// The scenario of each drawn future, without uncertainty.
-std::vector<Scenario> single_scenarios(const Scenario& written) {
-  const Scenario scenario = sorted(written);
-  std::vector<Scenario> singles(sampled, likeliest_future(scenario));
-  const std::vector<StateError> ego = drawn_of_ego(scenario, sampled);
-  detail::Strata strata;
-  strata.prepare(sampled);
-  for (std::size_t f = 0; f < sampled; ++f) {
-    ScenarioEgo& own = singles[f].ego;
-    own.pose = displaced(own.pose, ego[f]);
-    own.speed_mps = changed(own.speed_mps, ego[f].speed_mps);
-    if (scenario.futures.empty()) continue;
-    const double share = strata.draw(detail::reserved_seed("futures"))[f];
-    for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
-      static_cast<ActorMotion&>(singles[f].actors[i]) = scenario.actors[i];
-    }
-    const JointFuture& future = scenario.futures[chosen(share, scenario.futures)];
-    for (const FutureMotion& moved : future.motions) {
-      static_cast<ActorMotion&>(singles[f].actors[moved.actor]) = moved.motion;
-    }
-  }
-  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
-    const ScenarioActor& actor = scenario.actors[i];
-    const std::uint64_t seed = detail::seed_of(actor.name);
-    const std::vector<StateError> errors = drawn(seed, actor.perception, sampled);
-    for (std::size_t f = 0; f < sampled; ++f) {
-      ScenarioActor& single = singles[f].actors[i];
-      const double share = strata.draw(seed)[f];
-      single.existence_probability = share < actor.existence_probability ? 1.0 : 0.0;
-      if (!actor.predictions.empty()) {
-        static_cast<ActorMotion&>(single) =
-            actor.predictions[chosen(share, actor.predictions, actor.existence_probability)];
-      }
-      displace(single, errors[f]);
-    }
-  }
-  return singles;
-}
-
 void expect_mean_of_singles(const Scene& scene, double tolerance) {
   const RankResult whole = scene.ranked(harm_of(sampled));
   ASSERT_EQ(whole.futures.method, FutureMethod::sampled);
@@ -206,12 +110,12 @@ void expect_mean_of_singles(const Scene& scene, double tolerance) {
   EXPECT_EQ(whole.futures.futures, sampled + 1);
   std::vector<double> mean(whole.ranking.size(), 0.0);
   std::vector<double> collides(whole.ranking.size(), 0.0);
-  for (const Scenario& single : single_scenarios(scene.scenario)) {
-    const Result<RankResult> part = rank(single, scene.models, harm_of(1));
+  for (const futures::SingleFuture& single : futures::single_scenarios(scene.scenario, sampled)) {
+    const Result<RankResult> part = rank(single.scenario, scene.models, harm_of(1));
     ASSERT_TRUE(part.ok()) << part.error().message();
     for (const CandidateResult& c : part->ranking) {
-      mean[c.candidate] += c.score.value_or(-1e9) / double{sampled};
-      if (c.collides) collides[c.candidate] += 1.0 / double{sampled};
+      mean[c.candidate] += single.probability * c.score.value_or(-1e9);
+      if (c.collides) collides[c.candidate] += single.probability;
     }
   }
   const RankResult likeliest = [&] {

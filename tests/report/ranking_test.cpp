@@ -210,6 +210,23 @@ TEST(RankingJson, ListsContactsBetweenOthersInTheOrderOfTime) {
   EXPECT_EQ(answer["ranking"][0]["crowded"], false);
 }
 
+TEST(RankingText, ShowsTheLargestDeltaVOfAnEventAndTheDeepestCrush) {
+  Told told = by_harm();
+  std::vector<Contact>& contacts = told.result.ranking[1].contacts;
+  contacts[0].severity.ego.delta_v_mps = contacts[1].severity.ego.delta_v_mps = 11.1;
+  contacts[0].severity.ego.event_delta_v_mps = 17.25;
+  contacts[1].severity.ego.event_delta_v_mps = 14.0;
+  contacts[0].severity.ego.crush_m = 0.12;
+  contacts[1].severity.ego.crush_m = 0.34;
+  const std::string text = ranking_text(told.scenario, told.models, told.result);
+  const std::size_t row = text.find("wall +1");
+  ASSERT_NE(row, std::string::npos) << text;
+  const std::string line = text.substr(row, text.find('\n', row) - row);
+  EXPECT_NE(line.find(" 17.2 "), std::string::npos) << line;
+  EXPECT_NE(line.find(" 0.34 "), std::string::npos) << line;
+  EXPECT_NE(text.find("event delta-v m/s"), std::string::npos) << text;
+}
+
 TEST(RankingText, SaysWhoIsHurtByAContactBetweenOthers) {
   Told told = by_harm();
   told.push_into("third \x1b[2J");

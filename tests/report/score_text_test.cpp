@@ -102,6 +102,16 @@ TEST(ScoreText, AScoreThatIsNotKnownIsItsInterval) {
   EXPECT_EQ(texts({open}), (Texts{"0.5 to inf (about 0.823)"}));
 }
 
+TEST(ScoreText, OnlyCertaintyIsPrintedAsCertain) {
+  using detail::percent_text;
+  EXPECT_EQ(percent_text(0.0), "0 %");
+  EXPECT_EQ(percent_text(1e-9), "<1 %");
+  EXPECT_EQ(percent_text(0.006), "1 %");
+  EXPECT_EQ(percent_text(0.5), "50 %");
+  EXPECT_EQ(percent_text(0.996), ">99 %");
+  EXPECT_EQ(percent_text(1.0), "100 %");
+}
+
 TEST(ScoreText, FixedDecimalsShowWhatIsNotZero) {
   EXPECT_EQ(fixed_text(0.0, 1), "0.0");
   EXPECT_EQ(fixed_text(0.04, 1), "0.04");

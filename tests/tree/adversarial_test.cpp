@@ -15,9 +15,6 @@
 namespace crashrank {
 namespace {
 
-constexpr SplitRule all_rules[] = {SplitRule::min_relative_segment, SplitRule::paper,
-                                   SplitRule::sah, SplitRule::median};
-
 AabbTree expect_valid(const TriangleMesh& mesh, SplitRule rule, BoxFrame frame = BoxFrame::world) {
   SCOPED_TRACE("rule " + std::to_string(static_cast<int>(rule)));
   BuildOptions options;
@@ -46,7 +43,7 @@ TEST(Adversarial, EqualTriangles) {
 TEST(Adversarial, OnePoint) {
   TriangleMesh mesh;
   for (int i = 0; i < 5000; ++i) test::add_triangle(mesh, {1, 2, 3}, {1, 2, 3}, {1, 2, 3});
-  for (const SplitRule rule : all_rules) {
+  for (const SplitRule rule : test::all_rules) {
     EXPECT_LE(expect_valid(mesh, rule).depth, 32U);
     expect_valid(mesh, rule, BoxFrame::gaussian);
   }
@@ -63,7 +60,7 @@ TEST(Adversarial, DistancesThatDouble) {
       }
     }
   }
-  for (const SplitRule rule : all_rules) {
+  for (const SplitRule rule : test::all_rules) {
     expect_valid(mesh, rule);
     expect_valid(mesh, rule, BoxFrame::gaussian);
   }
@@ -85,7 +82,7 @@ TEST(Adversarial, TheEndsOfTheFloatRange) {
     test::add_triangle(huge, a[0], a[1], a[2]);
     test::add_triangle(tiny, b[0], b[1], b[2]);
   }
-  for (const SplitRule rule : all_rules) {
+  for (const SplitRule rule : test::all_rules) {
     expect_valid(huge, rule);
     expect_valid(tiny, rule);
     expect_valid(tiny, rule, BoxFrame::gaussian);
@@ -103,7 +100,7 @@ TEST(Adversarial, TheEndsOfTheFloatRange) {
 TEST(Adversarial, OneTriangleOverAllOthers) {
   TriangleMesh mesh = test::triangle_soup(3000, 0.001F, 32);
   for (int i = 0; i < 50; ++i) test::add_triangle(mesh, {-9, -9, -9}, {9, 9, -9}, {0, 0, 9});
-  for (const SplitRule rule : all_rules) expect_valid(mesh, rule);
+  for (const SplitRule rule : test::all_rules) expect_valid(mesh, rule);
 }
 
 TEST(Adversarial, TheLiteralRulePeelsAStripOneByOne) {

@@ -16,9 +16,6 @@
 namespace crashrank {
 namespace {
 
-constexpr SplitRule all_rules[] = {SplitRule::min_relative_segment, SplitRule::paper,
-                                   SplitRule::sah, SplitRule::median};
-
 std::string describe(const BuildOptions& options) {
   return "rule " + std::to_string(static_cast<int>(options.rule)) + ", frame " +
          std::to_string(static_cast<int>(options.frame)) + ", leaves of " +
@@ -27,7 +24,7 @@ std::string describe(const BuildOptions& options) {
 
 std::vector<BuildOptions> all_options() {
   std::vector<BuildOptions> all;
-  for (const SplitRule rule : all_rules) {
+  for (const SplitRule rule : test::all_rules) {
     for (const BoxFrame frame : {BoxFrame::world, BoxFrame::gaussian}) {
       for (const std::uint32_t leaf : {1U, 2U, 4U, 8U, 255U}) {
         for (const bool fill : {false, true}) {
@@ -167,7 +164,7 @@ TEST(Build, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (int i = 0; i < 9000; ++i) test::add_triangle(equal, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   for (const TriangleMesh& mesh : {test::triangle_soup(30000, 0.02F, 23), test::strip(20000), equal,
                                    test::triangle_soup(5, 0.1F, 24)}) {
-    for (const SplitRule rule : all_rules) {
+    for (const SplitRule rule : test::all_rules) {
       if (rule == SplitRule::paper && mesh.size() > 10) continue;  // slow, and always serial
       BuildOptions options;
       options.rule = rule;

@@ -1,11 +1,15 @@
 #pragma once
 
 #include "crashrank/mesh/triangle_mesh.hpp"
+#include "crashrank/tree/aabb_tree.hpp"
 
 #include <cstdint>
 #include <random>
 
 namespace crashrank::test {
+
+inline constexpr SplitRule all_rules[] = {SplitRule::min_relative_segment, SplitRule::paper,
+                                          SplitRule::sah, SplitRule::median};
 
 /// Uniform in [0, 1), the same with every standard library.
 inline float unit_real(std::mt19937_64& random) {

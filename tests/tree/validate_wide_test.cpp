@@ -16,7 +16,7 @@
 namespace crashrank {
 namespace {
 
-using Corruption = std::function<void(WideTree&)>;
+using WideCorruption = std::function<void(WideTree&)>;
 
 WideNode& root(WideTree& wide) { return wide.nodes[0]; }
 
@@ -44,7 +44,7 @@ std::size_t binary_with_lanes(const WideTree& wide, bool several) {
   return i;
 }
 
-std::vector<std::pair<std::string, Corruption>> corruptions() {
+std::vector<std::pair<std::string, WideCorruption>> wide_corruptions() {
   return {
       {"no nodes", [](WideTree& w) { w.nodes.clear(); }},
       {"no clusters", [](WideTree& w) { w.clusters.clear(); }},
@@ -149,7 +149,7 @@ TEST(ValidateWide, CatchesEveryPlantedCorruption) {
     ASSERT_GT(model->wide.nodes.size(), 9U);
     const Status sound = validate(*model);
     ASSERT_TRUE(sound.ok()) << sound.error().message();
-    for (const auto& [name, corrupt] : corruptions()) {
+    for (const auto& [name, corrupt] : wide_corruptions()) {
       Model broken = *model;
       corrupt(broken.wide);
       EXPECT_FALSE(validate(broken).ok()) << name;

@@ -76,7 +76,15 @@ enum class FutureMethod {
   certain,  ///< every actor exists and follows one motion: there is one future
   joint,    ///< the scenario lists joint futures
   all,      ///< all combinations of independent predictions
-  sampled,  ///< a Latin hypercube sample of them, the same for all candidates and in every run
+  sampled,  ///< a stratified sample of them, the same for all candidates and in every run
+};
+
+/// A future of a sample.
+struct DrawnFuture {
+  double probability = 0.0;  ///< for which it stands
+  /// Futures of one stratum have the same predictions and absences and differ in errors of states;
+  /// a sample that is not divided in that way is one stratum.
+  std::uint32_t stratum = 0;
 };
 
 /// The futures of a ranking.
@@ -84,7 +92,12 @@ struct FutureSummary {
   FutureMethod method = FutureMethod::certain;  ///< how they were chosen
   /// number of evaluated futures; with `sampled` the likeliest one is added
   std::size_t futures = 1;
-  std::size_t sampled = 0;    ///< number of drawn futures, all with the same probability
+  std::size_t sampled = 0;  ///< number of drawn futures
+  /// the drawn futures, which come first; those of a stratum are neighbours
+  std::vector<DrawnFuture> drawn;
+  /// Number of predictions and absences that no drawn future has: 0 but with very many improbable
+  /// ones.
+  std::size_t undrawn = 0;
   double combinations = 1.0;  ///< number of combinations that the scenario allows
   /// Number of actors with several choices that no candidate or crash comes near. They have their
   /// likeliest choice in every future and do not multiply the number of futures.

@@ -12,14 +12,14 @@
 namespace crashrank {
 namespace {
 
-struct Scene {
+struct SweptBodies {
   Model a = std::move(make_model(test::hull(30, 40, 1)).value());
   Model b = std::move(make_model(test::hull(30, 40, 2)).value());
   std::vector<Pose> poses = test::crash_poses(2, 0.7, 5);
 };
 
 TEST(Sweep, HasARowForEveryPolicyAtEveryDepth) {
-  const Scene scene;
+  const SweptBodies scene;
   SweepOptions options;
   options.depths = {3, 7};
   options.repeat = 2;
@@ -57,7 +57,7 @@ TEST(Sweep, HasARowForEveryPolicyAtEveryDepth) {
 }
 
 TEST(Sweep, TrimsWhatDoesNotFit) {
-  const Scene scene;
+  const SweptBodies scene;
   SweepOptions options;
   options.depths = {1, 9};
   options.policies = {Policy::lowest};
@@ -71,7 +71,7 @@ TEST(Sweep, TrimsWhatDoesNotFit) {
 }
 
 TEST(Sweep, RefusesWhatHasNoMeaning) {
-  const Scene scene;
+  const SweptBodies scene;
   SweepOptions options;
   options.depths = {17};
   EXPECT_FALSE(sweep(scene.a, scene.b, scene.poses, options).ok());
