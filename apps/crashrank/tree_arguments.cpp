@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,7 @@ template <class Table> auto find(const Table& table, const std::string& name) {
 
 template <class Table> std::vector<std::string> names(const Table& table) {
   std::vector<std::string> all;
+  all.reserve(std::size(table));
   for (const auto& [known, value] : table) all.emplace_back(known);
   return all;
 }

@@ -50,7 +50,7 @@ public:
   }
 
 private:
-  std::mt19937_64 random_;
+  std::mt19937_64 random_;  // NOLINT(cert-msc51-cpp): begin() seeds it
 };
 
 class Lowest final : public PlacementPolicy {

@@ -16,7 +16,8 @@
 #include <system_error>
 #include <thread>
 
-extern char** environ;
+// POSIX leaves it to the program to declare it; glibc does so as well.
+extern char** environ;  // NOLINT(readability-redundant-declaration)
 
 namespace crashrank::detail {
 namespace {

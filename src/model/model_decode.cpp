@@ -158,7 +158,7 @@ Error with_remedy(Error error) {
 }  // namespace
 
 Result<LoadedModel> decode_model(View<const unsigned char> bytes,
-                                 std::shared_ptr<const void> keeper, bool compare_checksum) {
+                                 const std::shared_ptr<const void>& keeper, bool compare_checksum) {
   if (bytes.size() < model_magic.size() ||
       !std::equal(model_magic.begin(), model_magic.end(), bytes.begin())) {
     return make_error(ErrorCode::bad_input, "is no model file", "make one with crashrank compile");

@@ -240,7 +240,8 @@ ModelHeader header_of(const StoredModel& stored, const Profile* profile, std::si
 
 template <class T>
 void put(std::vector<unsigned char>& bytes, const SectionPlace& place, View<const T> items) {
-  if (place.bytes != 0) std::memcpy(bytes.data() + place.offset, items.data(), place.bytes);
+  const auto* const from = reinterpret_cast<const unsigned char*>(items.data());
+  std::copy_n(from, place.bytes, bytes.data() + place.offset);
 }
 
 Result<std::vector<unsigned char>> encode(const StoredModel& stored) {

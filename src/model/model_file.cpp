@@ -29,7 +29,7 @@ Result<LoadedModel> load_model(View<const unsigned char> bytes,
     }
     // Memory that lives for ever needs no keeper, a column does.
     if (keeper == nullptr) keeper.reset(bytes.data(), [](const void*) {});
-    return detail::decode_model(bytes, std::move(keeper), true);
+    return detail::decode_model(bytes, keeper, true);
   });
 }
 

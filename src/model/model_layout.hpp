@@ -155,6 +155,6 @@ inline bool means_no_profile(const Error& error) {
 /// `load_model` from memory. The checksum need not be compared: for tests that have to reach what
 /// it shields.
 Result<LoadedModel> decode_model(View<const unsigned char> bytes,
-                                 std::shared_ptr<const void> keeper, bool compare_checksum);
+                                 const std::shared_ptr<const void>& keeper, bool compare_checksum);
 
 }  // namespace crashrank::detail

@@ -81,15 +81,13 @@ Motion::Profile Motion::make_profile(double speed, double acceleration, double t
   p.acceleration = acceleration;
   p.end = infinity;
   p.top_speed = top_speed;
-  if (acceleration == 0.0) {
+  const bool brakes = speed * acceleration < 0.0 || (speed == 0.0 && acceleration < 0.0);
+  if (acceleration == 0.0 || (!brakes && std::abs(speed) >= top_speed)) {
     p.end = 0.0;
     p.end_speed = speed;
-  } else if (speed * acceleration < 0.0 || (speed == 0.0 && acceleration < 0.0)) {
+  } else if (brakes) {
     p.end = -speed / acceleration;
     p.stops = true;
-  } else if (std::abs(speed) >= top_speed) {
-    p.end = 0.0;
-    p.end_speed = speed;
   } else if (top_speed < infinity) {
     p.end_speed = std::copysign(top_speed, acceleration);
     p.end = (p.end_speed - speed) / acceleration;
@@ -314,7 +312,8 @@ double Motion::next_kink(double t_s) const {
   if (const auto* planar = std::get_if<Planar>(&kind_)) {
     const Profile& p = planar->profile;
     const bool yaw_ends = p.stops && !planar->arc && planar->yaw_rate != 0.0;
-    return yaw_ends && t_s < p.end ? p.end : infinity;
+    if (!yaw_ends || t_s >= p.end) return infinity;
+    return p.end;
   }
   if (const auto* segments = std::get_if<Timed>(&kind_)) {
     const auto next = std::upper_bound(segments->begin(), segments->end(), t_s,

@@ -71,8 +71,9 @@ void FutureSample::draw_combinations(std::size_t combinations) {
       rest /= count(v);
     }
     end += 0.5 * total * (probability + 1.0 / static_cast<double>(combinations));
-    const std::size_t until =
-        c + 1 == combinations ? futures_ : std::min(futures_, static_cast<std::size_t>(end + 0.5));
+    const std::size_t until = c + 1 == combinations
+                                  ? futures_
+                                  : std::min(futures_, static_cast<std::size_t>(std::llround(end)));
     const DrawnFuture drawn{probability / static_cast<double>(std::max<std::size_t>(until - f, 1)),
                             static_cast<std::uint32_t>(c)};
     for (; f < until; ++f) {

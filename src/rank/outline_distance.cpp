@@ -277,7 +277,8 @@ double outline_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const 
       }
     }
   }
-  return common ? least : infinity_m;
+  if (!common) return infinity_m;
+  return least;
 }
 
 double rectangle_distance_m(const BodyOutline& a, const PlanarPose& pose_a, const BodyOutline& b,

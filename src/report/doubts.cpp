@@ -156,13 +156,13 @@ void doubt_road(const Scenario& scenario, const RankResult& result,
     return ranked.leaves_road && ranked.leaves_road->time_s == 0.0;
   };
   if (std::any_of(result.ranking.begin(), result.ranking.end(), leaves_at_once)) {
-    doubts.push_back(
+    doubts.emplace_back(
         "the ego begins beside the road, so that every plan leaves it at once; are road.drivable "
         "and "
         "the ego's pose in the same frame?");
   } else if (result.ranking.front().leaves_road && result.measure == Measure::harm &&
              scenario.road.harm_per_leaving == 0.0) {
-    doubts.push_back(
+    doubts.emplace_back(
         "the first place leaves the road, and what lies beside it counts as harmless; state "
         "road.off_road.harm_per_leaving");
   }

@@ -205,7 +205,8 @@ ManoeuvreDemand demand_of_poses(const Motion& motion, const EgoLimits& limits,
   Steering steering(limits, first.time_s);
   double before_s = 0.0;  // since the pose before
   double next_pose_s = 0.0;
-  for (double time_s = 0.0; time_s < way.until_s && time_s <= end_s; time_s = next_pose_s) {
+  double time_s = 0.0;
+  for (; time_s < way.until_s && time_s <= end_s; time_s = next_pose_s) {
     next_pose_s = motion.next_kink(time_s);
     const double to_next_s = next_pose_s <= end_s ? next_pose_s - time_s : 0.0;
     const double spacing_s = spacing_of(before_s, to_next_s);

@@ -91,7 +91,7 @@ JsonObject::JsonObject(const nlohmann::json& value, std::string path, Status& st
                                       [&item](const char* key) { return item.key() == key; });
     if (is_known) continue;
     std::string list;
-    for (const char* key : known) list += (list.empty() ? "" : ", ") + std::string(key);
+    for (const char* key : known) list.append(list.empty() ? "" : ", ").append(key);
     const std::string meant = nearest_word(item.key(), {known.begin(), known.end()});
     refuse_at(status, path_of(printable(item.key(), 64).c_str()), "there is no such key",
               (meant.empty() ? "the" : "did you mean '" + meant + "'? The") +
@@ -137,7 +137,7 @@ std::string JsonObject::text(const char* key, std::size_t max_characters) const 
 }
 
 std::string JsonObject::name(const char* key, std::size_t max_characters) const {
-  const std::string name = text(key, max_characters);
+  std::string name = text(key, max_characters);
   if (has(key)) check_name(name, path_of(key), max_characters, *status_);
   return name;
 }

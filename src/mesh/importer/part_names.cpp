@@ -72,7 +72,7 @@ std::vector<std::string> name_parts(const std::vector<PartLabels>& labels,
     for (const auto member : {&PartLabels::material, &PartLabels::mesh}) {
       const std::string& name = label.*member;
       if (is_generic(name) || name == base || name == first.*member) continue;
-      stem = detail::to_utf8(base + "/" + name, limit - room_for_number);
+      stem = detail::to_utf8(std::string(base).append("/").append(name), limit - room_for_number);
       break;
     }
     if (take(stem)) continue;
