@@ -579,6 +579,9 @@ typedef struct crashrank_manoeuvre {
   double least_distance_m;      ///< to other bodies along the plans, 0 if it has a contact
   double least_time_gap_s;      ///< between it and another that moves, at one place
   double horizon_speed_mps;     ///< at the horizon, if it has no contact
+  /// From the horizon until it touches another, if all keep their velocities; absent above 3 s and
+  /// if it has a contact.
+  double time_to_collision_s;
 } crashrank_manoeuvre;
 /// Properties of the candidate under `index` besides its crash; the caller sets
 /// `manoeuvre->size`. Errors: usage.

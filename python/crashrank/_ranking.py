@@ -40,6 +40,8 @@ class RankedCandidate(Record):
     nearest: str | None
     least_time_gap_s: float | None
     soonest: str | None
+    time_to_collision_s: float | None
+    imminent: str | None
     at_horizon: Record | None
     score: float | None
     score_interval: tuple[float, float]

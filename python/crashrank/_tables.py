@@ -37,6 +37,7 @@ COLUMNS: tuple[tuple[str, str, tuple[str | int, ...]], ...] = (
     ("leaves_road_s", "float64", ("leaves_road", "time_s")),
     ("least_distance_m", "float64", ("least_distance_m",)),
     ("least_time_gap_s", "float64", ("least_time_gap_s",)),
+    ("time_to_collision_s", "float64", ("time_to_collision_s",)),
     ("tied_with", "list<string>", ("tied_with",)),
     ("origin", "string", ("origin",)),
     ("acceleration_mps2", "float64", ("acceleration_mps2",)),

@@ -73,6 +73,7 @@ crashrank_manoeuvre to_manoeuvre(const CandidateResult& ranked) {
   made.least_distance_m = ranked.least_distance_m.value_or(absent);
   made.least_time_gap_s = ranked.least_time_gap_s.value_or(absent);
   made.horizon_speed_mps = ranked.at_horizon ? ranked.at_horizon->speed_mps : absent;
+  made.time_to_collision_s = ranked.time_to_collision_s.value_or(absent);
   return made;
 }
 

@@ -2,6 +2,7 @@
 
 #include "crashrank/rank/rank.hpp"
 #include "rank/scene.hpp"
+#include "rank/time_to_collision.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -216,9 +217,11 @@ void sample_trajectories(const Scene& scene, PlanTrajectories& trajectories) {
   const std::size_t count = scene.futures.own_plans();
   trajectories.poses.resize(count * (trajectories.steps + 1));
   trajectories.fastest_mps.resize(count);
+  trajectories.end_velocity_mps.resize(count);
   for (std::size_t p = 0; p < count; ++p) {
     const BodyOutline& outline = *scene.actors[plans[p].actor].outline;
     trajectories.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
+    trajectories.end_velocity_mps[p] = end_velocity_mps(plans[p].motion, horizon_s);
     for (std::size_t i = 0; i <= trajectories.steps; ++i) {
       trajectories.poses[p * (trajectories.steps + 1) + i] =
           planar_pose(plans[p].motion.pose_at(trajectories.step_s * static_cast<double>(i)));
@@ -237,6 +240,8 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
                        ego,
                        {ego_poses.data(), ego_poses.size()},
                        fastest_point_mps(ego, *scene.ego.outline, scene.slice_s.back())};
+  const DriftingBody own_end{own.outline, own.poses[trajectories.steps],
+                             end_velocity_mps(ego, scene.slice_s.back())};
   Clearance least;
   // A pair is skipped only if its lower bound is not below the smallest distance so far, so
   // skipping cannot change any bit of the result.
@@ -263,6 +268,14 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
         least.time_gap_s = gap_s;
         least.soonest = plans[p].actor;
       }
+    }
+    const DriftingBody other_end{other.outline, other.poses[trajectories.steps],
+                                 trajectories.end_velocity_mps[p]};
+    const double most_s = std::min(least.time_to_collision_s, longest_time_to_collision_s);
+    const double collision_s = time_to_collision_s(own_end, other_end, most_s, stop);
+    if (collision_s < least.time_to_collision_s) {
+      least.time_to_collision_s = collision_s;
+      least.imminent = plans[p].actor;
     }
   }
   if (nearest < farthest_clearance_m) least.distance_m = nearest;

@@ -159,9 +159,11 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
   result.leaves_road = facts.leaves_road;
   result.least_distance_m = if_finite(facts.clearance.distance_m);
   result.least_time_gap_s = if_finite(facts.clearance.time_gap_s);
+  result.time_to_collision_s = if_finite(facts.clearance.time_to_collision_s);
   if (!followed.touches) {
     if (result.least_distance_m) result.nearest = facts.clearance.nearest;
     if (result.least_time_gap_s) result.soonest = facts.clearance.soonest;
+    if (result.time_to_collision_s) result.imminent = facts.clearance.imminent;
   }
   if (!result.collides) result.at_horizon = facts.at_horizon;
 }

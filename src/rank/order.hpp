@@ -15,14 +15,16 @@ struct OrderKey {
   bool collides = false;  ///< in the likeliest future, like the next
   bool grazes = false;
   bool leaves_road = false;
+  /// Hundredths of a second, at most `longest_time_to_collision_s`.
+  double time_to_collision_cs = 0.0;
   double distance_cm = 0.0;  ///< whole centimetres, at most `enough_distance_m`
   double time_gap_cs = 0.0;  ///< hundredths of a second, at most `enough_time_gap_s`
   double first_s = 0.0;      ///< time of the first contact; only for candidates that collide
   double closing_mps = 0.0;
   double end_speed_mps = 0.0;  ///< speed at the horizon; only for candidates that do not collide
 
-  /// Rounds both to their accuracy, so that smaller differences do not decide.
-  void set_clearance(double least_m, double least_s) noexcept;
+  /// Rounds all to their accuracy, so that smaller differences do not decide.
+  void set_clearance(double least_m, double least_gap_s, double time_to_collision_s) noexcept;
   /// Returns true if no candidate with the same score can precede it.
   bool is_best_of_its_score() const noexcept;
 };

@@ -149,6 +149,23 @@ void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
   }
 }
 
+void doubt_horizon(const Scenario& scenario, const RankResult& result,
+                   std::vector<std::string>& doubts) {
+  Counted imminent;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (!ranked.imminent) continue;
+    imminent.add(fmt::format("'{}', in place {}, {:.2f} s before a crash with '{}'",
+                             result.candidates[ranked.candidate].name, ranked.place,
+                             *ranked.time_to_collision_s, scenario.actors[*ranked.imminent].name));
+  }
+  if (imminent.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} the horizon ({:g} s) without contact but close to a crash, which no score counts: {}; "
+      "state a longer horizon_s",
+      imminent.many("candidate reaches", "candidates reach"), scenario.horizon_s,
+      imminent.examples()));
+}
+
 void doubt_road(const Scenario& scenario, const RankResult& result,
                 std::vector<std::string>& doubts) {
   if (!scenario.road.ends() || result.ranking.empty()) return;
@@ -222,6 +239,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_crowds(result, doubts);
   doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
+  doubt_horizon(scenario, result, doubts);
   doubt_road(scenario, result, doubts);
   doubt_actors(scenario, doubts);
   doubt_fixed(scenario, result, doubts);

@@ -20,6 +20,17 @@ std::string gap_words(const std::optional<double>& gap_s) {
   return gap_s ? fmt::format("{:.2f} s", *gap_s) : std::string("no crossing way");
 }
 
+/// "0.17 s before a crash"; the time to collision exists.
+std::string before_crash(const CandidateResult& ranked) {
+  return fmt::format("{:.2f} s before a crash", *ranked.time_to_collision_s);
+}
+
+/// "0.17 s from a crash with lorry"; the time to collision exists.
+std::string from_crash(const Scenario& scenario, const CandidateResult& ranked) {
+  return fmt::format("{:.2f} s from a crash with {}", *ranked.time_to_collision_s,
+                     scenario.actors[*ranked.imminent].name);
+}
+
 }  // namespace
 
 std::string demand_words(const ManoeuvreDemand& demand) {
@@ -55,6 +66,10 @@ std::string passing_words(const Scenario& scenario, const CandidateResult& ranke
     words += fmt::format(", {:.2f} s from {}", *ranked.least_time_gap_s,
                          scenario.actors[*ranked.soonest].name);
   }
+  if (ranked.imminent) {
+    words += fmt::format(", {} with {} at the horizon", before_crash(ranked),
+                         scenario.actors[*ranked.imminent].name);
+  }
   return words;
 }
 
@@ -62,6 +77,7 @@ std::string manoeuvre_mark(const CandidateResult& ranked) {
   std::string mark;
   if (!ranked.feasible) mark = "cannot be followed";
   if (ranked.leaves_road) mark += mark.empty() ? "off the road" : ", off the road";
+  if (ranked.imminent) mark += (mark.empty() ? "" : ", ") + before_crash(ranked);
   return mark;
 }
 
@@ -81,10 +97,16 @@ std::string manoeuvre_words(const Scenario& scenario, const CandidateResult& ran
   if (ranked.at_horizon) {
     words += fmt::format(", and is at {:.1f} m/s at the horizon", ranked.at_horizon->speed_mps);
   }
-  return words + ".";
+  words += ".";
+  if (ranked.imminent) {
+    words += " It is " + from_crash(scenario, ranked) +
+             " at the horizon if all keep their velocities from there.";
+  }
+  return words;
 }
 
-std::string tie_words(const CandidateResult& first, const CandidateResult& second) {
+std::string tie_words(const Scenario& scenario, const CandidateResult& first,
+                      const CandidateResult& second) {
   if (first.futures.size() + second.futures.size() > 2 &&
       first.collision_probability != second.collision_probability) {
     return fmt::format("a collision is less probable, {:.3g} % against {:.3g} %",
@@ -102,6 +124,14 @@ std::string tie_words(const CandidateResult& first, const CandidateResult& secon
     return std::round(100.0 * std::min(p.value_or(enough), enough)) !=
            std::round(100.0 * std::min(q.value_or(enough), enough));
   };
+  if (second.imminent &&
+      differ(first.time_to_collision_s, second.time_to_collision_s, longest_time_to_collision_s)) {
+    if (!first.imminent) {
+      return "it is not " + from_crash(scenario, second) + " at the end of the horizon";
+    }
+    return fmt::format("it is further from a crash at the end of the horizon, {} against {}",
+                       from_crash(scenario, first), from_crash(scenario, second));
+  }
   if (differ(first.least_distance_m, second.least_distance_m, enough_distance_m)) {
     return fmt::format("it stays further from all others, {} against {}",
                        distance_words(first.least_distance_m),

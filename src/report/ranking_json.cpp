@@ -169,6 +169,8 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
       {"nearest", name_json(scenario, ranked.nearest)},
       {"least_time_gap_s", optional_json(ranked.least_time_gap_s)},
       {"soonest", name_json(scenario, ranked.soonest)},
+      {"time_to_collision_s", optional_json(ranked.time_to_collision_s)},
+      {"imminent", name_json(scenario, ranked.imminent)},
       {"at_horizon", horizon_json(ranked)},
       {"score", ranked.score ? Json(*ranked.score) : Json(nullptr)},
       {"score_interval",

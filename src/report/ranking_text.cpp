@@ -156,7 +156,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   }
   text += fmt::format("\n{} of {} {}touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
                       result.complete ? "" : "are known to ",
-                      simulated ? " Delta-v (over all contacts) and crush are the ego's."
+                      simulated ? " Delta-v (the largest of an event) and crush are the ego's."
                                 : " Damage is ego + others.",
                       result.elapsed_s * 1e3, result.complete ? "" : "; not every score is known");
   if (!result.complete) {

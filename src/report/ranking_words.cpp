@@ -222,7 +222,7 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
   }
   if (*first.score == *second.score) {
     return text + fmt::format("Both score {}; the first is placed before because {}.", first_score,
-                              tie_words(first, second));
+                              tie_words(scenario, first, second));
   }
   text += fmt::format("What counts here is the {}: {} against {}", measure_meaning(result.measure),
                       first_score, second_score);

@@ -47,6 +47,7 @@ TEST(CRoad, LeavingItAndWeakBrakesAreTold) {
     EXPECT_EQ(told.manoeuvre.leaves_road, 0) << name;
     EXPECT_TRUE(std::isnan(told.manoeuvre.leaves_road_s)) << name;
     EXPECT_EQ(told.manoeuvre.least_distance_m, 0.0) << name;
+    EXPECT_TRUE(std::isnan(told.manoeuvre.time_to_collision_s)) << name;
   }
   auto limits = sized<crashrank_ego_limits>();
   limits.max_deceleration_mps2 = 3.0;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -256,6 +257,7 @@ TEST(OrderOfHarmless, InterruptedSearchesReportNoPartialClearance) {
         EXPECT_EQ(each.score, all.score);
         EXPECT_EQ(each.least_distance_m, all.least_distance_m);
         EXPECT_EQ(each.least_time_gap_s, all.least_time_gap_s);
+        EXPECT_EQ(each.time_to_collision_s, all.time_to_collision_s);
         EXPECT_EQ(each.leaves_road, all.leaves_road);
       }
     }
@@ -289,6 +291,8 @@ TEST(OrderOfHarmless, IsTheSameInTheRanker) {
       EXPECT_EQ(whole.ranking[i].candidate, one.candidate) << "place " << i;
       EXPECT_EQ(whole.ranking[i].score, *one.score);
       EXPECT_EQ(whole.ranking[i].leaves_road, one.leaves_road.has_value());
+      EXPECT_EQ(whole.ranking[i].time_to_collision_s,
+                one.time_to_collision_s.value_or(std::numeric_limits<double>::infinity()));
       EXPECT_EQ(whole.ranking[i].feasible,
                 one.feasible || options.rank.infeasible == Infeasible::keep);
     }

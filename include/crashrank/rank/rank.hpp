@@ -153,6 +153,10 @@ inline constexpr double farthest_clearance_m = 50.0;
 inline constexpr double enough_distance_m = 5.0;
 inline constexpr double enough_time_gap_s = 3.0;  ///< s
 
+/// Longest time to collision after the horizon that is computed, s. A design choice: all plans end
+/// at the horizon, and an extrapolation by constant velocity says little of a later time.
+inline constexpr double longest_time_to_collision_s = 3.0;
+
 /// A first contact whose crash was not simulated.
 struct FirstTouch {
   std::size_t actor = 0;           ///< index into Scenario::actors
@@ -214,6 +218,15 @@ struct CandidateResult {
   std::optional<double> least_time_gap_s;
   /// The actor with that time gap; absent as `nearest` is.
   std::optional<std::size_t> soonest;
+  /// Time to collision at the horizon: the least time from the horizon until the ego's outline and
+  /// any other's touch, seen from above and height by height, to 1 cm, if every body keeps the
+  /// velocity that it has at the end of its plan and does not turn; over the plans of all futures,
+  /// s. Absent if it is longer than `longest_time_to_collision_s`, if the candidate has a contact
+  /// in any future, and if the score is not known. A design choice: a contact just after the
+  /// horizon is not part of the score, and this shows it.
+  std::optional<double> time_to_collision_s;
+  /// The actor with that time to collision; absent with it.
+  std::optional<std::size_t> imminent;
   std::optional<HorizonState>
       at_horizon;  ///< state at the horizon, if it has no contact in the likeliest future
   /// Standard error of the score that comes from drawing a sample of futures, as if they were drawn
@@ -374,7 +387,8 @@ struct RankResult {
 ///
 /// Order: feasible before infeasible candidates (RankOptions::infeasible); lower score; lower
 /// probability of a collision; in the likeliest future no contact before a graze, and staying on
-/// the road before leaving it; the larger least distance, rounded to 1 cm, up to
+/// the road before leaving it; the longer time to collision at the horizon, rounded to 10 ms, up to
+/// `longest_time_to_collision_s`; the larger least distance, rounded to 1 cm, up to
 /// `enough_distance_m`; the larger least time gap, rounded to 10 ms, up to `enough_time_gap_s`; in
 /// the likeliest future the later first contact, then the lower closing speed, or the lower speed
 /// at the horizon. Candidates that agree in all of these are tied: they share a place and are

@@ -136,7 +136,7 @@ OrderKey key_of(const RankedCandidate& c, bool by_estimate) noexcept {
   key.collides = c.collides;
   key.grazes = c.grazes;
   key.leaves_road = c.leaves_road;
-  key.set_clearance(c.least_distance_m, c.least_time_gap_s);
+  key.set_clearance(c.least_distance_m, c.least_time_gap_s, c.time_to_collision_s);
   key.first_s = c.time_of_impact_s;
   key.closing_mps = c.closing_speed_mps;
   key.end_speed_mps = c.end_speed_mps;

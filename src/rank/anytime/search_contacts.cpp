@@ -25,6 +25,7 @@ bool fill_manoeuvre(const RefineQuery& q, const FollowedPlan& followed, Candidat
   result.leaves_road = facts.leaves_road.has_value();
   result.least_distance_m = facts.clearance.distance_m;
   result.least_time_gap_s = facts.clearance.time_gap_s;
+  result.time_to_collision_s = facts.clearance.time_to_collision_s;
   result.end_speed_mps = result.collides ? 0.0 : facts.at_horizon.speed_mps;
   state.demand_known = true;
   return true;

@@ -81,16 +81,17 @@ struct RankedCandidate {
   bool collides = false;
   bool grazes = false;  ///< the ego grazes an actor before that
   /// The vehicle can follow it until its first contact, or feasibility is ignored
-  /// (Infeasible::keep). This and the next four are final where the score is known, the first from
+  /// (Infeasible::keep). This and the next five are final where the score is known, the first from
   /// the stage `searched` on; true as long as nothing else is known.
   bool feasible = true;
   bool leaves_road = false;  ///< before the first contact in the likeliest future
   /// As in CandidateResult, but infinity if absent there, and 0 while it is not known, m.
   double least_distance_m = 0.0;
-  double least_time_gap_s = 0.0;  ///< likewise, s
-  double end_speed_mps = 0.0;     ///< at the horizon; 0 for candidates that collide
-  std::size_t actor = 0;          ///< index into Scenario::actors
-  double time_of_impact_s = 0.0;  ///< from the decision
+  double least_time_gap_s = 0.0;     ///< likewise, s
+  double time_to_collision_s = 0.0;  ///< likewise, s; infinity if it has a contact in any future
+  double end_speed_mps = 0.0;        ///< at the horizon; 0 for candidates that collide
+  std::size_t actor = 0;             ///< index into Scenario::actors
+  double time_of_impact_s = 0.0;     ///< from the decision
   /// Of the points that touch. Measures that simulate the crash are not valid above
   /// `fastest_contact_mps`.
   double closing_speed_mps = 0.0;
