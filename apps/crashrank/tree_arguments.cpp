@@ -4,8 +4,8 @@
 #include "options.hpp"
 
 #include <array>
-#include <optional>
 #include <iterator>
+#include <optional>
 #include <utility>
 #include <vector>
 
