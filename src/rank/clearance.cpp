@@ -2,7 +2,6 @@
 
 #include "crashrank/rank/rank.hpp"
 #include "rank/scene.hpp"
-#include "rank/time_to_collision.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -217,11 +216,11 @@ void sample_trajectories(const Scene& scene, PlanTrajectories& trajectories) {
   const std::size_t count = scene.futures.own_plans();
   trajectories.poses.resize(count * (trajectories.steps + 1));
   trajectories.fastest_mps.resize(count);
-  trajectories.end_velocity_mps.resize(count);
+  trajectories.drift.resize(count);
   for (std::size_t p = 0; p < count; ++p) {
     const BodyOutline& outline = *scene.actors[plans[p].actor].outline;
     trajectories.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
-    trajectories.end_velocity_mps[p] = end_velocity_mps(plans[p].motion, horizon_s);
+    trajectories.drift[p] = drift_of(plans[p].motion, horizon_s);
     for (std::size_t i = 0; i <= trajectories.steps; ++i) {
       trajectories.poses[p * (trajectories.steps + 1) + i] =
           planar_pose(plans[p].motion.pose_at(trajectories.step_s * static_cast<double>(i)));
@@ -241,7 +240,7 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
                        {ego_poses.data(), ego_poses.size()},
                        fastest_point_mps(ego, *scene.ego.outline, scene.slice_s.back())};
   const DriftingBody own_end{own.outline, own.poses[trajectories.steps],
-                             end_velocity_mps(ego, scene.slice_s.back())};
+                             drift_of(ego, scene.slice_s.back())};
   Clearance least;
   // A pair is skipped only if its lower bound is not below the smallest distance so far, so
   // skipping cannot change any bit of the result.
@@ -270,7 +269,7 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
       }
     }
     const DriftingBody other_end{other.outline, other.poses[trajectories.steps],
-                                 trajectories.end_velocity_mps[p]};
+                                 trajectories.drift[p]};
     const double most_s = std::min(least.time_to_collision_s, longest_time_to_collision_s);
     const double collision_s = time_to_collision_s(own_end, other_end, most_s, stop);
     if (collision_s < least.time_to_collision_s) {

@@ -4,8 +4,7 @@
 #include "crashrank/motion/motion.hpp"
 #include "rank/outline_distance.hpp"
 #include "rank/stop_check.hpp"
-
-#include <Eigen/Core>
+#include "rank/time_to_collision.hpp"
 
 #include <cstddef>
 #include <limits>
@@ -39,7 +38,7 @@ struct PlanTrajectories {
   std::vector<PlanarPose> poses;  ///< ordered by plan, then by time
   /// by plan: upper bound on the speed of any point of the body
   std::vector<double> fastest_mps;
-  std::vector<Eigen::Vector2d> end_velocity_mps;  ///< by plan: velocity at the horizon, world
+  std::vector<Drift> drift;  ///< by plan: how the body goes on after the horizon
   View<const PlanarPose> of(std::size_t plan) const {
     return {poses.data() + plan * (steps + 1), steps + 1};
   }

@@ -154,7 +154,7 @@ inline constexpr double enough_distance_m = 5.0;
 inline constexpr double enough_time_gap_s = 3.0;  ///< s
 
 /// Longest time to collision after the horizon that is computed, s. A design choice: all plans end
-/// at the horizon, and an extrapolation by constant velocity says little of a later time.
+/// at the horizon, and an extrapolation says little of a later time.
 inline constexpr double longest_time_to_collision_s = 3.0;
 
 /// A first contact whose crash was not simulated.
@@ -219,11 +219,12 @@ struct CandidateResult {
   /// The actor with that time gap; absent as `nearest` is.
   std::optional<std::size_t> soonest;
   /// Time to collision at the horizon: the least time from the horizon until the ego's outline and
-  /// any other's touch, seen from above and height by height, to 1 cm, if every body keeps the
-  /// velocity that it has at the end of its plan and does not turn; over the plans of all futures,
-  /// s. Absent if it is longer than `longest_time_to_collision_s`, if the candidate has a contact
-  /// in any future, and if the score is not known. A design choice: a contact just after the
-  /// horizon is not part of the score, and this shows it.
+  /// any other's touch, seen from above and height by height, to 1 cm, if no body turns and
+  /// each keeps the velocity that it has at the end of its plan or, if it brakes, the deceleration
+  /// of the last half second until it stands; over the plans of all futures, s. Absent if it is
+  /// longer than `longest_time_to_collision_s`, if the candidate has a contact in any future, and
+  /// if the score is not known. A design choice: a contact just after the horizon is not part of
+  /// the score, and this shows it.
   std::optional<double> time_to_collision_s;
   /// The actor with that time to collision; absent with it.
   std::optional<std::size_t> imminent;
