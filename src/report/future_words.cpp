@@ -1,5 +1,7 @@
 #include "report/future_words.hpp"
 
+#include "report/score_text.hpp"
+
 #include "crashrank/scenario/harm_options.hpp"
 
 #include <fmt/format.h>
@@ -83,6 +85,29 @@ std::string error_words(const RankResult& result) {
          missing;
 }
 
+/// Whom candidates hit that touch nothing in the likeliest future: of each the most probable
+/// collision.
+void add_collisions(const Scenario& scenario, const RankResult& result,
+                    std::vector<std::string>& words) {
+  constexpr std::size_t most = 6;
+  std::size_t told = 0;
+  for (const CandidateResult& ranked : result.ranking) {
+    const FutureOutcome* hit = nullptr;
+    for (const FutureOutcome& future : ranked.futures) {
+      const bool counts = future.collides && future.probability > 0.0;
+      if (counts && (hit == nullptr || future.probability > hit->probability)) hit = &future;
+    }
+    if (ranked.collides || hit == nullptr || ++told > most) continue;
+    words.push_back(fmt::format(
+        "“{}” touches nothing in the likeliest future, but collides with a probability of {}; most "
+        "probably with {} after {:.3f} s, closing with {} m/s.",
+        result.candidates[ranked.candidate].name, percent_text(ranked.collision_probability),
+        scenario.actors[hit->actor].name, hit->time_of_impact_s,
+        fixed_text(hit->closing_speed_mps, 1)));
+  }
+  if (told > most) words.push_back(fmt::format("So do {} more.", told - most));
+}
+
 }  // namespace
 
 const char* future_method_name(FutureMethod method) {
@@ -103,11 +128,13 @@ double likeliest_score(const CandidateResult& ranked) {
   return ranked.futures.empty() ? ranked.score.value_or(0.0) : ranked.futures.front().score;
 }
 
-std::vector<std::string> future_words(const RankResult& result) {
+std::vector<std::string> future_words(const Scenario& scenario, const RankResult& result) {
   const FutureSummary& summary = result.futures;
   if (summary.method == FutureMethod::certain) return {};
-  std::vector<std::string> words{method_words(summary) + " " + risk_words(summary.risk) +
-                                 " Contacts and damage are those of the likeliest future."};
+  std::vector<std::string> words{
+      method_words(summary) + " " + risk_words(summary.risk) +
+      " Contacts and damage are those of the likeliest future; distances and "
+      "times to others are the least of all futures."};
   if (!result.complete || result.ranking.empty()) return words;
   if (summary.method == FutureMethod::sampled) words.push_back(error_words(result));
   const auto best = std::min_element(result.ranking.begin(), result.ranking.end(),
@@ -125,6 +152,7 @@ std::vector<std::string> future_words(const RankResult& result) {
                             : fmt::format("in place {} of {}", best->place, last),
         *best->score));
   }
+  add_collisions(scenario, result, words);
   return words;
 }
 

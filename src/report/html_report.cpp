@@ -60,6 +60,8 @@ public:
 private:
   bool has_view() const { return !detail::embedded_three().empty() && !places_.empty(); }
 
+  bool has_futures() const { return result_.futures.method != FutureMethod::certain; }
+
   bool is_drawn(std::size_t place) const {
     return std::binary_search(places_.begin(), places_.end(), place);
   }
@@ -85,10 +87,10 @@ private:
           return r.score && !r.collides && !(r.collision_probability > 0.0);
         });
     out_ += fmt::format(
-        "<p class='facts'>{} candidates, {} others on the road, {} {}touch nothing. Ranked by {} "
+        "<p class='facts'>{} candidates, {} other{} on the road, {} {}touch nothing. Ranked by {} "
         "[{}], lower is better, in {:.1f} ms{}.</p></header>\n",
-        result_.ranking.size(), scenario_.actors.size(), free,
-        result_.complete ? "" : "are known to ", measure_name(result_.measure),
+        result_.ranking.size(), scenario_.actors.size(), scenario_.actors.size() == 1 ? "" : "s",
+        free, result_.complete ? "" : "are known to ", measure_name(result_.measure),
         escape_xml(measure_unit(result_.measure)), result_.elapsed_s * 1e3,
         result_.complete ? "" : "; the answer is partial");
     for (const std::string& doubt : ranking_doubts(scenario_, models_, result_)) {
@@ -120,7 +122,7 @@ private:
       }
       out_ += "</p>\n";
     }
-    const std::vector<std::string> futures = detail::future_words(result_);
+    const std::vector<std::string> futures = detail::future_words(scenario_, result_);
     if (!futures.empty()) {
       out_ += "<p class='note' id='futures'>";
       for (std::size_t i = 0; i < futures.size(); ++i) {
@@ -165,8 +167,7 @@ private:
     if (result_.measure != Measure::harm || !best.score) return "unweighted";
     constexpr double few = 0.02;
     constexpr double many = 0.2;
-    if (*best.score < few) return "slight";
-    return *best.score < many ? "grave" : "severe";
+    return *best.score < few ? "slight" : *best.score < many ? "grave" : "severe";
   }
 
   bool simulated() const { return needs_crash(result_.measure); }
@@ -210,8 +211,10 @@ private:
     out_ += std::string(measure_name(result_.measure)) + " [" +
             escape_xml(measure_unit(result_.measure)) + "]</th>";
     if (simulated()) out_ += "<th>interval</th><th class='roomy'>may rank</th>";
+    if (has_futures()) out_ += "<th>collides</th>";
+    out_ += has_futures() ? "<th>likeliest hits</th>" : "<th>hits</th>";
     out_ +=
-        "<th>hits</th><th class='roomy'>after s</th><th class='roomy'>closing m/s</th></tr></thead>"
+        "<th class='roomy'>after s</th><th class='roomy'>closing m/s</th></tr></thead>"
         "<tbody>\n";
     for (std::size_t place = 0; place < result_.ranking.size(); ++place) row(place, top);
     out_ += "</tbody></table></section>\n";
@@ -232,6 +235,12 @@ private:
     if (simulated()) {
       out_ += "<td class='n'>" + detail::interval_text(ranked) + "</td><td class='n roomy'>" +
               detail::places_text(ranked) + "</td>";
+    }
+    if (has_futures()) {
+      out_ += "<td class='n'>" +
+              (ranked.score || ranked.searched ? detail::percent_text(ranked.collision_probability)
+                                               : std::string()) +
+              "</td>";
     }
     if (ranked.first_touch) {
       const FirstTouch& touch = *ranked.first_touch;

@@ -141,7 +141,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
       result.ranking.begin(), result.ranking.end(), [](const CandidateResult& ranked) {
         return ranked.score && !ranked.collides && !(ranked.collision_probability > 0.0);
       }));
-  for (const std::string& words : detail::future_words(result)) {
+  for (const std::string& words : detail::future_words(scenario, result)) {
     text += escape_terminal(words) + "\n";
   }
   for (const std::string& words : detail::not_separable_words(result, shown)) {

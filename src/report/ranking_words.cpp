@@ -227,7 +227,9 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
   text += fmt::format("What counts here is the {}: {} against {}", measure_meaning(result.measure),
                       first_score, second_score);
   if (*first.score > 0.0 && first.separable) {
-    text += ", " + fixed_text(100.0 * (*second.score / *first.score - 1.0), 0) + " % more";
+    const double ratio = *second.score / *first.score;
+    text += ratio < 2.0 ? fmt::format(", {:.2g} % more", 100.0 * (ratio - 1.0))
+                        : fmt::format(", {:.2g} times as much", ratio);
   }
   if (!first.separable && first.overtaken > separable_share) {
     text += fmt::format(

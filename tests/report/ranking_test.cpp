@@ -227,6 +227,33 @@ TEST(RankingText, ShowsTheLargestDeltaVOfAnEventAndTheDeepestCrush) {
   EXPECT_NE(text.find("event delta-v m/s"), std::string::npos) << text;
 }
 
+TEST(RankingText, SaysWhomACandidateHitsInAFutureThatIsNotTheLikeliest) {
+  Told told = by_harm();
+  told.result.futures.method = FutureMethod::all;
+  told.result.complete = true;
+  CandidateResult& miss = told.result.ranking.front();
+  ASSERT_FALSE(miss.collides);
+  miss.collision_probability = 0.304;
+  miss.futures.resize(3);
+  miss.futures[0].probability = 0.696;
+  miss.futures[0].is_likeliest = true;
+  for (const std::size_t k : {1U, 2U}) {
+    miss.futures[k].probability = k == 1 ? 0.3 : 0.004;
+    miss.futures[k].collides = true;
+    miss.futures[k].actor = k;
+    miss.futures[k].time_of_impact_s = 1.25;
+    miss.futures[k].closing_speed_mps = 19.72;
+  }
+  miss.futures[2].actor = 0;
+  const std::string text = ranking_text(told.scenario, told.models, told.result);
+  EXPECT_NE(
+      text.find("collides with a probability of 30 %; most probably with second after 1.250 s, "
+                "closing with 19.7 m/s."),
+      std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("most probably with wall"), std::string::npos) << text;
+}
+
 TEST(RankingText, SaysWhoIsHurtByAContactBetweenOthers) {
   Told told = by_harm();
   told.push_into("third \x1b[2J");
