@@ -31,7 +31,7 @@ public:
   }
 };
 
-class Random final : public PlacementPolicy {
+class Random final : public PlacementPolicy {  // NOLINT(cert-msc51-cpp): begin() seeds it
 public:
   void begin(std::uint32_t cores, std::uint64_t seed) override {
     static_cast<void>(cores);
@@ -50,7 +50,7 @@ public:
   }
 
 private:
-  std::mt19937_64 random_;  // NOLINT(cert-msc51-cpp): begin() seeds it
+  std::mt19937_64 random_;
 };
 
 class Lowest final : public PlacementPolicy {

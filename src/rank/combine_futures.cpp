@@ -93,8 +93,10 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
   combined.people = std::move(people);
   combined.score = score;
   if (summary.method == FutureMethod::sampled) {
-    combined.sampling_error =
-        sampling_error(summary.risk, {scores.data(), scores.size()}, summary.drawn);
+    // What no future has may change a score by more than the drawn ones differ.
+    if (summary.undrawn == 0)
+      combined.sampling_error =
+          sampling_error(summary.risk, {scores.data(), scores.size()}, summary.drawn);
     scores.resize(summary.sampled);
     combined.drawn_scores = std::move(scores);
   }

@@ -13,6 +13,7 @@ constexpr auto none = static_cast<std::uint32_t>(-1);
 void FutureSample::prepare(std::size_t futures, std::size_t variables, std::size_t choices) {
   futures_ = futures;
   seed_.reserve(variables);
+  matters_.reserve(variables);
   first_.reserve(variables);
   probability_.reserve(choices);
   choice_.reserve(futures * variables);
@@ -25,12 +26,14 @@ void FutureSample::prepare(std::size_t futures, std::size_t variables, std::size
 
 void FutureSample::clear() noexcept {
   seed_.clear();
+  matters_.clear();
   first_.clear();
   probability_.clear();
 }
 
-void FutureSample::add_variable(std::uint64_t seed) {
+void FutureSample::add_variable(std::uint64_t seed, bool matters) {
   seed_.push_back(seed);
+  matters_.push_back(matters ? 1 : 0);
   first_.push_back(probability_.size());
 }
 
@@ -40,6 +43,7 @@ double FutureSample::combinations() const {
   constexpr double countable = 1e300;
   double product = 1.0;
   for (std::size_t v = 0; v < variables(); ++v) {
+    if (matters_[v] == 0) continue;
     product = std::min(product * static_cast<double>(count(v)), countable);
   }
   return product;
@@ -47,10 +51,14 @@ double FutureSample::combinations() const {
 
 void FutureSample::draw(Strata& strata) {
   choice_.assign(futures_ * variables(), 0);
+  std::fill(must_.begin(), must_.end(), none);
   // Two futures for every combination at least: an error can be stated.
   const double most = std::max(1.0, std::floor(static_cast<double>(futures_) / 4.0));
   if (const double all = combinations(); all <= most) {
     draw_combinations(static_cast<std::size_t>(all));
+    for (std::size_t v = 0; v < variables(); ++v) {
+      if (matters_[v] == 0) draw_choices(v, strata);
+    }
   } else {
     draw_mixture(strata);
   }
@@ -67,6 +75,7 @@ void FutureSample::draw_combinations(std::size_t combinations) {
     double probability = 1.0;
     std::size_t rest = c;
     for (std::size_t v = 0; v < variables(); ++v) {
+      if (matters_[v] == 0) continue;
       probability *= this->probability(v, rest % count(v));
       rest /= count(v);
     }
@@ -79,6 +88,7 @@ void FutureSample::draw_combinations(std::size_t combinations) {
     for (; f < until; ++f) {
       rest = c;
       for (std::size_t v = 0; v < variables(); ++v) {
+        if (matters_[v] == 0) continue;
         choice_[f * variables() + v] = static_cast<std::uint32_t>(rest % count(v));
         rest /= count(v);
       }
@@ -91,17 +101,20 @@ void FutureSample::draw_combinations(std::size_t combinations) {
 /// Allots half of the futures to the choices that a Latin hypercube of that many may miss.
 void FutureSample::divide_among_rare_choices() {
   // A probability of two strata covers one of them at least; half of the futures or more are drawn
-  // freely for every variable.
-  const double rare = 4.0 / static_cast<double>(futures_);
+  // freely for every variable. In the smallest samples, what is more probable than not is not rare.
+  constexpr double never_rare = 0.5;
+  const double rare = std::min(4.0 / static_cast<double>(futures_), never_rare);
   rare_.clear();
   for (std::size_t v = 0; v < variables(); ++v) {
-    for (std::size_t k = 0; k < count(v); ++k) {
+    for (std::size_t k = 0; matters_[v] != 0 && k < count(v); ++k) {
       if (!(probability(v, k) < rare)) continue;
       rare_.push_back(
           {static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(k), probability(v, k), 0});
     }
   }
   const std::size_t half = futures_ / 2;
+  // Choices of one variable exclude each other: what some are given, the others lose.
+  if (rare_.size() > half && variables() == 1) rare_.clear();
   if (rare_.size() > half) {
     // The seed is the actor's name: the order of actors has no effect.
     std::sort(rare_.begin(), rare_.end(), [this](const Choice& a, const Choice& b) {
@@ -112,7 +125,6 @@ void FutureSample::divide_among_rare_choices() {
     rare_.resize(half);
   }
   allotted_.assign(probability_.size(), 0.0);
-  std::fill(must_.begin(), must_.end(), none);
   if (rare_.empty()) return;
   const std::size_t each = half / rare_.size();
   std::size_t f = futures_;
@@ -175,14 +187,16 @@ void FutureSample::weigh_mixture() {
 void FutureSample::fit_probabilities() {
   // More conditions than a quarter of the futures could leave all the weight with a few of them.
   std::size_t conditions = 0;
-  for (std::size_t v = 0; v < variables(); ++v) conditions += count(v) - 1;
+  for (std::size_t v = 0; v < variables(); ++v) {
+    if (matters_[v] != 0) conditions += count(v) - 1;
+  }
   if (conditions > futures_ / 4) return;
   constexpr int most_rounds = 400;
   constexpr double fitted = 1e-13;
   for (int round = 0; round < most_rounds; ++round) {
     double worst = 0.0;
     for (std::size_t v = 0; v < variables(); ++v) {
-      if (count(v) == 1) continue;
+      if (count(v) == 1 || matters_[v] == 0) continue;
       sum_.assign(count(v), 0.0);
       for (std::size_t f = 0; f < futures_; ++f) sum_[choice(f, v)] += drawn_[f].probability;
       double occurring = 0.0;
@@ -210,6 +224,7 @@ void FutureSample::normalise() {
 void FutureSample::count_undrawn() {
   undrawn_ = 0;
   for (std::size_t v = 0; v < variables(); ++v) {
+    if (matters_[v] == 0) continue;
     sum_.assign(count(v), 0.0);
     for (std::size_t f = 0; f < futures_; ++f) sum_[choice(f, v)] = 1.0;
     undrawn_ += static_cast<std::size_t>(std::count(sum_.begin(), sum_.end(), 0.0));

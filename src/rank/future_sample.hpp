@@ -10,8 +10,9 @@
 namespace crashrank::detail {
 
 /// Draws a sample of futures from independent variables: the choice of each actor, or one of the
-/// joint futures. Every choice occurs in the sample, however improbable, and each future has the
-/// probability that it stands for.
+/// joint futures. Every choice of a variable that matters occurs in the sample, however improbable,
+/// and each future has the probability that it stands for. Other variables are drawn as stated; in
+/// the following only those that matter are meant.
 ///
 /// If there are at most a quarter as many combinations as futures, every combination is a stratum:
 /// half of the futures are divided equally among them, half in proportion to their probabilities,
@@ -34,7 +35,7 @@ public:
   /// Removes all variables.
   void clear() noexcept;
   /// Adds a variable without choices. `seed` determines what is drawn for it.
-  void add_variable(std::uint64_t seed);
+  void add_variable(std::uint64_t seed, bool matters = true);
   /// Adds a choice to the last variable; the probabilities of its choices must sum to 1.
   void add_choice(double probability);
 
@@ -45,8 +46,9 @@ public:
   }
   /// Probability and stratum by future, valid until the next draw. The probabilities sum to 1.
   const std::vector<DrawnFuture>& drawn() const noexcept { return drawn_; }
-  /// Number of choices that no future has: those beyond the most probable ones if more than half as
-  /// many choices as there are futures may be missed.
+  /// Number of choices that no future has, of variables that matter: those beyond the most probable
+  /// ones if more than half as many choices as there are futures may be missed; any of a single
+  /// variable with so many.
   std::size_t undrawn() const noexcept { return undrawn_; }
 
 private:
@@ -78,6 +80,7 @@ private:
 
   std::size_t futures_ = 0;
   std::vector<std::uint64_t> seed_;    ///< by variable
+  std::vector<char> matters_;          ///< by variable
   std::vector<std::size_t> first_;     ///< by variable: its first choice
   std::vector<double> probability_;    ///< by choice
   std::vector<std::uint32_t> choice_;  ///< by future and variable

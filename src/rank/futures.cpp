@@ -24,6 +24,7 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   Futures made;
   made.actors_ = scenario.actors.size();
   made.left_out_.assign(made.actors_, 0);
+  made.reached_.assign(made.actors_, 1);
   Status sound = Success{};
   const auto add = [&](std::size_t actor, const ActorMotion& motion, double probability,
                        const std::string& place) {
@@ -124,8 +125,7 @@ bool Futures::update_choices() {
 
 void Futures::update_motions() {
   if (update_choices()) {
-    std::fill(left_out_.begin(), left_out_.end(), char{0});
-    summary.left_out = 0;
+    std::fill(reached_.begin(), reached_.end(), char{1});
     list_futures();
   }
   displace_plans();
@@ -133,6 +133,7 @@ void Futures::update_motions() {
 
 /// Lists all futures, or draws a sample if there are too many.
 void Futures::list_futures() {
+  leave_out();
   const double combined = is_joint() ? summary.combinations : count_combinations();
   const bool lists = is_joint() || combined <= double{max_combinations};
   summary.sampled = summary.undrawn = 0;
@@ -161,28 +162,34 @@ double Futures::count_combinations() const {
 }
 
 bool Futures::can_leave_out() const noexcept {
-  return !is_joint() && !summary.has_state_errors && choices_.most_combinations() > 1.0;
+  return !is_joint() && choices_.most_combinations() > 1.0;
 }
 
 bool Futures::leave_out_unreached(const std::vector<char>& reached) {
-  const std::size_t before = summary.left_out;
   bool same = true;
-  summary.left_out = 0;
   for (std::size_t i = 0; i < actors_; ++i) {
-    const char out = reached[i] == 0 && choices_.count(i) > 1 ? 1 : 0;
-    same = same && out == left_out_[i];
-    left_out_[i] = out;
-    summary.left_out += static_cast<std::size_t>(out);
+    const char near = reached[i] != 0 || choices_.count(i) == 1 ? 1 : 0;
+    same = same && near == reached_[i];
+    reached_[i] = near;
   }
-  // Actors are drawn independently, so leaving one out does not change a sample.
-  if (summary.left_out > 0 && count_combinations() > double{max_combinations}) {
+  if (!same) list_futures();
+  return !same;
+}
+
+/// Leaves out the actors that no candidate reaches if all combinations of the others are listed. A
+/// sample draws them as stated.
+void Futures::leave_out() {
+  const auto none = [this] {
     std::fill(left_out_.begin(), left_out_.end(), char{0});
     summary.left_out = 0;
-    same = before == 0;
+  };
+  none();
+  if (is_joint() || summary.has_state_errors) return;
+  for (std::size_t i = 0; i < actors_; ++i) {
+    left_out_[i] = reached_[i] == 0 && choices_.count(i) > 1 ? 1 : 0;
+    summary.left_out += static_cast<std::size_t>(left_out_[i]);
   }
-  if (same) return false;
-  list_futures();
-  return true;
+  if (count_combinations() > double{max_combinations}) none();
 }
 
 bool Futures::needs_left_out(const std::vector<char>& relevant) const {
@@ -332,7 +339,7 @@ void Futures::draw_plans() {
   } else {
     for (const std::size_t i : by_seed_) {
       if (choices_.count(i) == 1) continue;
-      sample_.add_variable(seed_[i]);
+      sample_.add_variable(seed_[i], reached_[i] != 0);
       for (std::size_t k = 0; k < choices_.count(i); ++k) {
         sample_.add_choice(choices_.probability(i, k));
       }

@@ -85,8 +85,10 @@ public:
   /// reaches.
   bool can_leave_out() const noexcept;
   /// Combines only the choices of the actors that are marked as reached; all others have their
-  /// likeliest choice in every future and are left out. If too many combinations remain even so, no
-  /// actor is left out. Does not allocate. Returns false if the futures did not change.
+  /// likeliest choice in every future and are left out. If too many combinations remain even so, or
+  /// states have errors, no actor is left out, and the sample spends no futures on what is
+  /// improbable of those that are not reached. Does not allocate. Returns false if the futures did
+  /// not change.
   bool leave_out_unreached(const std::vector<char>& reached);
   /// Returns true if an actor has its likeliest choice in every future because no candidate reaches
   /// it.
@@ -122,6 +124,7 @@ private:
   void read_errors(const Scenario& scenario);
   void mark_followed_plans();
   void list_futures();
+  void leave_out();
   void reserve();
   void add_combinations();
   void add_sample();
@@ -144,6 +147,7 @@ private:
   std::vector<std::uint32_t> plan_of_;     ///< by future and actor
   std::vector<char> followed_;             ///< by plan
   std::vector<char> left_out_;             ///< by actor
+  std::vector<char> reached_;  ///< by actor: a candidate comes near, or it has one choice
   std::size_t own_plans_ = 0;
   std::size_t max_future_count_ = 1;
   Choices choices_;

@@ -112,8 +112,10 @@ void compare_samples(RankResult& result) {
     CandidateResult& c = ranking[i];
     const CandidateResult& next = ranking[i + 1];
     if (c.drawn_scores.empty() || next.drawn_scores.empty()) continue;
-    c.sampling_error_to_next = difference_error(result.futures.risk, c.drawn_scores,
-                                                next.drawn_scores, result.futures.drawn);
+    if (result.futures.undrawn == 0) {
+      c.sampling_error_to_next = difference_error(result.futures.risk, c.drawn_scores,
+                                                  next.drawn_scores, result.futures.drawn);
+    }
     const bool by_score =
         c.place != next.place && tier_of(c, result.infeasible) == tier_of(next, result.infeasible);
     if (!by_score || c.sampling_error_to_next == 0.0) continue;

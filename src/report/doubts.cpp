@@ -240,6 +240,13 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_starts(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_horizon(scenario, result, doubts);
+  if (result.futures.undrawn > 0) {
+    doubts.push_back(
+        fmt::format("{} improbable predictions, absences or joint futures are in none of the {} "
+                    "drawn futures, so "
+                    "that no score counts them; draw more, --futures",
+                    result.futures.undrawn, result.futures.sampled));
+  }
   doubt_road(scenario, result, doubts);
   doubt_actors(scenario, doubts);
   doubt_fixed(scenario, result, doubts);

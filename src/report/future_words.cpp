@@ -72,8 +72,9 @@ std::string error_words(const RankResult& result) {
   const FutureSummary& futures = result.futures;
   std::string missing =
       futures.undrawn == 0
-          ? std::string(" Every prediction and absence is drawn, however improbable;")
-          : fmt::format(" The {} least probable predictions and absences are not drawn;",
+          ? std::string(
+                " Every prediction and absence near a candidate is drawn, however improbable;")
+          : fmt::format(" Predictions, absences or joint futures that are not drawn: {};",
                         futures.undrawn);
   missing += fmt::format(" {} that happen with less than {:.2g} % may not be drawn at all.",
                          futures.has_state_errors ? "combinations of these and errors of states"

@@ -206,6 +206,8 @@ ManoeuvreDemand demand_of_poses(const Motion& motion, const EgoLimits& limits,
   double before_s = 0.0;  // since the pose before
   double next_pose_s = 0.0;
   double time_s = 0.0;
+  // Times of poses, not a counter.
+  // NOLINTNEXTLINE(cert-flp30-c)
   for (; time_s < way.until_s && time_s <= end_s; time_s = next_pose_s) {
     next_pose_s = motion.next_kink(time_s);
     const double to_next_s = next_pose_s <= end_s ? next_pose_s - time_s : 0.0;

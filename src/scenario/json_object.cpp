@@ -93,9 +93,9 @@ JsonObject::JsonObject(const nlohmann::json& value, std::string path, Status& st
     std::string list;
     for (const char* key : known) list.append(list.empty() ? "" : ", ").append(key);
     const std::string meant = nearest_word(item.key(), {known.begin(), known.end()});
-    refuse_at(status, path_of(printable(item.key(), 64).c_str()), "there is no such key",
-              (meant.empty() ? "the" : "did you mean '" + meant + "'? The") +
-                  std::string(" keys here are ") + list);
+    std::string remedy = meant.empty() ? "the" : "did you mean '" + meant + "'? The";
+    remedy.append(" keys here are ").append(list);
+    refuse_at(status, path_of(printable(item.key(), 64).c_str()), "there is no such key", remedy);
     return;
   }
 }

@@ -138,10 +138,43 @@ TEST(FutureSample, TheMostProbableOfTooManyImprobableChoicesAreDrawn) {
   EXPECT_NEAR(drawn.probability([](std::size_t) { return true; }), 1.0, 1e-12);
 }
 
+TEST(FutureSample, WhatDoesNotMatterTakesNoFutures) {
+  Strata strata;
+  strata.prepare(64);
+  FutureSample sample;
+  sample.prepare(64, 101, 202);
+  for (std::uint64_t v = 0; v < 100; ++v) {
+    sample.add_variable(v, false);
+    sample.add_choice(0.99);
+    sample.add_choice(0.01);
+  }
+  sample.add_variable(100);
+  sample.add_choice(0.996);
+  sample.add_choice(0.004);
+  sample.draw(strata);
+  EXPECT_EQ(sample.undrawn(), 0U);
+  double sum = 0.0;
+  std::size_t others = 0;
+  for (std::size_t f = 0; f < 64; ++f) {
+    if (sample.choice(f, 100) == 1) sum += sample.drawn()[f].probability;
+    for (std::size_t v = 0; v < 100; ++v) others += sample.choice(f, v);
+  }
+  EXPECT_NEAR(sum, 0.004, 1e-15);
+  EXPECT_NEAR(static_cast<double>(others), 64.0, 40.0);  // drawn as stated: 100 times 0.64 of 64
+}
+
+TEST(FutureSample, JointFuturesThatCannotAllBeDrawnWeighAlike) {
+  const Drawn drawn({std::vector<double>(500, 0.002)}, 64);
+  EXPECT_EQ(drawn.sample().undrawn(), 436U);
+  for (const DrawnFuture& each : drawn.sample().drawn()) {
+    EXPECT_NEAR(each.probability, 1.0 / 64.0, 1e-15);
+  }
+}
+
 /// The ego drives towards a standing car that exists with a probability; errors and further actors
 /// make the futures a sample.
 RankResult towards_a_doubtful_car(double exists, double position_error_m, int walkers,
-                                  const std::string& name) {
+                                  const std::string& name, int far_cars = 0) {
   Scene scene;
   scene.scenario.ego.model =
       scene.add_model("car", scenes::box_mesh({2, 1, 0.75}), BodyKind::car, 1500.0);
@@ -155,9 +188,25 @@ RankResult towards_a_doubtful_car(double exists, double position_error_m, int wa
     scene.add_actor("walker " + std::to_string(k), 0, 30.0 + 6.0 * k, 12.0).existence_probability =
         0.5;
   }
+  for (int k = 0; k < far_cars; ++k) {
+    scene.add_actor("far " + std::to_string(k), 0, 400.0 + 10.0 * k, 300.0).existence_probability =
+        0.99;
+  }
   RankOptions options = futures::options_with(false);
   options.infeasible = Infeasible::keep;
   return scene.ranked(options);
+}
+
+TEST(FutureSample, ImprobableCarsFarAwayHideNoCrash) {
+  const RankResult alone = towards_a_doubtful_car(0.004, 0.01, 0, "car");
+  const RankResult among = towards_a_doubtful_car(0.004, 0.01, 40, "car", 40);
+  for (const RankResult* each : {&alone, &among}) {
+    ASSERT_EQ(each->futures.method, FutureMethod::sampled);
+    EXPECT_EQ(each->futures.undrawn, 0U);
+    EXPECT_NEAR(each->ranking[0].collision_probability, 0.004, 1e-3);
+    EXPECT_GT(*each->ranking[0].score, 0.0);
+    EXPECT_EQ(each->ranking[0].candidate, alone.ranking[0].candidate);
+  }
 }
 
 TEST(FutureSample, ScoresTendToThoseWithoutErrors) {
