@@ -199,8 +199,11 @@ int run(const RankArguments& options) {
     how.measure = *measure;
   }
   if (!options.risk.empty()) {
-    const Result<RiskMeasure> risk = risk_from_name(options.risk);
-    if (!risk) return fail(risk.error());
+    Result<RiskMeasure> risk = risk_from_name(options.risk);
+    if (!risk) {
+      risk.error().reason = "--risk: " + risk.error().reason;
+      return fail(risk.error());
+    }
     how.risk = *risk;
   }
   how.sampled_futures = options.futures;

@@ -2,6 +2,7 @@
 
 #include "rank/hits.hpp"
 #include "rank/measure_table.hpp"
+#include "rank/sampling_error.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -95,8 +96,7 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
   if (summary.method == FutureMethod::sampled) {
     // What no future has may change a score by more than the drawn ones differ.
     if (summary.undrawn == 0)
-      combined.sampling_error =
-          sampling_error(summary.risk, {scores.data(), scores.size()}, summary.drawn);
+      combined.sampling_error = sampling_error(summary, {scores.data(), scores.size()});
     scores.resize(summary.sampled);
     combined.drawn_scores = std::move(scores);
   }

@@ -18,6 +18,7 @@ void FutureSample::prepare(std::size_t futures, std::size_t variables, std::size
   probability_.reserve(choices);
   choice_.reserve(futures * variables);
   drawn_.resize(futures);
+  fitted_.choices.reserve(futures * variables);
   rare_.reserve(choices);
   allotted_.reserve(choices);
   must_.resize(futures);
@@ -52,6 +53,8 @@ double FutureSample::combinations() const {
 void FutureSample::draw(Strata& strata) {
   choice_.assign(futures_ * variables(), 0);
   std::fill(must_.begin(), must_.end(), none);
+  fitted_.actors = 0;
+  fitted_.choices.clear();
   // Two futures for every combination at least: an error can be stated.
   const double most = std::max(1.0, std::floor(static_cast<double>(futures_) / 4.0));
   if (const double all = combinations(); all <= most) {
@@ -213,6 +216,15 @@ void FutureSample::fit_probabilities() {
     if (worst <= fitted) break;
   }
   normalise();
+  for (std::size_t v = 0; v < variables(); ++v) {
+    if (count(v) > 1 && matters_[v] != 0) ++fitted_.actors;
+  }
+  for (std::size_t f = 0; f < futures_; ++f) {
+    for (std::size_t v = 0; v < variables(); ++v) {
+      if (count(v) == 1 || matters_[v] == 0) continue;
+      fitted_.choices.push_back(static_cast<std::uint32_t>(choice(f, v)));
+    }
+  }
 }
 
 void FutureSample::normalise() {

@@ -46,6 +46,8 @@ public:
   }
   /// Probability and stratum by future, valid until the next draw. The probabilities sum to 1.
   const std::vector<DrawnFuture>& drawn() const noexcept { return drawn_; }
+  /// Variables to whose probabilities those of the futures are fitted, valid until the next draw.
+  const FittedChoices& fitted() const noexcept { return fitted_; }
   /// Number of choices that no future has, of variables that matter: those beyond the most probable
   /// ones if more than half as many choices as there are futures may be missed; any of a single
   /// variable with so many.
@@ -85,6 +87,7 @@ private:
   std::vector<double> probability_;    ///< by choice
   std::vector<std::uint32_t> choice_;  ///< by future and variable
   std::vector<DrawnFuture> drawn_;     ///< by future
+  FittedChoices fitted_;
   std::size_t undrawn_ = 0;
   std::vector<Choice> rare_;  ///< choices to which futures of the mixture are allotted
   /// By choice: number of futures allotted to it; by future: index of the choice it must have.

@@ -88,6 +88,7 @@ Result<Futures> Futures::make(const Scenario& scenario, std::size_t sampled) {
   made.sample_.prepare(summary.sampled, std::max<std::size_t>(made.actors_, 1),
                        std::max(made.own_plans_ + made.actors_, made.joint_.written()));
   summary.drawn.reserve(summary.sampled);
+  summary.fitted.choices.reserve(summary.sampled * made.actors_);
   if (summary.has_state_errors) made.read_errors(scenario);
   made.reserve();
   made.list_futures();
@@ -138,6 +139,8 @@ void Futures::list_futures() {
   const bool lists = is_joint() || combined <= double{max_combinations};
   summary.sampled = summary.undrawn = 0;
   summary.drawn.clear();
+  summary.fitted.actors = 0;
+  summary.fitted.choices.clear();
   if (summary.has_state_errors || !lists) {
     summary.method = FutureMethod::sampled;
     summary.sampled = strata_.samples();
@@ -298,6 +301,7 @@ void Futures::add_sample() {
   likeliest_ = count;
   draw_plans();
   summary.drawn.assign(sample_.drawn().begin(), sample_.drawn().end());
+  summary.fitted = sample_.fitted();
   summary.undrawn = sample_.undrawn();
   probability_.clear();
   for (const DrawnFuture& drawn : summary.drawn) probability_.push_back(drawn.probability);

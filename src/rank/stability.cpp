@@ -1,5 +1,5 @@
 #include "rank/order.hpp"
-#include "rank/risk.hpp"
+#include "rank/sampling_error.hpp"
 
 #include <algorithm>
 #include <array>
@@ -113,8 +113,8 @@ void compare_samples(RankResult& result) {
     const CandidateResult& next = ranking[i + 1];
     if (c.drawn_scores.empty() || next.drawn_scores.empty()) continue;
     if (result.futures.undrawn == 0) {
-      c.sampling_error_to_next = difference_error(result.futures.risk, c.drawn_scores,
-                                                  next.drawn_scores, result.futures.drawn);
+      c.sampling_error_to_next =
+          difference_error(result.futures, c.drawn_scores, next.drawn_scores);
     }
     const bool by_score =
         c.place != next.place && tier_of(c, result.infeasible) == tier_of(next, result.infeasible);

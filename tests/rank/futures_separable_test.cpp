@@ -1,11 +1,8 @@
 // Whether places can be told from each other where futures are sampled.
 #include "rank/futures_cases.hpp"
 
-#include "rank/risk.hpp"
-
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -83,73 +80,6 @@ TEST(FuturesSeparable, WorstCasesOfASampleAreNotSeparable) {
     EXPECT_TRUE(first.within_sampling_error) << risk;
     EXPECT_FALSE(first.separable) << risk;
   }
-}
-
-std::vector<DrawnFuture> equal_draws() { return std::vector<DrawnFuture>(64, {1.0 / 64.0, 0}); }
-
-TEST(FuturesSeparable, TheErrorOfADifferenceIsThatOfItsMean) {
-  const RiskMeasure mean = *risk_from_name("expected");
-  std::vector<double> a;
-  std::vector<double> b;
-  for (int f = 0; f < 64; ++f) {
-    a.push_back(f);
-    b.push_back(f + (f % 2 == 0 ? 1.0 : -1.0));
-  }
-  // The differences are 1 and -1, half each: their variance is 1.
-  EXPECT_NEAR(*detail::difference_error(mean, a, b, equal_draws()), 1.0 / std::sqrt(63.0), 1e-12);
-  for (std::size_t f = 0; f < b.size(); ++f) b[f] = a[f] + 3.0;
-  EXPECT_EQ(*detail::difference_error(mean, a, b, equal_draws()), 0.0);
-  for (const char* const risk : {"worst", "quantile:0.9", "cvar:0.9"}) {
-    EXPECT_EQ(*detail::difference_error(*risk_from_name(risk), a, b, equal_draws()), 0.0) << risk;
-    b.front() += 1.0;
-    EXPECT_FALSE(detail::difference_error(*risk_from_name(risk), a, b, equal_draws()).has_value())
-        << risk;
-    b.front() -= 1.0;
-  }
-  // Above the median of 0 to 63 and of 0 a tail of 32 remains: 2 (f - 31) there, 0 elsewhere.
-  std::fill(b.begin(), b.end(), 0.0);
-  double sum = 0.0;
-  double squares = 0.0;
-  for (int f = 32; f < 64; ++f) {
-    sum += 2.0 * (f - 31);
-    squares += 4.0 * (f - 31) * (f - 31);
-  }
-  const double variance = squares / 64.0 - (sum / 64.0) * (sum / 64.0);
-  EXPECT_NEAR(*detail::difference_error(*risk_from_name("cvar:0.5"), a, b, equal_draws()),
-              std::sqrt(variance / 63.0), 1e-12);
-}
-
-TEST(FuturesSeparable, OnlyWhatVariesWithinAStratumIsASamplingError) {
-  const RiskMeasure mean = *risk_from_name("expected");
-  // A stratum of 48 futures with probability 0.9 and one of 16 with 0.1.
-  std::vector<DrawnFuture> drawn(48, {0.9 / 48.0, 0});
-  drawn.resize(64, {0.1 / 16.0, 1});
-  std::vector<double> a(48, 0.0);
-  a.resize(64, 0.5);
-  const std::vector<double> b(64, 0.25);
-  EXPECT_FALSE(detail::sampling_error(mean, a, drawn).has_value());
-  EXPECT_EQ(*detail::difference_error(mean, a, b, drawn), 0.0);
-  // In the second: 0.25 and 0.75, half each.
-  for (std::size_t f = 48; f < 64; ++f) a[f] += f % 2 == 0 ? 0.25 : -0.25;
-  const double expected = 0.1 * 0.25 / std::sqrt(15.0);
-  EXPECT_NEAR(*detail::sampling_error(mean, a, drawn), expected, 1e-15);
-  EXPECT_NEAR(*detail::difference_error(mean, a, b, drawn), expected, 1e-15);
-}
-
-TEST(FuturesSeparable, RoundingIsNoSamplingError) {
-  const RiskMeasure mean = *risk_from_name("expected");
-  const std::vector<double> a(64, 0.3);
-  std::vector<double> b = a;
-  b.back() = std::nextafter(0.3, 1.0);
-  const auto error = [&mean](const std::vector<double>& scores) {
-    return detail::sampling_error(mean, scores, equal_draws());
-  };
-  EXPECT_FALSE(error(a).has_value());
-  EXPECT_FALSE(error(b).has_value());
-  EXPECT_EQ(detail::difference_error(mean, a, b, equal_draws()), 0.0);
-  b.back() = 0.3 + 1e-6;
-  EXPECT_GT(error(b), 0.0);
-  EXPECT_GT(detail::difference_error(mean, a, b, equal_draws()), 0.0);
 }
 
 }  // namespace

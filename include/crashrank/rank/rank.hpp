@@ -87,6 +87,14 @@ struct DrawnFuture {
   std::uint32_t stratum = 0;
 };
 
+/// Predictions and absences to which the probabilities of a sample are fitted: over the drawn
+/// futures each of them has the probability that the scenario states.
+struct FittedChoices {
+  std::size_t actors = 0;  ///< number of them; 0: nothing is fitted
+  /// what each of them does, as a number from 0; those of one drawn future are neighbours
+  std::vector<std::uint32_t> choices;
+};
+
 /// The futures of a ranking.
 struct FutureSummary {
   FutureMethod method = FutureMethod::certain;  ///< how they were chosen
@@ -95,6 +103,7 @@ struct FutureSummary {
   std::size_t sampled = 0;  ///< number of drawn futures
   /// the drawn futures, which come first; those of a stratum are neighbours
   std::vector<DrawnFuture> drawn;
+  FittedChoices fitted;  ///< to which their probabilities are fitted
   /// Number of predictions and absences that no drawn future has: 0 but with very many improbable
   /// ones.
   std::size_t undrawn = 0;
@@ -231,16 +240,16 @@ struct CandidateResult {
   std::optional<HorizonState>
       at_horizon;  ///< state at the horizon, if it has no contact in the likeliest future
   /// Standard error of the score that comes from drawing a sample of futures, as if they were drawn
-  /// independently. Absent without a sample, for worst and quantile, for cvar with fewer than 10
-  /// drawn futures in its tail, and where the drawn scores do not differ: futures that were not
-  /// drawn may.
+  /// independently, from what strata or fitted probabilities leave unexplained of the drawn scores.
+  /// Absent without a sample, for worst and quantile, for cvar with fewer than 10 drawn futures in
+  /// its tail, and where nothing is left: futures that were not drawn may differ.
   std::optional<double> sampling_error;
   /// With a sample of futures: the score in each drawn future; the futures are the same for all
   /// candidates. Empty without a sample and where the score is not known.
   std::vector<double> drawn_scores;
   /// With a sample of futures: standard error of the difference of the scores of this candidate and
   /// the next in the ranking, from their differences in the drawn futures, as if these were drawn
-  /// independently. 0 if all drawn futures differ alike. Absent for the last candidate, where a
+  /// independently. 0 if nothing is left unexplained of these. Absent for the last candidate, where a
   /// score is not known, without a sample, and where `sampling_error` cannot be computed for the
   /// risk measure.
   std::optional<double> sampling_error_to_next;
