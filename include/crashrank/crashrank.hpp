@@ -29,6 +29,7 @@
 #include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/contact.hpp"
+#include "crashrank/rank/future_summary.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/candidate.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/future_summary.hpp"
 #include "rank/strata.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
-#include "crashrank/rank/rank.hpp"
+#include "crashrank/rank/future_summary.hpp"
 
 #include <optional>
 
