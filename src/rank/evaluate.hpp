@@ -33,9 +33,10 @@ struct Scratch {
   std::vector<Hit> hits;
   std::vector<double> first_s;  ///< by future: time of the first contact so far, s
   std::vector<double> until_s;
-  std::vector<char> relevant;       ///< by plan: it influences the outcome, see Futures::split
-  bool needs_left_out = false;      ///< see Futures::needs_left_out; remains true once it is set
-  std::vector<std::uint32_t> same;  ///< futures with the same outcome as the current one
+  std::vector<char> relevant;  ///< by plan: it influences the outcome, see Futures::split
+  /// By actor: see Futures::mark_needed. Entries remain once they are set.
+  std::vector<char> needed;
+  std::vector<std::uint32_t> same;       ///< futures with the same outcome as the current one
   std::vector<std::uint32_t> remaining;  ///< futures that remain to be simulated
   std::vector<std::uint32_t> others;     ///< working memory for splitting them
   std::vector<WeightedScore> weighted;   ///< working memory for combining futures

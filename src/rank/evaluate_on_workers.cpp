@@ -52,7 +52,7 @@ private:
 }  // namespace
 
 Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankResult& result,
-                           bool& needs_left_out) {
+                           std::vector<char>& needed) {
   if (options.depth > max_distribution_depth) {
     return make_error(ErrorCode::usage, "the distribution depth is 16 at most");
   }
@@ -121,7 +121,9 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
     if (!done) return done;
   }
   for (const RankWork& spent : work) result.work += spent;
-  for (const Scratch& own : scratch) needs_left_out = needs_left_out || own.needs_left_out;
+  for (const Scratch& own : scratch) {
+    for (std::size_t i = 0; i < own.needed.size(); ++i) needed[i] |= own.needed[i];
+  }
   return Success{};
 }
 

@@ -12,6 +12,9 @@
 namespace crashrank::detail {
 namespace {
 
+/// Numbers of combinations above this count as this.
+constexpr double countable = 1e300;
+
 bool has_errors(const Scenario& scenario) {
   return scenario.ego.uncertainty.any() ||
          std::any_of(scenario.actors.begin(), scenario.actors.end(),
@@ -117,7 +120,6 @@ bool Futures::update_choices() {
   if (is_joint()) changed = joint_.update(choices_) || changed;
   double combinations = 1.0;
   for (std::size_t i = 0; i < actors_; ++i) {
-    constexpr double countable = 1e300;
     combinations = std::min(combinations * static_cast<double>(choices_.count(i)), countable);
   }
   summary.combinations = is_joint() ? static_cast<double>(joint_.size()) : combinations;
@@ -156,7 +158,6 @@ void Futures::list_futures() {
 }
 
 double Futures::count_combinations() const {
-  constexpr double countable = 1e300;
   double count = 1.0;
   for (std::size_t i = 0; i < actors_; ++i) {
     count = std::min(count * static_cast<double>(combined_choices(i)), countable);
@@ -195,12 +196,28 @@ void Futures::leave_out() {
   if (count_combinations() > double{max_combinations}) none();
 }
 
-bool Futures::needs_left_out(const std::vector<char>& relevant) const {
+bool Futures::mark_needed(const std::vector<char>& relevant, std::vector<char>& needed) const {
   if (!leaves_out()) return false;
+  bool any = false;
   for (std::size_t p = 0; p < own_plans_; ++p) {
-    if (relevant[p] != 0 && left_out_[plans[p].actor] != 0) return true;
+    if (relevant[p] == 0 || left_out_[plans[p].actor] == 0) continue;
+    needed[plans[p].actor] = 1;
+    any = true;
   }
-  return false;
+  return any;
+}
+
+double Futures::combinations_within(const std::vector<char>& ring, char last) const {
+  double count = 1.0;
+  for (std::size_t i = 0; i < actors_; ++i) {
+    if (ring[i] <= last)
+      count = std::min(count * static_cast<double>(choices_.count(i)), countable);
+  }
+  return count;
+}
+
+double Futures::most_combinations() const {
+  return summary.has_state_errors ? sample_.most_combinations() : double{max_combinations};
 }
 
 void Futures::mark_followed_plans() {

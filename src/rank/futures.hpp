@@ -93,9 +93,14 @@ public:
   /// Returns true if an actor has its likeliest choice in every future because no candidate reaches
   /// it.
   bool leaves_out() const noexcept { return summary.left_out > 0; }
-  /// Returns true if a relevant plan belongs to an actor that was left out. Then the results hold
-  /// only for the likeliest choice of that actor and must be computed again without leaving it out.
-  bool needs_left_out(const std::vector<char>& relevant) const;
+  /// Marks in `needed`, by actor, those that were left out and have a relevant plan. Results then
+  /// hold only for the likeliest choice of these actors and must be computed again without leaving
+  /// them out. Returns true if there are any.
+  bool mark_needed(const std::vector<char>& relevant, std::vector<char>& needed) const;
+  /// Number of combinations of the choices of the actors whose entry in `ring` is at most `last`.
+  double combinations_within(const std::vector<char>& ring, char last) const;
+  /// Largest such number for which combinations are told apart: listed, or strata of a sample.
+  double most_combinations() const;
   /// Upper bound on the number of futures, for any set of actors that are left out and any motions.
   std::size_t max_future_count() const noexcept { return max_future_count_; }
 

@@ -69,15 +69,14 @@ namespace detail {
 
 void OrderKey::set_clearance(double least_m, double least_gap_s,
                              double time_to_collision_s) noexcept {
-  time_to_collision_cs =
-      std::round(100.0 * std::min(time_to_collision_s, longest_time_to_collision_s));
+  time_to_collision_cs = std::round(100.0 * std::min(time_to_collision_s, imminent_crash_s));
   distance_cm = std::round(100.0 * std::min(least_m, enough_distance_m));
   time_gap_cs = std::round(100.0 * std::min(least_gap_s, enough_time_gap_s));
 }
 
 bool OrderKey::is_best_of_its_score() const noexcept {
   return !(collision_probability > 0.0) && !collides && !grazes && !leaves_road &&
-         time_to_collision_cs == std::round(100.0 * longest_time_to_collision_s) &&
+         time_to_collision_cs == std::round(100.0 * imminent_crash_s) &&
          distance_cm == std::round(100.0 * enough_distance_m) &&
          time_gap_cs == std::round(100.0 * enough_time_gap_s) && end_speed_mps == 0.0;
 }
@@ -92,10 +91,10 @@ int compare(const OrderKey& a, const OrderKey& b) noexcept {
   }
   if (a.collides != b.collides) return before(!a.collides);
   if (a.grazes != b.grazes) return before(!a.grazes);
-  if (a.leaves_road != b.leaves_road) return before(!a.leaves_road);
   if (a.time_to_collision_cs != b.time_to_collision_cs) {
     return before(a.time_to_collision_cs > b.time_to_collision_cs);
   }
+  if (a.leaves_road != b.leaves_road) return before(!a.leaves_road);
   if (a.distance_cm != b.distance_cm) return before(a.distance_cm > b.distance_cm);
   if (a.time_gap_cs != b.time_gap_cs) return before(a.time_gap_cs > b.time_gap_cs);
   if (!a.collides) {

@@ -15,7 +15,7 @@ struct OrderKey {
   bool collides = false;  ///< in the likeliest future, like the next
   bool grazes = false;
   bool leaves_road = false;
-  /// Hundredths of a second, at most `longest_time_to_collision_s`.
+  /// Hundredths of a second, at most `imminent_crash_s`.
   double time_to_collision_cs = 0.0;
   double distance_cm = 0.0;  ///< whole centimetres, at most `enough_distance_m`
   double time_gap_cs = 0.0;  ///< hundredths of a second, at most `enough_time_gap_s`

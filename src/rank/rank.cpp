@@ -17,12 +17,12 @@
 namespace crashrank {
 namespace {
 
-/// Evaluates all candidates. Sets `needs_left_out` if an evaluation sets Scratch::needs_left_out.
+/// Evaluates all candidates. Sets in `needed` what an evaluation sets in Scratch::needed.
 Status evaluate_all(const detail::Scene& scene, const RankOptions& options, RankResult& result,
-                    bool& needs_left_out) {
+                    std::vector<char>& needed) {
   const std::size_t count = result.candidates.size();
   if (options.workers > 1 && count > 0) {
-    return detail::evaluate_on_workers(scene, options, result, needs_left_out);
+    return detail::evaluate_on_workers(scene, options, result, needed);
   }
   detail::RankProgress progress(options, count);
   detail::Scratch scratch;
@@ -31,21 +31,21 @@ Status evaluate_all(const detail::Scene& scene, const RankOptions& options, Rank
     result.ranking[i] = detail::evaluate(scene, result.candidates[i], scratch, result.work);
     if (result.ranking[i].score) progress.advance();
   }
-  needs_left_out = needs_left_out || scratch.needs_left_out;
+  for (std::size_t i = 0; i < scratch.needed.size(); ++i) needed[i] |= scratch.needed[i];
   return Success{};
 }
 
-/// Evaluates all candidates in futures that leave out distant actors. If a crash reaches one of
-/// these, evaluates all again with every actor included.
+/// Evaluates all candidates in futures that leave out distant actors. If crashes reach some of
+/// these, evaluates all again with them included.
 Status evaluate_in_futures(detail::Scene& scene, const RankOptions& options, RankResult& result) {
   std::vector<char> reached(scene.actors.size());
   detail::leave_out_distant_actors(scene, {result.candidates.data(), result.candidates.size()},
                                    reached, result.work.box_tests);
-  bool needs_left_out = false;
-  Status done = evaluate_all(scene, options, result, needs_left_out);
-  if (done && needs_left_out) {
-    detail::include_all_actors(scene, reached);
-    done = evaluate_all(scene, options, result, needs_left_out);
+  std::vector<char> needed(scene.actors.size());
+  Status done = evaluate_all(scene, options, result, needed);
+  for (int repeats = 0; done && detail::include_needed_actors(scene, needed, repeats, reached);
+       ++repeats) {
+    done = evaluate_all(scene, options, result, needed);
   }
   result.futures = scene.futures.summary;
   return done;

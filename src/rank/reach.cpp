@@ -1,13 +1,15 @@
 #include "rank/reach.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 namespace crashrank::detail {
 namespace {
 
-/// Margin around the area of the candidates, m: most crashes throw bodies less far beyond it.
-constexpr float throw_distance_m = 50.0F;
+/// Margins around the area of the candidates, m: most crashes throw bodies less far than the
+/// largest beyond it, and many concern nobody beyond the smallest.
+constexpr std::array<float, 4> margins_m{2.0F, 8.0F, 20.0F, 50.0F};
 /// Plans are followed for this time after the horizon, s, since a simulation continues after the
 /// last contact.
 constexpr double after_horizon_s = 3.0;
@@ -28,6 +30,16 @@ Box swept_box_until(const Body& body, const Motion& motion, double until_s,
   return whole;
 }
 
+/// Index of the smallest margin around `area` that the box reaches; their number if it reaches
+/// none. Crashes are simulated in the plane of the road, so heights do not matter.
+char ring_of(const Box& box, const Box& area) {
+  const float gap_m = std::max((box.min - area.max).head<2>().maxCoeff(),
+                               (area.min - box.max).head<2>().maxCoeff());
+  const auto within = [gap_m](float margin_m) { return !(gap_m > margin_m); };
+  return static_cast<char>(std::find_if(margins_m.begin(), margins_m.end(), within) -
+                           margins_m.begin());
+}
+
 }  // namespace
 
 bool leave_out_distant_actors(Scene& scene, View<const Candidate> candidates,
@@ -40,25 +52,38 @@ bool leave_out_distant_actors(Scene& scene, View<const Candidate> candidates,
     const Box box = swept_box_until(scene.ego, candidate.motion, horizon_s, box_tests);
     near.grow(box);
   }
-  near.min.head<2>().array() -= throw_distance_m;
-  near.max.head<2>().array() += throw_distance_m;
-  std::fill(reached.begin(), reached.end(), char{0});
+  constexpr auto beyond = static_cast<char>(margins_m.size());
+  std::fill(reached.begin(), reached.end(), beyond);
   for (std::size_t p = 0; p < futures.own_plans(); ++p) {
     const std::size_t actor = futures.plans[p].actor;
-    if (reached[actor] != 0 || futures.is_certain(actor)) continue;
+    if (futures.is_certain(actor)) continue;
     const Box box = swept_box_until(scene.actors[actor], futures.plans[p].motion,
                                     horizon_s + after_horizon_s, box_tests);
-    // Crashes are simulated in the plane of the road, so heights do not matter.
-    const bool apart = (box.min.head<2>().array() > near.max.head<2>().array()).any() ||
-                       (box.max.head<2>().array() < near.min.head<2>().array()).any();
-    reached[actor] = apart ? 0 : 1;
+    reached[actor] = std::min(reached[actor], ring_of(box, near));
   }
+  char last = beyond - 1;
+  while (last > 0 && futures.combinations_within(reached, last) > futures.most_combinations()) {
+    --last;
+  }
+  // With too many of them all are drawn: those within the largest margin then get futures.
+  if (futures.combinations_within(reached, last) > futures.most_combinations()) last = beyond - 1;
+  for (char& each : reached) each = each <= last ? 1 : 0;
   return futures.leave_out_unreached(reached);
 }
 
-void include_all_actors(Scene& scene, std::vector<char>& reached) {
-  std::fill(reached.begin(), reached.end(), char{1});
+bool include_needed_actors(Scene& scene, std::vector<char>& needed, int repeats,
+                           std::vector<char>& reached) {
+  constexpr int most_repeats = 4;
+  bool any = false;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    any = any || needed[i] != 0;
+    reached[i] |= needed[i];
+    needed[i] = 0;
+  }
+  if (!any) return false;
+  if (repeats >= most_repeats) std::fill(reached.begin(), reached.end(), char{1});
   scene.futures.leave_out_unreached(reached);
+  return true;
 }
 
 }  // namespace crashrank::detail

@@ -36,7 +36,7 @@ void simulate_chain(const Scene& scene, const Motion& ego, std::size_t future, c
   scratch.chain.begin(scene, ego, future, first, sample);
   scratch.chain.finish();
   scratch.chain.mark_relevant_plans(scene, scratch.relevant);
-  scratch.needs_left_out = scratch.needs_left_out || scene.futures.needs_left_out(scratch.relevant);
+  scene.futures.mark_needed(scratch.relevant, scratch.needed);
   scratch.chain.effects(effects, scratch.order);
   work.crash_steps += scratch.chain.run().steps();
   work.crash_pieces += scratch.chain.run().work();
@@ -173,6 +173,7 @@ void Scratch::prepare(const Scene& scene) {
   near.reserve(futures.plans.size());
   hits.reserve(futures.plans.size());
   relevant.resize(futures.plans.size());
+  needed.resize(scene.actors.size());
   ego_poses.reserve(scene.trajectories.steps + 1);
   first_s.reserve(futures.max_future_count());
   until_s.reserve(futures.max_future_count());
@@ -192,6 +193,7 @@ SimulatedCandidate simulate_candidate(const Scene& scene, const Candidate& candi
   SimulatedCandidate found;
   const Futures& futures = scene.futures;
   scratch.relevant.resize(futures.plans.size());
+  scratch.needed.resize(scene.actors.size());
   const std::size_t likeliest = futures.likeliest();
   if (!simulate_group(scene, candidate, likeliest, scratch, work, found)) return stopped;
   for (std::size_t f = 0; futures.displaces_ego() && f < futures.size(); ++f) {

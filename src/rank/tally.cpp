@@ -17,10 +17,12 @@ double reduced_mass_kg(const Body& a, const Body& b) {
   return std::isinf(b.mass_kg) ? a.mass_kg : a.mass_kg * b.mass_kg / (a.mass_kg + b.mass_kg);
 }
 
-double struck_speed_of(const Body& body, const BodyEvent& event) {
+double struck_speed_of(const Scene& scene, const Body& body, const BodyEvent& event) {
   if (!body.vehicle.movable()) return event.closing_mps;
-  return struck_speed_mps(event.closing_mps, event.size_mps(), body.mass_kg, event.reduced_kg,
-                          event.largest_reduced_kg, event.restitution);
+  const double struck_mps =
+      struck_speed_mps(event.closing_mps, event.size_mps(), body.mass_kg, event.reduced_kg,
+                       event.largest_reduced_kg, event.restitution);
+  return std::max(struck_mps, scene.harm.least_struck_share * event.closing_mps);
 }
 
 /// Adds one side of a contact to an event.
@@ -121,7 +123,7 @@ HarmExposure exposure_of(const Scene& scene, std::size_t index, const BodyEvent&
   e.ego = index == ego_body;
   e.delta_v_mps = event.size_mps();
   e.pdof_deg = pdof_deg(event.impulse_ns, event.forward);
-  e.closing_speed_mps = struck_speed_of(body, event);
+  e.closing_speed_mps = struck_speed_of(scene, body, event);
   e.leading_edge_m = event.leading_edge_m;
   e.intrusion_m = event.intrusion_m;
   e.road_speed_mps = event.road_mps;

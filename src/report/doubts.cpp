@@ -153,7 +153,7 @@ void doubt_horizon(const Scenario& scenario, const RankResult& result,
                    std::vector<std::string>& doubts) {
   Counted imminent;
   for (const CandidateResult& ranked : result.ranking) {
-    if (!ranked.imminent) continue;
+    if (!ranked.imminent || !(*ranked.time_to_collision_s < imminent_crash_s)) continue;
     imminent.add(fmt::format("'{}', in place {}, {:.2f} s before a crash with '{}'",
                              result.candidates[ranked.candidate].name, ranked.place,
                              *ranked.time_to_collision_s, scenario.actors[*ranked.imminent].name));

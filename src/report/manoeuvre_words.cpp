@@ -116,21 +116,21 @@ std::string tie_words(const Scenario& scenario, const CandidateResult& first,
   if (first.grazes.empty() != second.grazes.empty()) {
     return "it passes everything with more than a hair's breadth";
   }
-  if (first.leaves_road.has_value() != second.leaves_road.has_value()) {
-    return "it stays on the road";
-  }
   const auto differ = [](const std::optional<double>& p, const std::optional<double>& q,
                          double enough) {
     return std::round(100.0 * std::min(p.value_or(enough), enough)) !=
            std::round(100.0 * std::min(q.value_or(enough), enough));
   };
   if (second.imminent &&
-      differ(first.time_to_collision_s, second.time_to_collision_s, longest_time_to_collision_s)) {
+      differ(first.time_to_collision_s, second.time_to_collision_s, imminent_crash_s)) {
     if (!first.imminent) {
       return "it is not " + from_crash(scenario, second) + " at the end of the horizon";
     }
     return fmt::format("it is further from a crash at the end of the horizon, {} against {}",
                        from_crash(scenario, first), from_crash(scenario, second));
+  }
+  if (first.leaves_road.has_value() != second.leaves_road.has_value()) {
+    return "it stays on the road";
   }
   if (differ(first.least_distance_m, second.least_distance_m, enough_distance_m)) {
     return fmt::format("it stays further from all others, {} against {}",

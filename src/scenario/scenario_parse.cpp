@@ -223,7 +223,7 @@ void read_models(const JsonObject& root, Scenario& scenario) {
 /// Keys of earlier crash models: accepted, so that files which have them stay valid.
 std::vector<std::string> find_keys_without_effect(const json& document) {
   std::vector<std::string> keys;
-  for (const char* const pointer : {"/crush", "/harm/after_impact", "/harm/least_struck_share"}) {
+  for (const char* const pointer : {"/crush", "/harm/after_impact"}) {
     if (!document.contains(json::json_pointer(pointer))) continue;
     std::string key(pointer + 1);
     std::replace(key.begin(), key.end(), '/', '.');

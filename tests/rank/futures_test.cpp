@@ -160,6 +160,65 @@ TEST(Futures, ActorsReachedAfterTheHorizonAreNotLeftOut) {
   expect_mean_of_singles(scene, options_with(false));
 }
 
+/// Ten cars beside the road that may be there or not allow a thousand times as many combinations,
+/// but no candidate comes near them.
+TEST(Futures, ActorsBesideTheRoadMakeNoSample) {
+  Scene scene = scenes::traffic(7800);
+  Scenario& scenario = scene.scenario;
+  scenario.actors.clear();
+  scenario.listed.clear();
+  scenario.grid.reset();
+  scenario.ego.speed_mps = 15.0;
+  scene.add_candidate("coast", 0.0);
+  scene.add_candidate("brake", -4.0);
+  scene.add_actor("first", scenes::car_model, 25.0, 0.0).existence_probability = 0.3;
+  scene.add_actor("second", scenes::car_model, 32.0, 0.5).existence_probability = 0.1;
+  const RankResult alone = scene.ranked(options_with(false));
+  ASSERT_EQ(alone.futures.futures, 4U);
+  for (int k = 0; k < 10; ++k) {
+    scene
+        .add_actor("parked " + std::to_string(k), scenes::car_model, 5.0 * k, k % 2 == 0 ? 25 : -25)
+        .existence_probability = 0.5;
+  }
+  const RankResult among = scene.ranked(options_with(false));
+  EXPECT_EQ(among.futures.method, FutureMethod::all);
+  EXPECT_EQ(among.futures.left_out, 10U);
+  const std::vector<double> expected = scores_of(alone);
+  const std::vector<double> scores = scores_of(among);
+  for (std::size_t c = 0; c < scores.size(); ++c) EXPECT_NEAR(scores[c], expected[c], 1e-12);
+  const Result<RankResult> within = rank_within(scenario, scene.models, options_with(false), {});
+  ASSERT_TRUE(within.ok());
+  EXPECT_EQ(scores_of(*within), scores);
+}
+
+/// A crash that reaches one of many distant actors includes this one, not all of them.
+TEST(Futures, ActorsThatACrashReachesAreIncludedOneByOne) {
+  Scene scene = scenes::traffic(7700);
+  Scenario& scenario = scene.scenario;
+  scenario.actors.clear();
+  scenario.listed.clear();
+  scenario.grid.reset();
+  scenario.horizon_s = 0.4;
+  scenario.ego.speed_mps = 60.0;
+  scene.add_candidate("coast", 0.0);
+  scene.add_actor("near", scenes::car_model, 10.0, 0.0);
+  scene.add_actor("next", scenes::car_model, 95.0, 0.0).existence_probability = 0.4;
+  const std::vector<double> expected = scores_of(scene.ranked(options_with(false)));
+  for (int k = 0; k < 12; ++k) {
+    scene.add_actor("aside " + std::to_string(k), scenes::car_model, 95.0, 150.0 + 10.0 * k)
+        .existence_probability = 0.5;
+  }
+  const RankResult among = scene.ranked(options_with(false));
+  EXPECT_EQ(among.futures.method, FutureMethod::all);
+  EXPECT_EQ(among.futures.left_out, 12U);
+  EXPECT_EQ(among.futures.futures, 2U);
+  EXPECT_NEAR(scores_of(among)[0], expected[0], 1e-12);
+  const Result<RankResult> within = rank_within(scenario, scene.models, options_with(false), {});
+  ASSERT_TRUE(within.ok());
+  EXPECT_EQ(within->futures.left_out, 12U);
+  EXPECT_EQ(scores_of(*within), scores_of(among));
+}
+
 TEST(Futures, EveryWorkerCountGivesTheSameBits) {
   oracle::Random random(7200);
   Scene scene = scenes::congestion(7200);

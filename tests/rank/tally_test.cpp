@@ -202,6 +202,31 @@ void expect_events(const Scene& scene, std::size_t body) {
   EXPECT_NEAR(score_of(scene, {first, close}), score_of(scene, {whole}), 1e-14);
 }
 
+/// A mirror touches with hardly any force.
+TEST(Tally, WhoeverIsOutsideACarIsStruckAtAShareOfTheClosingSpeed) {
+  Scene scene = scene_of(Measure::harm);
+  for (std::size_t actor = 0; actor < scene.actors.size(); ++actor) {
+    const BodyKind kind = scene.actors[actor].vehicle.kind;
+    const bool outside =
+        kind == BodyKind::motorcycle || kind == BodyKind::bicycle || kind == BodyKind::pedestrian;
+    ContactEffect touch;
+    touch.closing_mps = 25.0;
+    touch.sides[1].body = actor;
+    double last = 0.0;
+    for (const double share : {0.0, 0.1, 0.3, 1.0}) {
+      scene.harm.least_struck_share = share;
+      const double score = tally_of(scene, {touch}).score(scene);
+      HarmExposure struck;
+      struck.kind = kind;
+      struck.closing_speed_mps = share * 25.0;
+      EXPECT_DOUBLE_EQ(score, outside ? harm_of(struck, scene.harm) : 0.0);
+      EXPECT_GE(score, last);
+      last = score;
+    }
+    EXPECT_EQ(last > 0.0, outside);
+  }
+}
+
 TEST(Tally, SeparateEventsAreIndependentRisks) {
   const Scene scene = scene_of(Measure::harm);
   expect_events(scene, ego_body);

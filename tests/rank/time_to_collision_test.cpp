@@ -340,16 +340,34 @@ TEST(TimeToCollision, IsTheSameInTheRanker) {
   }
 }
 
-TEST(TimeToCollision, DecidesAfterStayingOnTheRoad) {
+TEST(TimeToCollision, DecidesBeforeStayingOnTheRoadWhereACrashIsImminent) {
+  for (const double place_m : {60.0, 70.0}) {
+    Scene scene = drivers(20.0, 2.0);
+    scene.add_actor("stands", 1, place_m, 0.0);
+    scene.add_candidate("right", 0.0, -0.02);
+    scene.add_candidate("on", 0.0);
+    const double time_s = of(scene.ranked(), "on").time_to_collision_s.value();
+    const bool imminent = place_m == 60.0;
+    EXPECT_EQ(time_s < imminent_crash_s, imminent);
+    EXPECT_FALSE(of(scene.ranked(), "right").time_to_collision_s.has_value());
+    scene.scenario.road.drivable = {{{{-20, -1.2}, {200, -1.2}, {200, 10}, {-20, 10}}, {}}};
+    EXPECT_EQ(scene.ranked().ranking[0].candidate, imminent ? 0U : 1U);
+  }
+}
+
+/// With more time than an imminent crash leaves, the distance to others counts.
+TEST(TimeToCollision, OfMoreThanASecondDoesNotDecide) {
   Scene scene = drivers(20.0, 2.0);
-  scene.add_actor("stands", 1, 60.0, 0.0);
-  scene.add_candidate("right", 0.0, -0.02);
+  scene.add_actor("stands", 1, 90.0, 0.0);
+  scene.add_actor("beside", 1, 20.0, -4.6);
+  scene.add_candidate("right", 0.0, -0.004);
   scene.add_candidate("on", 0.0);
-  EXPECT_EQ(scene.ranked().ranking[0].candidate, 0U);
-  EXPECT_TRUE(of(scene.ranked(), "on").time_to_collision_s.has_value());
-  EXPECT_FALSE(of(scene.ranked(), "right").time_to_collision_s.has_value());
-  scene.scenario.road.drivable = {{{{-20, -1.2}, {200, -1.2}, {200, 10}, {-20, 10}}, {}}};
-  EXPECT_EQ(scene.ranked().ranking[0].candidate, 1U);
+  const RankResult result = scene.ranked();
+  ASSERT_EQ(*result.ranking[0].score, 0.0);
+  ASSERT_EQ(*result.ranking[1].score, 0.0);
+  EXPECT_GT(of(result, "on").time_to_collision_s.value(), 2.0);
+  EXPECT_GT(*of(result, "on").least_distance_m, *of(result, "right").least_distance_m + 0.1);
+  EXPECT_EQ(result.ranking[0].candidate, 1U);
 }
 
 }  // namespace

@@ -119,10 +119,10 @@ TEST(Doubts, KeysWithoutEffectAreNamed) {
   told.scenario.keys_without_effect = {"crush"};
   ASSERT_EQ(told.doubts().size(), 1U);
   EXPECT_EQ(told.doubts()[0], "the scenario sets crush, which is without effect; leave it out");
-  told.scenario.keys_without_effect.push_back("harm.least_struck_share");
+  told.scenario.keys_without_effect.push_back("harm.after_impact");
   EXPECT_EQ(
       told.doubts()[0],
-      "the scenario sets crush, harm.least_struck_share, which are without effect; leave them "
+      "the scenario sets crush, harm.after_impact, which are without effect; leave them "
       "out");
 }
 

@@ -54,9 +54,9 @@ TEST(ImminentCrash, IsTheReasonOfAnOrderThatItDecides) {
   expect_part(
       told.page(),
       "because it is not 0.17 s from a crash with lorry &lt;b&gt; at the end of the horizon");
-  told.set_time(0, 2.5);
+  told.set_time(0, 0.9);
   expect_part(told.page(),
-              "because it is further from a crash at the end of the horizon, 2.50 s from a crash "
+              "because it is further from a crash at the end of the horizon, 0.90 s from a crash "
               "with lorry &lt;b&gt; against 0.17 s from a crash with lorry &lt;b&gt;");
   // Less than 10 ms does not decide.
   told.set_time(0, 0.172);
@@ -88,11 +88,11 @@ TEST(ImminentCrash, IsOneDoubtOfTheRanking) {
             "1 candidate reaches the horizon (4 s) without contact but close to a crash, which no "
             "score counts: 'hit', in place 2, 0.17 s before a crash with 'lorry <b>'; state a "
             "longer horizon_s");
-  told.set_time(0, 2.5);
+  told.set_time(0, 0.9);
   ASSERT_EQ(told_doubts().size(), 1U);
   expect_part(told_doubts()[0], "2 candidates reach the horizon");
   expect_part(told_doubts()[0],
-              "'miss', in place 1, 2.50 s before a crash with 'lorry <b>'; 'hit'");
+              "'miss', in place 1, 0.90 s before a crash with 'lorry <b>'; 'hit'");
   for (CandidateResult& each : told.result.ranking) {
     each.time_to_collision_s.reset();
     each.imminent.reset();

@@ -167,12 +167,9 @@ TEST(Scenario, KeysWithoutEffectAreListed) {
   json document = sample();
   EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
             (std::vector<std::string>{"crush", "harm.after_impact"}));
-  document["harm"]["least_struck_share"] = 0.5;
-  EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
-            (std::vector<std::string>{"crush", "harm.after_impact", "harm.least_struck_share"}));
   document["harm"].erase("after_impact");
   EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,
-            (std::vector<std::string>{"crush", "harm.least_struck_share"}));
+            (std::vector<std::string>{"crush"}));
   document.erase("crush");
   document.erase("harm");
   EXPECT_TRUE(parse_scenario(document.dump(), "f")->keys_without_effect.empty());

@@ -106,6 +106,11 @@ inline constexpr double enough_time_gap_s = 3.0;  ///< s
 /// at the horizon, and an extrapolation says little of a later time.
 inline constexpr double longest_time_to_collision_s = 3.0;
 
+/// A time to collision after the horizon below this decides among equal scores and is warned of, s:
+/// braking and steering then avoid few crashes. Above it such times are alike, since a vehicle that
+/// comes up to a queue still has time to brake. A design choice.
+inline constexpr double imminent_crash_s = 1.0;
+
 /// A first contact whose crash was not simulated.
 struct FirstTouch {
   std::size_t actor = 0;           ///< index into Scenario::actors
@@ -182,14 +187,14 @@ struct CandidateResult {
   /// Standard error of the score that comes from drawing a sample of futures, as if they were drawn
   /// independently, from what strata or fitted probabilities leave unexplained of the drawn scores.
   /// Absent without a sample, for worst and quantile, for cvar with fewer than 10 drawn futures in
-  /// its tail, and where nothing is left: futures that were not drawn may differ.
+  /// its tail, and where the drawn scores do not differ: futures that were not drawn may.
   std::optional<double> sampling_error;
   /// With a sample of futures: the score in each drawn future; the futures are the same for all
   /// candidates. Empty without a sample and where the score is not known.
   std::vector<double> drawn_scores;
   /// With a sample of futures: standard error of the difference of the scores of this candidate and
   /// the next in the ranking, from their differences in the drawn futures, as if these were drawn
-  /// independently. 0 if nothing is left unexplained of these. Absent for the last candidate, where a
+  /// independently. 0 if all drawn futures differ alike. Absent for the last candidate, where a
   /// score is not known, without a sample, and where `sampling_error` cannot be computed for the
   /// risk measure.
   std::optional<double> sampling_error_to_next;
@@ -336,9 +341,9 @@ struct RankResult {
 /// absent adjoins no other body.
 ///
 /// Order: feasible before infeasible candidates (RankOptions::infeasible); lower score; lower
-/// probability of a collision; in the likeliest future no contact before a graze, and staying on
-/// the road before leaving it; the longer time to collision at the horizon, rounded to 10 ms, up to
-/// `longest_time_to_collision_s`; the larger least distance, rounded to 1 cm, up to
+/// probability of a collision; in the likeliest future no contact before a graze; the longer time to
+/// collision at the horizon, rounded to 10 ms, up to `imminent_crash_s`; in the likeliest future
+/// staying on the road before leaving it; the larger least distance, rounded to 1 cm, up to
 /// `enough_distance_m`; the larger least time gap, rounded to 10 ms, up to `enough_time_gap_s`; in
 /// the likeliest future the later first contact, then the lower closing speed, or the lower speed
 /// at the horizon. Candidates that agree in all of these are tied: they share a place and are

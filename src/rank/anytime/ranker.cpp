@@ -123,6 +123,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->rounds.prepare(options.limits.candidates);
     state->new_motions.resize(state->scene.futures.own_plans());
     state->reached.resize(state->scene.actors.size());
+    state->needed.resize(state->scene.actors.size());
     state->prepare_s = seconds_between(start, Deadline::Clock::now());
     return Ranker(std::move(state));
   });
@@ -266,9 +267,10 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     result.candidates.assign(candidates.begin(), candidates.end());
     result.ranking.resize(answer.ranking.size());
     const Deadline deadline(cancel);
-    if (s.explain_all(candidates, answer, deadline, result)) {
-      // Crashes of the samples can reach further than the nominal ones.
-      detail::include_all_actors(s.scene, s.reached);
+    s.explain_all(candidates, answer, deadline, result);
+    // Crashes of the samples can reach further than the nominal ones.
+    for (int repeats = 0; detail::include_needed_actors(s.scene, s.needed, repeats, s.reached);
+         ++repeats) {
       s.explain_all(candidates, answer, deadline, result);
     }
     result.futures = s.scene.futures.summary;

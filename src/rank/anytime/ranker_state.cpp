@@ -48,7 +48,10 @@ bool Ranker::State::collect_results(std::size_t steps, const RankBudget& budget,
     if (affordable && done.state != nullptr) {
       if (done.state->result.known && !states[chosen[i]].result.known) ++known;
       states[chosen[i]] = *done.state;
-      needs_left_out = needs_left_out || done.state->needs_left_out;
+      if (done.state->needed_actor != detail::CandidateState::none) {
+        needed[done.state->needed_actor] = 1;
+        needs_left_out = true;
+      }
       work += done.end.work;
     }
     in_time = in_time && affordable && done.state != nullptr && done.end.finished;
@@ -102,10 +105,10 @@ void Ranker::State::refine_in_futures(View<const Candidate> candidates, const Ra
   if (leaves && detail::leave_out_distant_actors(scene, candidates, reached, effort.work))
     begin(candidates);
   refine_all(budget, effort);
-  if (!needs_left_out) return;
-  detail::include_all_actors(scene, reached);
-  begin(candidates);
-  refine_all(budget, effort);
+  for (int repeats = 0; detail::include_needed_actors(scene, needed, repeats, reached); ++repeats) {
+    begin(candidates);
+    refine_all(budget, effort);
+  }
 }
 
 void Ranker::State::begin(View<const Candidate> candidates) noexcept {
@@ -117,7 +120,7 @@ void Ranker::State::begin(View<const Candidate> candidates) noexcept {
   needs_left_out = false;
 }
 
-bool Ranker::State::explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
+void Ranker::State::explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
                                 const Deadline& deadline, RankResult& result) {
   detail::Scratch scratch;
   scratch.stop = {&Deadline::stop, const_cast<Deadline*>(&deadline)};
@@ -141,7 +144,7 @@ bool Ranker::State::explain_all(View<const Candidate> candidates, const RankerAn
     }
     full.candidate = ranked.candidate;
   }
-  return scratch.needs_left_out;
+  for (std::size_t i = 0; i < scratch.needed.size(); ++i) needed[i] |= scratch.needed[i];
 }
 
 void Ranker::State::write_answer(RankerAnswer& answer, std::size_t all) noexcept {

@@ -39,7 +39,8 @@ struct CRASHRANK_HIDDEN Ranker::State {
   Motion displaced;                 ///< working memory for a displaced motion
   std::size_t known = 0;            ///< number of candidates with a known score in this call
   std::vector<char> reached;        ///< by actor: may be reached by a candidate
-  bool needs_left_out = false;      ///< a crash reaches an actor that was left out
+  std::vector<char> needed;         ///< by actor: left out and reached by a crash
+  bool needs_left_out = false;      ///< there is such an actor
 
   /// Stores the results of a round in the order of its steps, as far as the work budget allows.
   /// Returns false if work or time is used up.
@@ -47,14 +48,14 @@ struct CRASHRANK_HIDDEN Ranker::State {
   /// Refines candidates until time or work is used up or all is decided.
   void refine_all(const RankBudget& budget, RankerEffort& effort) noexcept;
   /// Refines candidates in futures that leave out distant actors. If a crash reaches one of these,
-  /// starts again with every actor included.
+  /// starts again with it included.
   void refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
                          RankerEffort& effort) noexcept;
   /// Resets all candidates to their upper bounds. Does not touch what running workers use.
   void begin(View<const Candidate> candidates) noexcept;
-  /// Evaluates the candidates of an answer in full. Returns true if a crash reaches an actor that
-  /// was left out of the futures.
-  bool explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
+  /// Evaluates the candidates of an answer in full. Marks in `needed` the actors that were left out
+  /// of the futures and that a crash reaches.
+  void explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
                    const detail::Deadline& deadline, RankResult& result);
   /// Writes the answer from the first `all` states. Does not touch what running workers use.
   void write_answer(RankerAnswer& answer, std::size_t all) noexcept;

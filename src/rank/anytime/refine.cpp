@@ -63,6 +63,12 @@ void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   state.result.estimate = std::clamp(estimate, interval.lowest, interval.highest);
 }
 
+std::size_t first_needed(const Scratch& scratch) {
+  const auto first = std::find(scratch.needed.begin(), scratch.needed.end(), char{1});
+  return first == scratch.needed.end() ? CandidateState::none
+                                       : static_cast<std::size_t>(first - scratch.needed.begin());
+}
+
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
                     std::size_t index, Motion& displaced, CandidateState& state) {
   // Keep the memory of the vectors.
@@ -108,10 +114,10 @@ StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch)
         // Not stopped once it has started: its result is needed.
         scratch.stop = {};
         try {
-          scratch.needs_left_out = false;
+          std::fill(scratch.needed.begin(), scratch.needed.end(), char{0});
           const CandidateResult result = evaluate(q.scene, q.candidate, scratch, work);
-          state.needs_left_out = scratch.needs_left_out;
-          if (result.score && !state.needs_left_out) {
+          state.needed_actor = first_needed(scratch);
+          if (result.score && state.needed_actor == CandidateState::none) {
             settle(state, *result.score);
           } else {
             state.unresolved = true;

@@ -35,7 +35,9 @@ struct CandidateState {
   bool unresolved = false;    ///< a test stayed undecided: the candidate cannot be refined further
   double upper_bound = 0.0;   ///< upper bound on the score in any future
   bool demand_known = false;  ///< `result.feasible` is final
-  bool needs_left_out = false;  ///< its crash reaches an actor that was left out of the futures
+  static constexpr auto none = static_cast<std::size_t>(-1);
+  /// an actor that was left out of the futures and that its crash reaches
+  std::size_t needed_actor = none;
   /// leaving the road on its plan; valid from the stage `near` on
   std::optional<RoadLeaving> leaving;
   std::vector<FutureScore> futures;  ///< by future

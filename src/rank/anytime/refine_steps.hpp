@@ -18,6 +18,9 @@ void settle(CandidateState& state, double score);
 /// probability above 0 are known.
 void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch);
 
+/// The first actor in Scratch::needed, or CandidateState::none.
+std::size_t first_needed(const Scratch& scratch);
+
 /// First moment off the road of the ego on its motion in a future.
 std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const CandidateState& state,
                                       const Motion& ego, const Scratch& scratch);

@@ -38,7 +38,8 @@ bool share_score(const Scene& scene, std::size_t future, CandidateState& state, 
   std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
   for (std::uint32_t k = 0; k <= found.first; ++k) scratch.relevant[state.first_hits[k].plan] = 1;
   scratch.chain.mark_relevant_plans(scene, scratch.relevant);
-  if (scene.futures.needs_left_out(scratch.relevant)) return false;
+  std::fill(scratch.needed.begin(), scratch.needed.end(), char{0});
+  if (scene.futures.mark_needed(scratch.relevant, scratch.needed)) return false;
   scratch.same.clear();
   scratch.others.clear();
   for (std::size_t f = group.begin; f < group.end; ++f) {
@@ -106,7 +107,8 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   if (!share_score(q.scene, index, state, scratch)) {
     future = before;
     state.result = result_before;
-    state.unresolved = state.needs_left_out = true;
+    state.unresolved = true;
+    state.needed_actor = first_needed(scratch);
     return in_time;
   }
   combine(q, state, scratch);
