@@ -270,6 +270,10 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
     }
     const DriftingBody other_end{other.outline, other.poses[trajectories.steps],
                                  trajectories.drift[p]};
+    if (!((own_end.drift.velocity_mps - trajectories.drift[p].velocity_mps).norm() >=
+          slow_crash_mps)) {
+      continue;
+    }
     const double most_s = std::min(least.time_to_collision_s, longest_time_to_collision_s);
     const double collision_s = time_to_collision_s(own_end, other_end, most_s, stop);
     if (collision_s < least.time_to_collision_s) {

@@ -50,17 +50,14 @@ double FutureSample::combinations() const {
   return product;
 }
 
-double FutureSample::most_combinations() const noexcept {
-  // Two futures for every combination at least: an error can be stated.
-  return std::max(1.0, std::floor(static_cast<double>(futures_) / 4.0));
-}
-
 void FutureSample::draw(Strata& strata) {
   choice_.assign(futures_ * variables(), 0);
   std::fill(must_.begin(), must_.end(), none);
   fitted_.actors = 0;
   fitted_.choices.clear();
-  if (const double all = combinations(); all <= most_combinations()) {
+  // Two futures for every combination at least: an error can be stated.
+  const double most = std::max(1.0, std::floor(static_cast<double>(futures_) / 4.0));
+  if (const double all = combinations(); all <= most) {
     draw_combinations(static_cast<std::size_t>(all));
     for (std::size_t v = 0; v < variables(); ++v) {
       if (matters_[v] == 0) draw_choices(v, strata);

@@ -31,8 +31,6 @@ public:
   /// Allocates for a number of futures, of variables and of all their choices; nothing else does.
   void prepare(std::size_t futures, std::size_t variables, std::size_t choices);
   std::size_t futures() const noexcept { return futures_; }
-  /// Largest number of combinations that are strata.
-  double most_combinations() const noexcept;
 
   /// Removes all variables.
   void clear() noexcept;

@@ -169,10 +169,10 @@ bool Futures::can_leave_out() const noexcept {
   return !is_joint() && choices_.most_combinations() > 1.0;
 }
 
-bool Futures::leave_out_unreached(const std::vector<char>& reached) {
+bool Futures::leave_out_beyond(const std::vector<char>& ring, char last) {
   bool same = true;
   for (std::size_t i = 0; i < actors_; ++i) {
-    const char near = reached[i] != 0 || choices_.count(i) == 1 ? 1 : 0;
+    const char near = ring[i] <= last || choices_.count(i) == 1 ? 1 : 0;
     same = same && near == reached_[i];
     reached_[i] = near;
   }
@@ -214,10 +214,6 @@ double Futures::combinations_within(const std::vector<char>& ring, char last) co
       count = std::min(count * static_cast<double>(choices_.count(i)), countable);
   }
   return count;
-}
-
-double Futures::most_combinations() const {
-  return summary.has_state_errors ? sample_.most_combinations() : double{max_combinations};
 }
 
 void Futures::mark_followed_plans() {

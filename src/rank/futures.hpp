@@ -84,12 +84,12 @@ public:
   /// Returns true if the number of futures can be reduced by leaving out actors that no candidate
   /// reaches.
   bool can_leave_out() const noexcept;
-  /// Combines only the choices of the actors that are marked as reached; all others have their
-  /// likeliest choice in every future and are left out. If too many combinations remain even so, or
-  /// states have errors, no actor is left out, and the sample spends no futures on what is
-  /// improbable of those that are not reached. Does not allocate. Returns false if the futures did
-  /// not change.
-  bool leave_out_unreached(const std::vector<char>& reached);
+  /// Combines only the choices of the actors whose entry in `ring` is at most `last`; all others
+  /// have their likeliest choice in every future and are left out. If too many combinations remain
+  /// even so, or states have errors, no actor is left out, and the sample spends no futures on what
+  /// is improbable of those that are not reached. Does not allocate. Returns false if the futures
+  /// did not change.
+  bool leave_out_beyond(const std::vector<char>& ring, char last);
   /// Returns true if an actor has its likeliest choice in every future because no candidate reaches
   /// it.
   bool leaves_out() const noexcept { return summary.left_out > 0; }
@@ -99,8 +99,6 @@ public:
   bool mark_needed(const std::vector<char>& relevant, std::vector<char>& needed) const;
   /// Number of combinations of the choices of the actors whose entry in `ring` is at most `last`.
   double combinations_within(const std::vector<char>& ring, char last) const;
-  /// Largest such number for which combinations are told apart: listed, or strata of a sample.
-  double most_combinations() const;
   /// Upper bound on the number of futures, for any set of actors that are left out and any motions.
   std::size_t max_future_count() const noexcept { return max_future_count_; }
 

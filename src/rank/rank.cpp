@@ -38,12 +38,12 @@ Status evaluate_all(const detail::Scene& scene, const RankOptions& options, Rank
 /// Evaluates all candidates in futures that leave out distant actors. If crashes reach some of
 /// these, evaluates all again with them included.
 Status evaluate_in_futures(detail::Scene& scene, const RankOptions& options, RankResult& result) {
-  std::vector<char> reached(scene.actors.size());
+  std::vector<char> rings(scene.actors.size());
   detail::leave_out_distant_actors(scene, {result.candidates.data(), result.candidates.size()},
-                                   reached, result.work.box_tests);
+                                   rings, result.work.box_tests);
   std::vector<char> needed(scene.actors.size());
   Status done = evaluate_all(scene, options, result, needed);
-  for (int repeats = 0; done && detail::include_needed_actors(scene, needed, repeats, reached);
+  for (int repeats = 0; done && detail::include_needed_actors(scene, needed, repeats, rings);
        ++repeats) {
     done = evaluate_all(scene, options, result, needed);
   }

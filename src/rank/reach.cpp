@@ -14,7 +14,7 @@ constexpr std::array<float, 4> margins_m{2.0F, 8.0F, 20.0F, 50.0F};
 /// last contact.
 constexpr double after_horizon_s = 3.0;
 /// Approximate duration over which one box is swept, s.
-constexpr double interval_s = 1.0;
+constexpr double interval_s = 0.25;
 
 /// Bounding box of a motion over [0, until].
 Box swept_box_until(const Body& body, const Motion& motion, double until_s,
@@ -30,20 +30,40 @@ Box swept_box_until(const Body& body, const Motion& motion, double until_s,
   return whole;
 }
 
-/// Index of the smallest margin around `area` that the box reaches; their number if it reaches
-/// none. Crashes are simulated in the plane of the road, so heights do not matter.
+/// Rings of actors: needed by a crash, within the margins, and beyond the largest of them.
+constexpr char always = 0;
+constexpr char first_ring = 1;
+constexpr auto beyond = static_cast<char>(first_ring + static_cast<char>(margins_m.size()));
+
+/// Ring of the smallest margin around `area` that the box reaches. Crashes are simulated in the
+/// plane of the road, so heights do not matter.
 char ring_of(const Box& box, const Box& area) {
   const float gap_m = std::max((box.min - area.max).head<2>().maxCoeff(),
                                (area.min - box.max).head<2>().maxCoeff());
   const auto within = [gap_m](float margin_m) { return !(gap_m > margin_m); };
-  return static_cast<char>(std::find_if(margins_m.begin(), margins_m.end(), within) -
-                           margins_m.begin());
+  const auto margin = std::find_if(margins_m.begin(), margins_m.end(), within);
+  return static_cast<char>(first_ring + (margin - margins_m.begin()));
+}
+
+/// What lies within the smallest margin may be hit along a plan, which no simulation would notice
+/// if it were left out. Leaves out the actors beyond the largest margin for which the combinations
+/// of the others can be listed; beyond the largest of all if there is none, or if the futures are a
+/// sample in any case, which then spends futures on what is improbable of all within it.
+bool leave_out_beyond_rings(Futures& futures, const std::vector<char>& rings) {
+  const auto fits = [&](char last) {
+    return futures.combinations_within(rings, last) <= double{Futures::max_combinations};
+  };
+  constexpr char largest = beyond - 1;
+  char last = largest;
+  while (last > first_ring && !fits(last)) --last;
+  if (futures.summary.has_state_errors || !fits(last)) last = largest;
+  return futures.leave_out_beyond(rings, last);
 }
 
 }  // namespace
 
 bool leave_out_distant_actors(Scene& scene, View<const Candidate> candidates,
-                              std::vector<char>& reached, std::uint64_t& box_tests) {
+                              std::vector<char>& rings, std::uint64_t& box_tests) {
   Futures& futures = scene.futures;
   if (!futures.can_leave_out() || candidates.empty()) return false;
   const double horizon_s = scene.slice_s.back();
@@ -52,37 +72,29 @@ bool leave_out_distant_actors(Scene& scene, View<const Candidate> candidates,
     const Box box = swept_box_until(scene.ego, candidate.motion, horizon_s, box_tests);
     near.grow(box);
   }
-  constexpr auto beyond = static_cast<char>(margins_m.size());
-  std::fill(reached.begin(), reached.end(), beyond);
+  std::fill(rings.begin(), rings.end(), beyond);
   for (std::size_t p = 0; p < futures.own_plans(); ++p) {
     const std::size_t actor = futures.plans[p].actor;
     if (futures.is_certain(actor)) continue;
     const Box box = swept_box_until(scene.actors[actor], futures.plans[p].motion,
                                     horizon_s + after_horizon_s, box_tests);
-    reached[actor] = std::min(reached[actor], ring_of(box, near));
+    rings[actor] = std::min(rings[actor], ring_of(box, near));
   }
-  char last = beyond - 1;
-  while (last > 0 && futures.combinations_within(reached, last) > futures.most_combinations()) {
-    --last;
-  }
-  // With too many of them all are drawn: those within the largest margin then get futures.
-  if (futures.combinations_within(reached, last) > futures.most_combinations()) last = beyond - 1;
-  for (char& each : reached) each = each <= last ? 1 : 0;
-  return futures.leave_out_unreached(reached);
+  return leave_out_beyond_rings(futures, rings);
 }
 
 bool include_needed_actors(Scene& scene, std::vector<char>& needed, int repeats,
-                           std::vector<char>& reached) {
-  constexpr int most_repeats = 4;
+                           std::vector<char>& rings) {
+  constexpr int most_repeats = 6;
   bool any = false;
   for (std::size_t i = 0; i < needed.size(); ++i) {
     any = any || needed[i] != 0;
-    reached[i] |= needed[i];
+    if (needed[i] != 0) rings[i] = always;
     needed[i] = 0;
   }
   if (!any) return false;
-  if (repeats >= most_repeats) std::fill(reached.begin(), reached.end(), char{1});
-  scene.futures.leave_out_unreached(reached);
+  if (repeats >= most_repeats) std::fill(rings.begin(), rings.end(), always);
+  leave_out_beyond_rings(scene.futures, rings);
   return true;
 }
 

@@ -185,7 +185,7 @@ RankResult towards_a_doubtful_car(double exists, double position_error_m, int wa
   car.existence_probability = exists;
   car.perception.position_m = position_error_m;
   for (int k = 0; k < walkers; ++k) {
-    scene.add_actor("walker " + std::to_string(k), 0, 30.0 + 6.0 * k, 12.0).existence_probability =
+    scene.add_actor("walker " + std::to_string(k), 0, 30.0 + 6.0 * k, 2.8).existence_probability =
         0.5;
   }
   for (int k = 0; k < far_cars; ++k) {

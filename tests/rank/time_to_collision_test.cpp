@@ -370,4 +370,14 @@ TEST(TimeToCollision, OfMoreThanASecondDoesNotDecide) {
   EXPECT_EQ(result.ranking[0].candidate, 1U);
 }
 
+/// Rolling up to a standing car is no crash, driving into it is.
+TEST(TimeToCollision, OfASlowApproachIsNone) {
+  for (const double speed_mps : {0.5, 1.9, 2.1, 5.0}) {
+    Scene scene = drivers(speed_mps, 1.0);
+    scene.add_actor("stands", 1, 4.5 + speed_mps, 0.0);
+    scene.add_candidate("on", 0.0);
+    EXPECT_EQ(only(scene).time_to_collision_s.has_value(), speed_mps > slow_crash_mps) << speed_mps;
+  }
+}
+
 }  // namespace

@@ -111,6 +111,10 @@ inline constexpr double longest_time_to_collision_s = 3.0;
 /// comes up to a queue still has time to brake. A design choice.
 inline constexpr double imminent_crash_s = 1.0;
 
+/// Bodies that close with less than this have no time to collision, m/s: rolling up to a queue and
+/// a walker beside a standing car are no crash. A design choice.
+inline constexpr double slow_crash_mps = 2.0;
+
 /// A first contact whose crash was not simulated.
 struct FirstTouch {
   std::size_t actor = 0;           ///< index into Scenario::actors
@@ -176,9 +180,9 @@ struct CandidateResult {
   /// any other's touch, seen from above and height by height, to 1 cm, if no body turns and
   /// each keeps the velocity that it has at the end of its plan or, if it brakes, the deceleration
   /// of the last half second until it stands; over the plans of all futures, s. Absent if it is
-  /// longer than `longest_time_to_collision_s`, if the candidate has a contact in any future, and
-  /// if the score is not known. A design choice: a contact just after the horizon is not part of
-  /// the score, and this shows it.
+  /// longer than `longest_time_to_collision_s` or below `slow_crash_mps`, if the candidate has a
+  /// contact in any future, and if the score is not known. A design choice: a contact just after
+  /// the horizon is not part of the score, and this shows it.
   std::optional<double> time_to_collision_s;
   /// The actor with that time to collision; absent with it.
   std::optional<std::size_t> imminent;
@@ -341,8 +345,8 @@ struct RankResult {
 /// absent adjoins no other body.
 ///
 /// Order: feasible before infeasible candidates (RankOptions::infeasible); lower score; lower
-/// probability of a collision; in the likeliest future no contact before a graze; the longer time to
-/// collision at the horizon, rounded to 10 ms, up to `imminent_crash_s`; in the likeliest future
+/// probability of a collision; in the likeliest future no contact before a graze; the longer time
+/// to collision at the horizon, rounded to 10 ms, up to `imminent_crash_s`; in the likeliest future
 /// staying on the road before leaving it; the larger least distance, rounded to 1 cm, up to
 /// `enough_distance_m`; the larger least time gap, rounded to 10 ms, up to `enough_time_gap_s`; in
 /// the likeliest future the later first contact, then the lower closing speed, or the lower speed

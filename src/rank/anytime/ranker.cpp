@@ -122,7 +122,7 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->queue.prepare(options.limits.candidates);
     state->rounds.prepare(options.limits.candidates);
     state->new_motions.resize(state->scene.futures.own_plans());
-    state->reached.resize(state->scene.actors.size());
+    state->rings.resize(state->scene.actors.size());
     state->needed.resize(state->scene.actors.size());
     state->prepare_s = seconds_between(start, Deadline::Clock::now());
     return Ranker(std::move(state));
@@ -269,7 +269,7 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     const Deadline deadline(cancel);
     s.explain_all(candidates, answer, deadline, result);
     // Crashes of the samples can reach further than the nominal ones.
-    for (int repeats = 0; detail::include_needed_actors(s.scene, s.needed, repeats, s.reached);
+    for (int repeats = 0; detail::include_needed_actors(s.scene, s.needed, repeats, s.rings);
          ++repeats) {
       s.explain_all(candidates, answer, deadline, result);
     }

@@ -48,8 +48,8 @@ bool Ranker::State::collect_results(std::size_t steps, const RankBudget& budget,
     if (affordable && done.state != nullptr) {
       if (done.state->result.known && !states[chosen[i]].result.known) ++known;
       states[chosen[i]] = *done.state;
-      if (done.state->needed_actor != detail::CandidateState::none) {
-        needed[done.state->needed_actor] = 1;
+      for (std::size_t k = 0; k < done.state->needed_count; ++k) {
+        needed[done.state->needed[k]] = 1;
         needs_left_out = true;
       }
       work += done.end.work;
@@ -102,10 +102,10 @@ void Ranker::State::refine_all(const RankBudget& budget, RankerEffort& effort) n
 void Ranker::State::refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
                                       RankerEffort& effort) noexcept {
   const bool leaves = budget.work > 0 && !rounds.expired();
-  if (leaves && detail::leave_out_distant_actors(scene, candidates, reached, effort.work))
+  if (leaves && detail::leave_out_distant_actors(scene, candidates, rings, effort.work))
     begin(candidates);
   refine_all(budget, effort);
-  for (int repeats = 0; detail::include_needed_actors(scene, needed, repeats, reached); ++repeats) {
+  for (int repeats = 0; detail::include_needed_actors(scene, needed, repeats, rings); ++repeats) {
     begin(candidates);
     refine_all(budget, effort);
   }

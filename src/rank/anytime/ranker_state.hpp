@@ -38,7 +38,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
   std::vector<Motion> new_motions;  ///< motions of the actors while they are checked and copied
   Motion displaced;                 ///< working memory for a displaced motion
   std::size_t known = 0;            ///< number of candidates with a known score in this call
-  std::vector<char> reached;        ///< by actor: may be reached by a candidate
+  std::vector<char> rings;          ///< by actor: see leave_out_distant_actors
   std::vector<char> needed;         ///< by actor: left out and reached by a crash
   bool needs_left_out = false;      ///< there is such an actor
 

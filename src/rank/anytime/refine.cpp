@@ -63,10 +63,11 @@ void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   state.result.estimate = std::clamp(estimate, interval.lowest, interval.highest);
 }
 
-std::size_t first_needed(const Scratch& scratch) {
-  const auto first = std::find(scratch.needed.begin(), scratch.needed.end(), char{1});
-  return first == scratch.needed.end() ? CandidateState::none
-                                       : static_cast<std::size_t>(first - scratch.needed.begin());
+void copy_needed(const Scratch& scratch, CandidateState& state) {
+  for (std::size_t i = 0; i < scratch.needed.size(); ++i) {
+    if (scratch.needed[i] == 0 || state.needed_count == state.needed.size()) continue;
+    state.needed[state.needed_count++] = static_cast<std::uint32_t>(i);
+  }
 }
 
 void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candidate& candidate,
@@ -116,8 +117,8 @@ StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch)
         try {
           std::fill(scratch.needed.begin(), scratch.needed.end(), char{0});
           const CandidateResult result = evaluate(q.scene, q.candidate, scratch, work);
-          state.needed_actor = first_needed(scratch);
-          if (result.score && state.needed_actor == CandidateState::none) {
+          copy_needed(scratch, state);
+          if (result.score && state.needed_count == 0) {
             settle(state, *result.score);
           } else {
             state.unresolved = true;

@@ -7,6 +7,7 @@
 #include "rank/order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -35,9 +36,10 @@ struct CandidateState {
   bool unresolved = false;    ///< a test stayed undecided: the candidate cannot be refined further
   double upper_bound = 0.0;   ///< upper bound on the score in any future
   bool demand_known = false;  ///< `result.feasible` is final
-  static constexpr auto none = static_cast<std::size_t>(-1);
-  /// an actor that was left out of the futures and that its crash reaches
-  std::size_t needed_actor = none;
+  /// Actors that were left out of the futures and that its crash reaches; further ones follow when
+  /// these are included.
+  std::array<std::uint32_t, 16> needed{};
+  std::size_t needed_count = 0;
   /// leaving the road on its plan; valid from the stage `near` on
   std::optional<RoadLeaving> leaving;
   std::vector<FutureScore> futures;  ///< by future

@@ -18,8 +18,8 @@ void settle(CandidateState& state, double score);
 /// probability above 0 are known.
 void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch);
 
-/// The first actor in Scratch::needed, or CandidateState::none.
-std::size_t first_needed(const Scratch& scratch);
+/// Copies what Scratch::needed marks.
+void copy_needed(const Scratch& scratch, CandidateState& state);
 
 /// First moment off the road of the ego on its motion in a future.
 std::optional<RoadLeaving> leaving_of(const RefineQuery& q, const CandidateState& state,

@@ -108,7 +108,7 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
     future = before;
     state.result = result_before;
     state.unresolved = true;
-    state.needed_actor = first_needed(scratch);
+    copy_needed(scratch, state);
     return in_time;
   }
   combine(q, state, scratch);
