@@ -120,10 +120,9 @@ TEST(Doubts, KeysWithoutEffectAreNamed) {
   ASSERT_EQ(told.doubts().size(), 1U);
   EXPECT_EQ(told.doubts()[0], "the scenario sets crush, which is without effect; leave it out");
   told.scenario.keys_without_effect.push_back("harm.after_impact");
-  EXPECT_EQ(
-      told.doubts()[0],
-      "the scenario sets crush, harm.after_impact, which are without effect; leave them "
-      "out");
+  EXPECT_EQ(told.doubts()[0],
+            "the scenario sets crush, harm.after_impact, which are without effect; leave them "
+            "out");
 }
 
 TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
