@@ -18,8 +18,8 @@ std::vector<SceneView> scene_views(const Scenario& scenario, View<const Model> m
   }
   constexpr double near_m = 15.0;
   const double end_s = scenario.horizon_s;
-  Pose& ego = views.front().damage.pose;
-  ego = result.candidates[ranked.candidate].motion.pose_at(end_s);
+  const Pose ego = result.candidates[ranked.candidate].motion.pose_at(end_s);
+  views.front().damage.pose = ego;
   for (const ScenarioActor& actor : scenario.actors) {
     if (actor.existence_probability == 0.0) continue;
     const Result<Motion> motion = make_motion(actor);
