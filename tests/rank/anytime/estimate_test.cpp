@@ -134,7 +134,9 @@ TEST(Estimate, ChoosesLessHarmThanUpperBounds) {
   ASSERT_GT(answers, 20U);
   // A single scene may decide the mean of a few.
   constexpr std::uint64_t enough_scenes = 12;
-  if (scenes >= enough_scenes) EXPECT_LT(by_estimate, by_upper_end);
+  if (scenes >= enough_scenes) {
+    EXPECT_LT(by_estimate, by_upper_end);
+  }
 }
 
 }  // namespace
