@@ -24,25 +24,35 @@ namespace {
 constexpr std::chrono::milliseconds look_every(30);
 constexpr std::chrono::milliseconds patience(2000);
 
-// A signal handler reaches nothing else.
-volatile std::sig_atomic_t signal_received = 0;
+// A signal handler reaches nothing else; without a lock it may run in the middle of any operation.
+std::atomic<bool> signal_received{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
 timespec first_received{};  // read and written by the handler alone
 
 /// A second signal ends the process at once; senders such as timeout(1) send one twice.
 extern "C" void receive_signal(int /*signal*/) {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  if (signal_received == 0) first_received = now;
+  if (!signal_received) first_received = now;
   if (now.tv_sec > first_received.tv_sec + 1) _exit(exit_budget);
-  signal_received = 1;
+  signal_received = true;
 }
 
 /// What is to be done on an interruption; one for the process, as signals are.
 struct Pending {
-  std::timed_mutex mutex;
+  std::mutex mutex;
   std::vector<std::pair<const PartialAnswer*, std::function<Interruption()>>> answers;
   std::vector<std::string> files;
   std::atomic<int> end_themselves{0};  ///< actions that do
+
+  /// Takes the mutex within some 50 ms. What holds it longer is in the middle of an answer.
+  bool lock_soon() {
+    for (int tries = 0; tries < 50; ++tries) {
+      if (mutex.try_lock()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
 
   static Pending& instance() {
     static Pending pending;
@@ -65,7 +75,7 @@ void listen_to(int signal) {
 [[noreturn]] void end_interrupted() {
   Pending& pending = Pending::instance();
   // Kept to the end, so that the work makes no further file.
-  const bool locked = pending.mutex.try_lock_for(std::chrono::milliseconds(50));
+  const bool locked = pending.lock_soon();
   Progress::clear();
   Interruption known{{}, "nothing is known yet"};
   if (!begin_answer()) {
@@ -89,7 +99,7 @@ void listen_to(int signal) {
 
 }  // namespace
 
-bool is_interrupted() { return signal_received != 0; }
+bool is_interrupted() { return signal_received; }
 
 int run_interruptible(const std::function<int()>& action) {
   listen_to(SIGINT);
@@ -119,7 +129,7 @@ int run_interruptible(const std::function<int()>& action) {
     std::unique_lock<std::mutex> lock(mutex);
     std::chrono::milliseconds since_signal{0};
     while (!ended.wait_for(lock, look_every, [&] { return done; })) {
-      if (signal_received != 0) {
+      if (signal_received) {
         const bool ends_itself = Pending::instance().end_themselves > 0;
         if (!ends_itself || since_signal > patience) end_interrupted();
         since_signal += look_every;
@@ -128,20 +138,20 @@ int run_interruptible(const std::function<int()>& action) {
     }
   }
   if (worker.joinable()) worker.join();
-  if (signal_received != 0 && (problem || code == exit_interrupted)) end_interrupted();
+  if (signal_received && (problem || code == exit_interrupted)) end_interrupted();
   if (problem) std::rethrow_exception(problem);
   return code;
 }
 
 PartialAnswer::PartialAnswer(std::function<Interruption()> tell) {
   Pending& pending = Pending::instance();
-  const std::lock_guard<std::timed_mutex> lock(pending.mutex);
+  const std::lock_guard<std::mutex> lock(pending.mutex);
   pending.answers.emplace_back(this, std::move(tell));
 }
 
 PartialAnswer::~PartialAnswer() {
   Pending& pending = Pending::instance();
-  const std::lock_guard<std::timed_mutex> lock(pending.mutex);
+  const std::lock_guard<std::mutex> lock(pending.mutex);
   auto& answers = pending.answers;
   answers.erase(std::remove_if(answers.begin(), answers.end(),
                                [this](const auto& answer) { return answer.first == this; }),
@@ -154,13 +164,13 @@ EndsItself::~EndsItself() { --Pending::instance().end_themselves; }
 
 UnfinishedFile::UnfinishedFile(std::string path) : path_(std::move(path)) {
   Pending& pending = Pending::instance();
-  const std::lock_guard<std::timed_mutex> lock(pending.mutex);
+  const std::lock_guard<std::mutex> lock(pending.mutex);
   pending.files.push_back(path_);
 }
 
 UnfinishedFile::~UnfinishedFile() {
   Pending& pending = Pending::instance();
-  const std::lock_guard<std::timed_mutex> lock(pending.mutex);
+  const std::lock_guard<std::mutex> lock(pending.mutex);
   const auto found = std::find(pending.files.begin(), pending.files.end(), path_);
   if (found != pending.files.end()) pending.files.erase(found);
 }

@@ -55,6 +55,12 @@ struct Scratch {
 
   /// Allocates for a scene; afterwards only the damage search allocates.
   void prepare(const Scene& scene);
+  /// Marks in `all` what `needed` marks.
+  void add_needed(std::vector<char>& all) const {
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+      if (needed[i] != 0) all[i] = 1;
+    }
+  }
 };
 
 /// Result of simulating a candidate in futures that do not differ for it. Damage is not evaluated

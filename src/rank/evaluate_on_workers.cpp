@@ -121,9 +121,7 @@ Status evaluate_on_workers(const Scene& scene, const RankOptions& options, RankR
     if (!done) return done;
   }
   for (const RankWork& spent : work) result.work += spent;
-  for (const Scratch& own : scratch) {
-    for (std::size_t i = 0; i < own.needed.size(); ++i) needed[i] |= own.needed[i];
-  }
+  for (const Scratch& own : scratch) own.add_needed(needed);
   return Success{};
 }
 

@@ -31,7 +31,7 @@ Status evaluate_all(const detail::Scene& scene, const RankOptions& options, Rank
     result.ranking[i] = detail::evaluate(scene, result.candidates[i], scratch, result.work);
     if (result.ranking[i].score) progress.advance();
   }
-  for (std::size_t i = 0; i < scratch.needed.size(); ++i) needed[i] |= scratch.needed[i];
+  scratch.add_needed(needed);
   return Success{};
 }
 

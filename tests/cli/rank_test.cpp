@@ -406,7 +406,8 @@ TEST(Rank, ManoeuvresBeyondTheGripAreTold) {
   };
   const Outcome within = with_steering("2");
   EXPECT_EQ(within.err, "");
-  for (const Json& one : Json::parse(within.out).at("ranking")) {
+  const Json answer = Json::parse(within.out);
+  for (const Json& one : answer.at("ranking")) {
     EXPECT_LE(one.at("grip_demand").get<double>(), 1.0);
   }
   const Outcome beyond = with_steering("40");

@@ -144,7 +144,7 @@ void Ranker::State::explain_all(View<const Candidate> candidates, const RankerAn
     }
     full.candidate = ranked.candidate;
   }
-  for (std::size_t i = 0; i < scratch.needed.size(); ++i) needed[i] |= scratch.needed[i];
+  scratch.add_needed(needed);
 }
 
 void Ranker::State::write_answer(RankerAnswer& answer, std::size_t all) noexcept {
