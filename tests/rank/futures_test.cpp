@@ -119,18 +119,28 @@ TEST(Futures, DistantActorsDoNotMultiplyFutures) {
   EXPECT_GT(most, 4U);
 }
 
-TEST(Futures, ActorsReachedAfterTheHorizonAreNotLeftOut) {
-  // The car ahead is pushed into the next one, more than 50 m beyond where the ego can be at the
-  // horizon.
+/// The ego, without others, and one candidate that coasts.
+Scene coasting_alone(double speed_mps) {
   Scene scene = scenes::traffic(7700);
-  Scenario& scenario = scene.scenario;
-  scenario.actors.clear();
-  scenario.listed.clear();
-  scenario.grid.reset();
-  scenario.horizon_s = 0.4;
-  scenario.ego.speed_mps = 60.0;
+  scene.scenario.actors.clear();
+  scene.scenario.listed.clear();
+  scene.scenario.grid.reset();
+  scene.scenario.ego.speed_mps = speed_mps;
   scene.add_candidate("coast", 0.0);
+  return scene;
+}
+
+/// Pushes the car ahead as far as 95 m, more than 50 m beyond where the ego can be at the horizon.
+Scene fast_into_the_car_ahead() {
+  Scene scene = coasting_alone(60.0);
+  scene.scenario.horizon_s = 0.4;
   scene.add_actor("near", scenes::car_model, 10.0, 0.0);
+  return scene;
+}
+
+TEST(Futures, ActorsReachedAfterTheHorizonAreNotLeftOut) {
+  Scene scene = fast_into_the_car_ahead();
+  Scenario& scenario = scene.scenario;
   const auto predict = [](ScenarioActor& actor) {
     actor.predictions.resize(2);
     for (Prediction& each : actor.predictions) {
@@ -163,13 +173,7 @@ TEST(Futures, ActorsReachedAfterTheHorizonAreNotLeftOut) {
 /// Ten cars beside the road that may be there or not allow a thousand times as many combinations,
 /// but no candidate comes near them.
 TEST(Futures, ActorsBesideTheRoadMakeNoSample) {
-  Scene scene = scenes::traffic(7800);
-  Scenario& scenario = scene.scenario;
-  scenario.actors.clear();
-  scenario.listed.clear();
-  scenario.grid.reset();
-  scenario.ego.speed_mps = 15.0;
-  scene.add_candidate("coast", 0.0);
+  Scene scene = coasting_alone(15.0);
   scene.add_candidate("brake", -4.0);
   scene.add_actor("first", scenes::car_model, 25.0, 0.0).existence_probability = 0.3;
   scene.add_actor("second", scenes::car_model, 32.0, 0.5).existence_probability = 0.1;
@@ -186,22 +190,15 @@ TEST(Futures, ActorsBesideTheRoadMakeNoSample) {
   const std::vector<double> expected = scores_of(alone);
   const std::vector<double> scores = scores_of(among);
   for (std::size_t c = 0; c < scores.size(); ++c) EXPECT_NEAR(scores[c], expected[c], 1e-12);
-  const Result<RankResult> within = rank_within(scenario, scene.models, options_with(false), {});
+  const Result<RankResult> within =
+      rank_within(scene.scenario, scene.models, options_with(false), {});
   ASSERT_TRUE(within.ok());
   EXPECT_EQ(scores_of(*within), scores);
 }
 
 /// A crash that reaches one of many distant actors includes this one, not all of them.
 TEST(Futures, ActorsThatACrashReachesAreIncludedOneByOne) {
-  Scene scene = scenes::traffic(7700);
-  Scenario& scenario = scene.scenario;
-  scenario.actors.clear();
-  scenario.listed.clear();
-  scenario.grid.reset();
-  scenario.horizon_s = 0.4;
-  scenario.ego.speed_mps = 60.0;
-  scene.add_candidate("coast", 0.0);
-  scene.add_actor("near", scenes::car_model, 10.0, 0.0);
+  Scene scene = fast_into_the_car_ahead();
   scene.add_actor("next", scenes::car_model, 95.0, 0.0).existence_probability = 0.4;
   const std::vector<double> expected = scores_of(scene.ranked(options_with(false)));
   for (int k = 0; k < 12; ++k) {
@@ -213,7 +210,8 @@ TEST(Futures, ActorsThatACrashReachesAreIncludedOneByOne) {
   EXPECT_EQ(among.futures.left_out, 12U);
   EXPECT_EQ(among.futures.futures, 2U);
   EXPECT_NEAR(scores_of(among)[0], expected[0], 1e-12);
-  const Result<RankResult> within = rank_within(scenario, scene.models, options_with(false), {});
+  const Result<RankResult> within =
+      rank_within(scene.scenario, scene.models, options_with(false), {});
   ASSERT_TRUE(within.ok());
   EXPECT_EQ(within->futures.left_out, 12U);
   EXPECT_EQ(scores_of(*within), scores_of(among));
