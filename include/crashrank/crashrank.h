@@ -566,13 +566,13 @@ CRASHRANK_API crashrank_status crashrank_ranking_further(const crashrank_ranking
                                                          crashrank_error* error);
 /// Properties of a candidate besides its crash; absent ones are NaN.
 typedef struct crashrank_manoeuvre {
-  size_t size;                  ///< sizeof(crashrank_manoeuvre)
-  int32_t feasible;             ///< 1: the vehicle can follow it to its first contact; else 0
-  int32_t leaves_road;          ///< 1: a wheel leaves the road before the first contact; else 0
-  double grip_demand;           ///< what it requires over what is available: of the tyres' grip
-  double engine_demand;         ///< of the engine
-  double brakes_demand;         ///< of the brakes
-  double steering_demand;       ///< of the steering angle
+  size_t size;             ///< sizeof(crashrank_manoeuvre)
+  int32_t feasible;        ///< 1: the vehicle can follow it to its first contact; else 0
+  int32_t leaves_road;     ///< 1: a wheel leaves the road before the first contact in any future
+  double grip_demand;      ///< what it requires over what is available: of the tyres' grip
+  double engine_demand;    ///< of the engine
+  double brakes_demand;    ///< of the brakes
+  double steering_demand;  ///< of the steering angle
   double steering_rate_demand;  ///< of its rate
   double leaves_road_s;         ///< when, from now
   double leaves_road_mps;       ///< and how fast

@@ -39,7 +39,7 @@ class AnsweredCandidate(NamedTuple):
     feasible: bool
     """The vehicle can follow it, as far as that is known."""
     leaves_road: bool
-    """A wheel leaves the road before the first contact."""
+    """A wheel leaves the road before the first contact, in any future."""
 
 
 class Answer(Sequence[AnsweredCandidate]):

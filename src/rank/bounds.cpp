@@ -50,7 +50,8 @@ double max_people_weight(const Scene& scene, std::size_t index) {
 void ScoreBounds::prepare(const Scene& scene) {
   limits_ = {};
   limits_.ego_mass_kg = scene.ego.mass_kg;
-  limits_.contacts = static_cast<double>(SceneRun::most_contacts);
+  // Those of the simulation and every actor that is touched without a force.
+  limits_.contacts = static_cast<double>(SceneRun::most_contacts + scene.actors.size());
   max_energy_ratio_ = 1.0;
   add(scene, ego_body);
   for (std::size_t i = 0; i < scene.actors.size(); ++i) add(scene, i);

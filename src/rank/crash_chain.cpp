@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace crashrank::detail {
 namespace {
@@ -82,7 +81,8 @@ void CrashChain::prepare(const Scene& scene) {
 
 void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t future,
                        const Contact& first, const HarmSample& sample) {
-  first_ = &first;
+  first_actor_ = first.actor;
+  first_closing_mps_ = first.closing_speed_mps;
   bodies_.clear();
   actors_.clear();
   const auto add = [&](std::size_t index, std::size_t number, const Vehicle& vehicle,
@@ -175,7 +175,7 @@ ContactEffect CrashChain::effect(std::size_t index) const {
   e.begin_s = contact.begin_s;
   e.end_s = contact.begin_s + contact.outcome.duration_s;
   e.mean_force_s = contact.mean_force_s;
-  e.closing_mps = contact.is_first ? first_->closing_speed_mps : closing_of(contact).norm();
+  e.closing_mps = contact.is_first ? first_closing_mps_ : closing_of(contact).norm();
   if (!again) {
     e.closing_energy_j = closing_energy_j(contact.given_a.vehicle->mass_kg,
                                           contact.given_b.vehicle->mass_kg, e.closing_mps);
@@ -183,7 +183,7 @@ ContactEffect CrashChain::effect(std::size_t index) const {
   e.restitution = contact.outcome.restitution;
   e.dissipated_j = contact.outcome.dissipated_j;
   e.sides[0] = side_of(body(contact.a), contact.given_a, contact.outcome.a, contact.squeeze_a_mps);
-  e.sides[1] = side_of(contact.is_first ? first_->actor : body(contact.b), contact.given_b,
+  e.sides[1] = side_of(contact.is_first ? first_actor_ : body(contact.b), contact.given_b,
                        contact.outcome.b, contact.squeeze_b_mps);
   return e;
 }
@@ -198,39 +198,51 @@ Vector3d closing_of(const SceneContact& contact) {
   return closing;
 }
 
-void CrashChain::effects(std::vector<ContactEffect>& effects,
+bool CrashChain::first_acts() const {
+  const View<const SceneContact> all = contacts();
+  return std::any_of(all.begin(), all.end(), [](const SceneContact& c) { return c.is_first; });
+}
+
+double CrashChain::first_force_s() const {
+  double first_s = std::numeric_limits<double>::infinity();
+  for (const SceneContact& contact : contacts()) first_s = std::min(first_s, contact.begin_s);
+  return first_s;
+}
+
+bool CrashChain::presses_on_ego(std::size_t actor) const {
+  const View<const SceneContact> all = contacts();
+  return std::any_of(all.begin(), all.end(), [&](const SceneContact& contact) {
+    return body(contact.a) == ego_body && body(contact.b) == actor;
+  });
+}
+
+void CrashChain::effects(View<const Touch> touches, std::vector<ContactEffect>& effects,
                          std::vector<std::size_t>& order) const {
   const View<const SceneContact> all = contacts();
-  order.resize(all.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
+  effects.clear();
+  order.clear();
+  for (std::size_t k = 0; k < touches.size() && !first_acts(); ++k) {
+    const Contact& contact = touches[k].contact;
+    ContactEffect effect;
+    effect.begin_s = effect.end_s = effect.mean_force_s = contact.time_of_impact_s;
+    effect.closing_mps = contact.closing_speed_mps;
+    effect.sides[1].body = contact.actor;
+    // If the same bodies have a contact with force later, their closing energy is counted in that
+    // one.
+    if (!presses_on_ego(contact.actor)) effect.closing_energy_j = contact.closing_energy_j;
+    effects.push_back(effect);
+    order.push_back(touch + k);
+  }
+  const auto forces = static_cast<std::ptrdiff_t>(order.size());
+  for (std::size_t k = 0; k < all.size(); ++k) order.push_back(k);
+  std::sort(order.begin() + forces, order.end(), [&](std::size_t p, std::size_t q) {
     const SceneContact& c = all[p];
     const SceneContact& d = all[q];
     if (c.begin_s != d.begin_s) return c.begin_s < d.begin_s;
     if (c.a != d.a) return c.a < d.a;
     return c.b != d.b ? c.b < d.b : p < q;
   });
-  effects.clear();
-  const bool acts =
-      std::any_of(order.begin(), order.end(), [&](std::size_t k) { return all[k].is_first; });
-  if (!acts) {
-    order.insert(order.begin(), without_force);
-    ContactEffect touch;
-    touch.begin_s = touch.end_s = touch.mean_force_s = first_->time_of_impact_s;
-    touch.closing_mps = first_->closing_speed_mps;
-    touch.sides[1].body = first_->actor;
-    // If the same bodies have a contact with force later, their closing energy is counted in that
-    // one.
-    const bool has_later_force =
-        std::any_of(all.begin(), all.end(), [&](const SceneContact& contact) {
-          return body(contact.a) == ego_body && body(contact.b) == first_->actor;
-        });
-    if (!has_later_force) touch.closing_energy_j = first_->closing_energy_j;
-    effects.push_back(touch);
-  }
-  for (const std::size_t k : order) {
-    if (k != without_force) effects.push_back(effect(k));
-  }
+  for (std::size_t k = effects.size(); k < order.size(); ++k) effects.push_back(effect(order[k]));
 }
 
 }  // namespace crashrank::detail

@@ -5,6 +5,8 @@
 #include "rank/tally.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace crashrank::detail {
@@ -13,6 +15,15 @@ namespace crashrank::detail {
 /// dry road, between coasting (0.1 g) and locked wheels (0.7 g). A manoeuvre that brakes harder
 /// keeps its braking. A design choice.
 inline constexpr double brake_after_contact = 0.45;
+
+/// A contact of the ego with an actor while both follow their plans.
+struct Touch {
+  Contact contact;
+  std::int32_t triangle_ego = -1;  ///< triangles that touch first; negative if there are none
+  std::int32_t triangle_other = -1;
+  Pose ego;  ///< poses at that time
+  Pose other;
+};
 
 /// Simulation of the scene that follows from the first contact of a candidate, a limited number of
 /// steps at a time. One object serves any number of candidates in sequence; each thread needs its
@@ -23,7 +34,7 @@ public:
   void prepare(const Scene& scene);
 
   /// Starts at the first contact of the ego on its motion in a future, with the actors on their
-  /// plans in that future. All arguments must outlive the run.
+  /// plans in that future. The scene and the motion must outlive the run.
   void begin(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
              const HarmSample& sample);
   /// Simulates at most `steps` steps; returns false once all bodies are at rest.
@@ -37,12 +48,19 @@ public:
   std::size_t body(std::size_t index) const { return actors_[index]; }
   /// Effect of the contact with that index in `contacts`, independent of later contacts.
   ContactEffect effect(std::size_t index) const;
-  /// Index of a first contact whose outlines do not press on each other: it has an effect with zero
-  /// forces.
-  static constexpr std::size_t without_force = static_cast<std::size_t>(-1);
-  /// Effects of all contacts in the order of their begin times. `order` gets the index of each in
-  /// `contacts`.
-  void effects(std::vector<ContactEffect>& effects, std::vector<std::size_t>& order) const;
+  /// Returns true if the outlines press on each other in the first contact.
+  bool first_acts() const;
+  /// Time of the first force, until which all bodies follow their plans; infinity if there is none.
+  double first_force_s() const;
+  /// Returns true if the ego has a contact with a force with the actor.
+  bool presses_on_ego(std::size_t actor) const;
+  /// Indices from this one on stand for touches, which have an effect with zero forces.
+  static constexpr std::size_t touch = std::numeric_limits<std::size_t>::max() / 2;
+  /// Effects of all contacts in the order of their begin times, those of `touches` first if the
+  /// first contact has no force. `order` gets the index of each in `contacts`, or `touch` and its
+  /// index in `touches`.
+  void effects(View<const Touch> touches, std::vector<ContactEffect>& effects,
+               std::vector<std::size_t>& order) const;
   const SceneRun& run() const noexcept { return run_; }
   /// Marks in `relevant` the plans of uncertain actors that influenced the simulation, or would
   /// have: those that came near its bodies.
@@ -56,7 +74,8 @@ private:
   };
   void sort_actors(double time_s);
 
-  const Contact* first_ = nullptr;
+  std::size_t first_actor_ = 0;
+  double first_closing_mps_ = 0.0;
   SceneRun run_;
   std::vector<SceneBody> bodies_;
   std::vector<std::size_t> actors_;  ///< by body of the run: actor index or `ego_body`

@@ -139,9 +139,20 @@ FollowedPlan followed_plan(const Scene& scene, const std::vector<FutureOutcome>&
     const double first = first_contact_s(outcome);
     followed.longest_s = std::max(followed.longest_s, std::min(first, scene.slice_s.back()));
     followed.touches = followed.touches || outcome.collides;
-    if (outcome.is_likeliest) followed.first_s = first;
   }
   return followed;
+}
+
+/// First moment off the road before the first contact: in the likeliest future, otherwise the
+/// earliest of all futures.
+std::optional<RoadLeaving> leaving_in_futures(const std::vector<SimulatedOutcome>& outcomes) {
+  std::optional<RoadLeaving> earliest;
+  for (const SimulatedOutcome& outcome : outcomes) {
+    if (!outcome.summary.leaves_road) continue;
+    if (outcome.summary.is_likeliest) return outcome.leaving;
+    if (!earliest || outcome.leaving->time_s < earliest->time_s) earliest = outcome.leaving;
+  }
+  return earliest;
 }
 
 /// Fills in demand, feasibility, clearances and the state at the horizon of a candidate whose
@@ -156,7 +167,6 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
   ManoeuvreFacts facts = evaluate_manoeuvre(scene, candidate, followed, leaving, scratch);
   result.demand = facts.demand;
   result.feasible = facts.feasible;
-  result.leaves_road = facts.leaves_road;
   result.least_distance_m = if_finite(facts.clearance.distance_m);
   result.least_time_gap_s = if_finite(facts.clearance.time_gap_s);
   result.time_to_collision_s = if_finite(facts.clearance.time_to_collision_s);
@@ -208,6 +218,7 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
     CandidateResult result =
         combine_futures(scene, std::move(results), simulated.outcomes, scratch);
     add_manoeuvre(scene, candidate, leaving, scratch, result);
+    result.leaves_road = leaving_in_futures(simulated.outcomes);
     result.searched = true;
     return result;
   }

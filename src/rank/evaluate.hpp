@@ -43,6 +43,12 @@ struct Scratch {
   Motion ego;                            ///< motion of the ego in a future that displaces it
   ImpactWorkspace impact;
   CrashChain chain;
+  /// Contacts of the current crash before its first force, the first contact at the front; see
+  /// `find_touches`.
+  std::vector<Touch> touches;
+  std::vector<Hit> later_hits;  ///< contacts on all plans with other actors, in order of time
+  bool later_hits_known = false;
+  double touched_until_s = 0.0;       ///< time until which `later_hits` are touches
   std::vector<PlanarPose> ego_poses;  ///< sampled trajectory of the candidate
   std::vector<ContactEffect> effects;
   std::vector<std::size_t> order;
@@ -52,6 +58,7 @@ struct Scratch {
   StopCheck stop;
 
   bool stopped() const { return stop(); }
+  View<const Touch> touches_view() const { return {touches.data(), touches.size()}; }
 
   /// Allocates for a scene; afterwards only the damage search allocates.
   void prepare(const Scene& scene);

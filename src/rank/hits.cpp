@@ -39,6 +39,22 @@ Impact find_impact(const Scene& scene, const Motion& ego, const Plan& plan, doub
   return impact;
 }
 
+ImpactOptions options_for(const Scene& scene, const Scratch& scratch, const Scratch::Near& near,
+                          bool same_start) {
+  ImpactOptions options = scene.impact;
+  options.stop = scratch.stop.ask;
+  options.stop_context = scratch.stop.context;
+  options.start_is_apart =
+      near.first_slice > 0 || (same_start && scene.apart_at_start[near.plan] != 0);
+  return options;
+}
+
+void sort_by_time(std::vector<Scratch::Hit>& hits) {
+  std::sort(hits.begin(), hits.end(), [](const Scratch::Hit& p, const Scratch::Hit& q) {
+    return p.impact.time_s != q.impact.time_s ? p.impact.time_s < q.impact.time_s : p.plan < q.plan;
+  });
+}
+
 }  // namespace
 
 bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, Scratch& scratch,
@@ -71,11 +87,7 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
     until = std::min(end, until);
     if (from > until) continue;
     const Plan& plan = futures.plans[near.plan];
-    ImpactOptions options = scene.impact;
-    options.stop = scratch.stop.ask;
-    options.stop_context = scratch.stop.context;
-    options.start_is_apart =
-        near.first_slice > 0 || (same_start && scene.apart_at_start[near.plan] != 0);
+    const ImpactOptions options = options_for(scene, scratch, near, same_start);
     Impact impact = find_impact(scene, ego, plan, from, until, scratch.impact, options);
     ++work.body_pairs;
     work.impact += impact.work;
@@ -98,12 +110,28 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
       scratch.first_s[f] = std::min(scratch.first_s[f], impact.time_s);
     }
   }
-  std::sort(scratch.hits.begin(), scratch.hits.end(),
-            [](const Scratch::Hit& p, const Scratch::Hit& q) {
-              return p.impact.time_s != q.impact.time_s ? p.impact.time_s < q.impact.time_s
-                                                        : p.plan < q.plan;
-            });
+  sort_by_time(scratch.hits);
   return decided;
+}
+
+bool find_all_hits(const Scene& scene, const Motion& ego, const FutureGroup& group,
+                   std::size_t except, Scratch& scratch, RankWork& work) {
+  scratch.later_hits.clear();
+  find_nearby_actors(scene, ego, group, 0.0, scene.slice_s.back(), scratch, work);
+  const bool same_start = starts_at_ego_pose(scene, ego);
+  for (const Scratch::Near& near : scratch.near) {
+    const Plan& plan = scene.futures.plans[near.plan];
+    if (plan.actor == except) continue;
+    const Impact impact = find_impact(scene, ego, plan, scene.slice_s[near.first_slice],
+                                      scene.slice_s[near.last_slice + 1], scratch.impact,
+                                      options_for(scene, scratch, near, same_start));
+    ++work.body_pairs;
+    work.impact += impact.work;
+    if (impact.state == ImpactState::undecided) return false;
+    if (impact.hit()) scratch.later_hits.push_back({near.plan, plan.actor, impact});
+  }
+  sort_by_time(scratch.later_hits);
+  return true;
 }
 
 const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::size_t future) {

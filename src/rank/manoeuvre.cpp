@@ -33,7 +33,6 @@ ManoeuvreFacts evaluate_manoeuvre(const Scene& scene, const Candidate& candidate
   ManoeuvreFacts facts;
   facts.demand = demand_until(scene, candidate, followed.longest_s, leaving);
   facts.feasible = is_feasible(candidate, facts.demand);
-  if (leaving && leaving->time_s <= followed.first_s) facts.leaves_road = leaving;
   facts.clearance = followed.touches
                         ? Clearance{.distance_m = 0.0, .time_gap_s = 0.0}
                         : clearance_of(scene, candidate.motion, scratch.ego_poses, scratch.stop);

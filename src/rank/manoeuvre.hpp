@@ -3,7 +3,6 @@
 #include "crashrank/rank/rank.hpp"
 #include "rank/evaluate.hpp"
 
-#include <limits>
 #include <optional>
 
 namespace crashrank::detail {
@@ -11,16 +10,13 @@ namespace crashrank::detail {
 /// How far the plan of a candidate is followed.
 struct FollowedPlan {
   double longest_s = 0.0;  ///< until the first contact, in the future in which it is latest
-  /// Until the first contact in the likeliest future; infinity without one.
-  double first_s = std::numeric_limits<double>::infinity();
-  bool touches = false;  ///< it has a contact in at least one future
+  bool touches = false;    ///< it has a contact in at least one future
 };
 
 /// Results for a candidate that do not depend on its crash.
 struct ManoeuvreFacts {
   ManoeuvreDemand demand;
   bool feasible = true;
-  std::optional<RoadLeaving> leaves_road;
   Clearance clearance;
   HorizonState at_horizon;
 };

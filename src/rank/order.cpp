@@ -13,7 +13,7 @@ detail::OrderKey result_key(const CandidateResult& c, Infeasible infeasible) {
   key.demoted = !c.feasible && infeasible != Infeasible::keep;
   key.score = c.score.value_or(c.score_interval.highest);
   key.known = c.score.has_value();
-  key.collision_probability = c.collision_probability;
+  key.set_collision_probability(c.collision_probability);
   key.collides = c.collides;
   key.grazes = !c.grazes.empty();
   key.leaves_road = c.leaves_road.has_value();
@@ -66,6 +66,11 @@ Result<Infeasible> infeasible_from_name(const std::string& name) {
 }
 
 namespace detail {
+
+void OrderKey::set_collision_probability(double probability) noexcept {
+  constexpr double per_step = 1e9;
+  collision_probability = std::round(per_step * probability) / per_step;
+}
 
 void OrderKey::set_clearance(double least_m, double least_gap_s,
                              double time_to_collision_s) noexcept {

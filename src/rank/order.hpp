@@ -11,8 +11,8 @@ struct OrderKey {
   bool demoted = false;  ///< the vehicle cannot follow it, and infeasible candidates rank last
   double score = 0.0;    ///< the score, or its upper bound or estimate if it is not known
   bool known = false;
-  double collision_probability = 0.0;
-  bool collides = false;  ///< in the likeliest future, like the next
+  double collision_probability = 0.0;  ///< a multiple of 1e-9
+  bool collides = false;               ///< in the likeliest future, like the next
   bool grazes = false;
   bool leaves_road = false;
   /// Hundredths of a second, at most `imminent_crash_s`.
@@ -23,6 +23,8 @@ struct OrderKey {
   double closing_mps = 0.0;
   double end_speed_mps = 0.0;  ///< speed at the horizon; only for candidates that do not collide
 
+  /// Rounds the probability, so that the rounding of its sum does not decide.
+  void set_collision_probability(double probability) noexcept;
   /// Rounds all to their accuracy, so that smaller differences do not decide.
   void set_clearance(double least_m, double least_gap_s, double time_to_collision_s) noexcept;
   /// Returns true if no candidate with the same score can precede it.

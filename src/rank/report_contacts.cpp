@@ -96,6 +96,19 @@ void fill_severity(const Scene& scene, const SceneContact& from, Contact& contac
                severity.other);
 }
 
+/// Damage of a contact in which the surfaces touch, but the outlines do not press on each other.
+DamagePlan plan_touch(const Scene& scene, const Touch& touch) {
+  const Contact& contact = touch.contact;
+  ContactMotion motion;
+  motion.count = 1;
+  motion.poses[0].a = touch.ego;
+  motion.poses[0].b = touch.other;
+  return plan_damage(scene,
+                     {ego_body, contact.actor, contact.state, contact.gap_m, touch.triangle_ego,
+                      touch.triangle_other, contact.point_m},
+                     motion, {});
+}
+
 /// Actors that pressed on the first body in a contact; joined bodies count with all their members.
 std::vector<std::size_t> pressed_actors(const Scene& scene, const CrashChain& chain,
                                         const SceneContact& from) {
@@ -160,17 +173,24 @@ OutcomePair outcomes_of(CandidateResult& result, const ReportedContact& reported
 }
 
 std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChain& chain,
+                                             View<const Touch> touches,
                                              const std::vector<std::size_t>& order,
-                                             const Impact& impact, const Pose& ego,
-                                             const Pose& other, CandidateResult& result,
+                                             CandidateResult& result,
                                              std::vector<DamagePlan>& plans) {
   std::vector<ReportedContact> reported;
   std::vector<DamagePlan> further_plans;
-  plans.emplace_back();  // damage plan of the first contact
-  bool first_acts = false;
+  const auto add = [&](const Contact& contact) {
+    result.contacts.push_back(contact);
+    result.contacts.back().severity.simulated = needs_crash(scene.measure);
+    plans.emplace_back();
+  };
+  add(touches[0].contact);
   for (const std::size_t k : order) {
-    if (k == CrashChain::without_force) {
-      reported.push_back({false, 0});
+    if (k >= CrashChain::touch) {
+      const std::size_t index = k - CrashChain::touch;
+      if (index > 0) add(touches[index].contact);
+      plans.back() = plan_touch(scene, touches[index]);
+      reported.push_back({false, index});
       continue;
     }
     const SceneContact& from = chain.contacts()[k];
@@ -186,37 +206,20 @@ std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChai
       continue;
     }
     const bool is_first = from.is_first;
-    if (!is_first) result.contacts.push_back(later_contact(scene, chain, from));
+    if (!is_first) add(later_contact(scene, chain, from));
     const std::size_t index = is_first ? 0 : result.contacts.size() - 1;
     Contact& contact = result.contacts[index];
     fill_severity(scene, from, contact);
     reported.push_back({false, index});
     query = {ego_body, contact.actor, contact.state, contact.gap_m, -1, -1, contact.point_m};
     if (is_first) {
-      query.triangle_a = impact.triangle_a;
-      query.triangle_b = impact.triangle_b;
+      query.triangle_a = touches[0].triangle_ego;
+      query.triangle_b = touches[0].triangle_other;
     }
     DamagePlan plan = plan_damage(scene, query, from.outcome.motion, pressed_view);
     contact.crush_s = plan.crush_s;
     contact.crush_m = plan.crush_m;
-    if (is_first) {
-      plans.front() = std::move(plan);
-    } else {
-      plans.push_back(std::move(plan));
-    }
-    first_acts = first_acts || is_first;
-  }
-  if (!first_acts) {
-    // The surfaces touch, but the outlines do not press on each other.
-    const Contact& contact = result.contacts.front();
-    ContactMotion motion;
-    motion.count = 1;
-    motion.poses[0].a = ego;
-    motion.poses[0].b = other;
-    plans.front() = plan_damage(scene,
-                                {ego_body, contact.actor, contact.state, contact.gap_m,
-                                 impact.triangle_a, impact.triangle_b, contact.point_m},
-                                motion, {});
+    plans[index] = std::move(plan);
   }
   for (DamagePlan& plan : further_plans) plans.push_back(std::move(plan));
   return reported;

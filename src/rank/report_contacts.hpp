@@ -20,14 +20,14 @@ struct ReportedContact {
   std::size_t index = 0;
 };
 
-/// Adds the contacts of a finished simulation to a result that holds only the first contact, with
-/// their effects on both bodies. `order` is that of CrashChain::effects; `ego` and `other` are the
-/// poses at first contact. Returns the place of each contact, in that order. `plans` gets the poses
-/// at which damage is to be evaluated, of the contacts of the result and then of the further ones.
+/// Adds the contacts of a finished simulation to a result without any, with their effects on both
+/// bodies. `touches` and `order` are those of CrashChain::effects. Returns the place of each
+/// contact, in that order. `plans` gets the poses at which damage is to be evaluated, of the
+/// contacts of the result and then of the further ones.
 std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChain& chain,
+                                             View<const Touch> touches,
                                              const std::vector<std::size_t>& order,
-                                             const Impact& impact, const Pose& ego,
-                                             const Pose& other, CandidateResult& result,
+                                             CandidateResult& result,
                                              std::vector<DamagePlan>& plans);
 
 /// References to the outcomes of a contact for its two bodies.

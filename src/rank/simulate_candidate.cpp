@@ -6,6 +6,7 @@
 #include "rank/manoeuvre.hpp"
 #include "rank/measure_table.hpp"
 #include "rank/road_leaving.hpp"
+#include "rank/touches.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -29,20 +30,29 @@ void add_grazes(const Scene& scene, const Scratch& scratch, std::size_t future,
   });
 }
 
-/// Simulates the scene that follows from a first contact, in one future and one sample.
-void simulate_chain(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
+/// Simulates the scene that follows from the first contact in `scratch.touches`, in one future and
+/// one sample. Returns false if a search stayed undecided or was stopped.
+bool simulate_chain(const Scene& scene, const Motion& ego, std::size_t future,
                     const HarmSample& sample, Scratch& scratch, RankWork& work,
                     std::vector<ContactEffect>& effects) {
-  scratch.chain.begin(scene, ego, future, first, sample);
+  scratch.chain.begin(scene, ego, future, scratch.touches.front().contact, sample);
   scratch.chain.finish();
-  scratch.chain.mark_relevant_plans(scene, scratch.relevant);
-  scene.futures.mark_needed(scratch.relevant, scratch.needed);
-  scratch.chain.effects(effects, scratch.order);
   work.crash_steps += scratch.chain.run().steps();
   work.crash_pieces += scratch.chain.run().work();
+  if (!find_touches(scene, ego, future, scratch, work)) return false;
+  scratch.chain.mark_relevant_plans(scene, scratch.relevant);
+  mark_relevant_touches(scratch, scratch.relevant);
+  scene.futures.mark_needed(scratch.relevant, scratch.needed);
+  scratch.chain.effects(scratch.touches_view(), effects, scratch.order);
+  return true;
 }
 
-/// Simulates a candidate in one future. Returns false if it was stopped.
+template <typename AnyContact> void note_speed(const AnyContact& contact, FutureOutcome& outcome) {
+  outcome.fastest_contact_mps = std::max(outcome.fastest_contact_mps, contact.closing_speed_mps);
+}
+
+/// Simulates a candidate in one future. Returns false if it was stopped or a search stayed
+/// undecided.
 bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, Scratch& scratch,
                      RankWork& work, SimulatedOutcome& found) {
   std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
@@ -51,20 +61,22 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
   CandidateResult& result = found.result;
   result.collides = found.summary.collides = hit != nullptr;
   if (result.collides) {
-    const Motion& other = scene.futures.plans[hit->plan].motion;
-    result.contacts.push_back(first_contact(scene, ego, hit->actor, other, hit->impact));
-    const Contact first = result.contacts.front();
-    result.contacts.front().severity.simulated = needs_crash(scene.measure);
+    begin_touches(scene, ego, *hit, scratch);
+    const Contact first = scratch.touches.front().contact;
     found.summary.actor = first.actor;
     found.summary.time_of_impact_s = first.time_of_impact_s;
     found.summary.closing_speed_mps = first.closing_speed_mps;
+    found.summary.state = first.state;
     found.effects.emplace_back();
-    simulate_chain(scene, ego, future, first, scene.nominal, scratch, work, found.effects.back());
+    if (!simulate_chain(scene, ego, future, scene.nominal, scratch, work, found.effects.back())) {
+      return false;
+    }
     result.crowded = scratch.chain.run().crowded();
     found.summary.contacts = scratch.chain.contacts().size();
-    found.reported = report_contacts(scene, scratch.chain, scratch.order, hit->impact,
-                                     ego.pose_at(first.time_of_impact_s),
-                                     other.pose_at(first.time_of_impact_s), result, found.plans);
+    found.reported = report_contacts(scene, scratch.chain, scratch.touches_view(), scratch.order,
+                                     result, found.plans);
+    for (const Contact& contact : result.contacts) note_speed(contact, found.summary);
+    for (const FurtherContact& contact : result.further) note_speed(contact, found.summary);
     std::size_t last = 0;
     const std::vector<std::size_t> places = simulation_of_sample(scene);
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -72,8 +84,10 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
       last = places[i];
       if (scratch.stopped()) return false;
       found.effects.emplace_back();
-      simulate_chain(scene, ego, future, first, scene.samples[i], scratch, work,
-                     found.effects.back());
+      if (!simulate_chain(scene, ego, future, scene.samples[i], scratch, work,
+                          found.effects.back())) {
+        return false;
+      }
     }
   }
   add_grazes(scene, scratch, future, result);
@@ -90,7 +104,8 @@ SimulatedOutcome* same_without_contact(const Scene& scene,
   };
   const auto same =
       std::find_if(outcomes.begin(), outcomes.end(), [&](const SimulatedOutcome& each) {
-        return !each.summary.collides && score(each.leaving) == score(leaving);
+        return !each.summary.collides && each.leaving.has_value() == leaving.has_value() &&
+               score(each.leaving) == score(leaving);
       });
   return same != outcomes.end() ? &*same : nullptr;
 }
@@ -135,6 +150,8 @@ bool simulate_group(const Scene& scene, const Candidate& candidate, std::size_t 
     scratch.remaining.clear();
     futures.split(future, scratch.relevant, scratch.same, scratch.remaining);
     each.leaving = leaving;
+    each.summary.leaves_road =
+        leaving && (!each.summary.collides || leaving->time_s <= each.summary.time_of_impact_s);
     each.futures.assign(scratch.same.begin(), scratch.same.end());
     each.summary.futures = each.futures.size();
     each.summary.is_likeliest = future == futures.likeliest();
@@ -181,8 +198,11 @@ void Scratch::prepare(const Scene& scene) {
   for (auto* const each : {&same, &remaining, &others}) each->reserve(futures.max_future_count());
   ego_poses.reserve(scene.trajectories.steps + 1);
   chain.prepare(scene);
-  effects.reserve(SceneRun::most_contacts + 1);
-  order.reserve(SceneRun::most_contacts + 1);
+  // Every actor may be touched without a force.
+  effects.reserve(SceneRun::most_contacts + scene.actors.size());
+  order.reserve(SceneRun::most_contacts + scene.actors.size());
+  touches.reserve(scene.actors.size());
+  later_hits.reserve(futures.plans.size());
   tally.prepare(scene.actors.size() + 1);
 }
 

@@ -12,24 +12,6 @@ using Json = nlohmann::ordered_json;
 
 Json vector_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-const char* state_name(ImpactState state) {
-  switch (state) {
-    case ImpactState::none:
-      return "none";
-    case ImpactState::grazing:
-      return "grazing";
-    case ImpactState::contact:
-      return "contact";
-    case ImpactState::overlapping:
-      return "overlapping";
-    case ImpactState::contained:
-      return "contained";
-    case ImpactState::undecided:
-      break;
-  }
-  return "undecided";
-}
-
 Json outcome_json(const BodyOutcome& o, bool simulated) {
   constexpr double degrees = 180.0 / 3.14159265358979323846;
   Json entry{{"delta_v_mps", o.delta_v_mps},
@@ -89,6 +71,24 @@ Json region(const Box& box) {
 
 }  // namespace
 
+const char* impact_state_name(ImpactState state) {
+  switch (state) {
+    case ImpactState::none:
+      return "none";
+    case ImpactState::grazing:
+      return "grazing";
+    case ImpactState::contact:
+      return "contact";
+    case ImpactState::overlapping:
+      return "overlapping";
+    case ImpactState::contained:
+      return "contained";
+    case ImpactState::undecided:
+      break;
+  }
+  return "undecided";
+}
+
 void add_damage(Json& entry, const DamageSummary& first, const DamageSummary& second,
                 SideKeys keys) {
   entry["damaged_triangles"] = both(first.triangles, second.triangles, keys);
@@ -100,7 +100,7 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
   Json entry{{"bodies", {"ego", scenario.actors[contact.actor].name}},
              {"other", scenario.actors[contact.actor].name},
              {"event", contact.event},
-             {"state", state_name(contact.state)},
+             {"state", impact_state_name(contact.state)},
              {"time_of_impact_s", contact.time_of_impact_s},
              {"closing_speed_mps", contact.closing_speed_mps},
              {"beyond_crash_model", contact.closing_speed_mps > fastest_contact_mps},

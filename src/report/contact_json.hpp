@@ -25,6 +25,9 @@ template <class T> nlohmann::ordered_json both(T first, T second, SideKeys keys 
   return {{keys.first, std::move(first)}, {keys.second, std::move(second)}};
 }
 
+/// "contact", "overlapping" and so on.
+const char* impact_state_name(ImpactState state);
+
 /// Adds the numbers of damaged triangles, their areas and parts of two bodies to an entry.
 void add_damage(nlohmann::ordered_json& entry, const DamageSummary& first,
                 const DamageSummary& second, SideKeys keys = ego_other);

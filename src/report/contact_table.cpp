@@ -42,7 +42,7 @@ std::string contact_table(const Scenario& scenario, Measure measure,
                      further.outcome_a, further.outcome_b);
       harm = further.harm;
     }
-    if (has_harm) html += fmt::format("<td class='n'>{:.2g}</td>", harm);
+    if (has_harm) html += "<td class='n'>" + harm_text(harm) + "</td>";
     html += "</tr>\n";
   }
   return html + "</tbody></table>\n";

@@ -4,6 +4,7 @@
 #include "report/body_doubts.hpp"
 #include "report/manoeuvre_words.hpp"
 #include "report/ranking_words.hpp"
+#include "report/score_text.hpp"
 
 #include <fmt/format.h>
 
@@ -33,6 +34,8 @@ double cut_speed_mps(const Motion& motion, double before_s) {
 }
 
 constexpr double moves_mps = 0.5;
+/// A sum of probabilities above this is 1 but for rounding.
+constexpr double certain = 1.0 - 1e-9;
 
 void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
   if (!needs_crash(result.measure)) return;
@@ -41,8 +44,12 @@ void doubt_speeds(const RankResult& result, std::vector<std::string>& doubts) {
     const auto is_fast = [](const auto& contact) {
       return contact.closing_speed_mps > fastest_contact_mps;
     };
+    const auto is_fast_future = [](const FutureOutcome& future) {
+      return future.fastest_contact_mps > fastest_contact_mps;
+    };
     if (std::any_of(ranked.contacts.begin(), ranked.contacts.end(), is_fast) ||
-        std::any_of(ranked.further.begin(), ranked.further.end(), is_fast)) {
+        std::any_of(ranked.further.begin(), ranked.further.end(), is_fast) ||
+        std::any_of(ranked.futures.begin(), ranked.futures.end(), is_fast_future)) {
       fast.add({});
     }
   }
@@ -69,17 +76,25 @@ void doubt_crowds(const RankResult& result, std::vector<std::string>& doubts) {
 void doubt_starts(const Scenario& scenario, const RankResult& result,
                   std::vector<std::string>& doubts) {
   std::size_t candidates = 0;
+  double greatest = 0.0;
   std::vector<std::size_t> actors;
   for (const CandidateResult& ranked : result.ranking) {
     bool overlaps = false;
-    for (const Contact& contact : ranked.contacts) {
-      if (!detail::begins_in_contact(contact)) continue;
+    const auto add = [&](ImpactState state, std::size_t actor) {
+      if (!detail::begins_in_contact(state)) return false;
       overlaps = true;
-      if (std::find(actors.begin(), actors.end(), contact.actor) == actors.end()) {
-        actors.push_back(contact.actor);
-      }
+      if (std::find(actors.begin(), actors.end(), actor) == actors.end()) actors.push_back(actor);
+      return true;
+    };
+    for (const Contact& contact : ranked.contacts) add(contact.state, contact.actor);
+    double probability = 0.0;
+    for (const FutureOutcome& future : ranked.futures) {
+      const bool counts = future.collides && add(future.state, future.actor);
+      if (counts) probability += future.probability;
     }
-    candidates += overlaps ? 1 : 0;
+    if (!overlaps) continue;
+    ++candidates;
+    greatest = std::max(greatest, ranked.futures.empty() ? 1.0 : probability);
   }
   if (candidates == 0) return;
   Counted others;
@@ -87,9 +102,13 @@ void doubt_starts(const Scenario& scenario, const RankResult& result,
     others.add(fmt::format("'{}'", scenario.actors[actor].name));
   }
   doubts.push_back(fmt::format(
-      "the ego overlaps {} at the start ({} of {} candidates): {}; begin the scenario before the "
+      "the ego overlaps {} at the start ({} of {} candidates{}): {}; begin the scenario before the "
       "contact",
-      others.examples(), candidates, result.ranking.size(), detail::overlap_meaning));
+      others.examples(), candidates, result.ranking.size(),
+      greatest > certain
+          ? std::string()
+          : fmt::format(", with a probability of {}", detail::percent_text(greatest)),
+      detail::overlap_meaning));
 }
 
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
@@ -180,20 +199,32 @@ void doubt_road(const Scenario& scenario, const RankResult& result,
   } else if (result.ranking.front().leaves_road && result.measure == Measure::harm &&
              scenario.road.harm_per_leaving == 0.0) {
     doubts.emplace_back(
-        "the first place leaves the road, and what lies beside it counts as harmless; state "
-        "road.off_road.harm_per_leaving");
+        "the first place " + detail::leaving_words(result.ranking.front()) +
+        ", and what lies beside it counts as harmless; state road.off_road.harm_per_leaving");
   }
 }
 
+/// Looks at every motion that an actor may follow, and names each actor once.
 void doubt_actors(const Scenario& scenario, std::vector<std::string>& doubts) {
   Counted ends;
-  for (const ScenarioActor& actor : scenario.actors) {
-    if (actor.poses.empty()) continue;
-    const Result<Motion> motion = make_motion(actor);
-    if (!motion) continue;
+  std::vector<char> named(scenario.actors.size(), char{0});
+  const auto look = [&](std::size_t actor, const ActorMotion& stated) {
+    if (stated.poses.empty() || named[actor] != 0) return;
+    const Result<Motion> motion = make_motion(stated, {});
+    if (!motion) return;
     const double cut = cut_speed_mps(*motion, scenario.horizon_s);
-    if (cut <= moves_mps) continue;
-    ends.add(fmt::format("'{}', at {:g} s and {:.1f} m/s", actor.name, motion->rest_time(), cut));
+    if (cut <= moves_mps) return;
+    named[actor] = 1;
+    ends.add(fmt::format("'{}', at {:g} s and {:.1f} m/s", scenario.actors[actor].name,
+                         motion->rest_time(), cut));
+  };
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    const ScenarioActor& actor = scenario.actors[i];
+    if (actor.predictions.empty()) look(i, actor);
+    for (const Prediction& prediction : actor.predictions) look(i, prediction);
+  }
+  for (const JointFuture& future : scenario.futures) {
+    for (const FutureMotion& moved : future.motions) look(moved.actor, moved.motion);
   }
   if (ends.count == 0) return;
   doubts.push_back(fmt::format(
@@ -248,7 +279,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
                     result.futures.undrawn, result.futures.sampled));
   }
   doubt_road(scenario, result, doubts);
-  doubt_actors(scenario, doubts);
+  doubt_actors(asked, doubts);
   doubt_fixed(scenario, result, doubts);
   detail::doubt_bodies(scenario, models, result, doubts);
   doubt_keys(scenario, doubts);

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <optional>
 
 namespace crashrank::detail {
@@ -86,24 +88,42 @@ std::string error_words(const RankResult& result) {
          missing;
 }
 
-/// Whom candidates hit that touch nothing in the likeliest future: of each the most probable
-/// collision.
+/// The body that a candidate hits first with the largest probability over all futures.
+struct LikeliestBody {
+  double probability = 0.0;
+  const FutureOutcome* likeliest = nullptr;  ///< its most probable collision; null: none at all
+};
+LikeliestBody likeliest_body(const CandidateResult& ranked) {
+  std::map<std::size_t, LikeliestBody> bodies;
+  for (const FutureOutcome& future : ranked.futures) {
+    if (!future.collides || !(future.probability > 0.0)) continue;
+    LikeliestBody& body = bodies[future.actor];
+    body.probability += future.probability;
+    if (body.likeliest == nullptr || future.probability > body.likeliest->probability) {
+      body.likeliest = &future;
+    }
+  }
+  LikeliestBody most;
+  for (const auto& [actor, body] : bodies) {
+    if (body.probability > most.probability) most = body;
+  }
+  return most;
+}
+
+/// Whom candidates hit that touch nothing in the likeliest future.
 void add_collisions(const Scenario& scenario, const RankResult& result,
                     std::vector<std::string>& words) {
   constexpr std::size_t most = 6;
   std::size_t told = 0;
   for (const CandidateResult& ranked : result.ranking) {
-    const FutureOutcome* hit = nullptr;
-    for (const FutureOutcome& future : ranked.futures) {
-      const bool counts = future.collides && future.probability > 0.0;
-      if (counts && (hit == nullptr || future.probability > hit->probability)) hit = &future;
-    }
+    const LikeliestBody body = likeliest_body(ranked);
+    const FutureOutcome* const hit = body.likeliest;
     if (ranked.collides || hit == nullptr || ++told > most) continue;
     words.push_back(fmt::format(
         "“{}” touches nothing in the likeliest future, but collides with a probability of {}; most "
-        "probably with {} after {:.3f} s, closing with {} m/s.",
+        "probably with {} ({}), likeliest after {:.3f} s, closing with {} m/s.",
         result.candidates[ranked.candidate].name, percent_text(ranked.collision_probability),
-        scenario.actors[hit->actor].name, hit->time_of_impact_s,
+        scenario.actors[hit->actor].name, percent_text(body.probability), hit->time_of_impact_s,
         fixed_text(hit->closing_speed_mps, 1)));
   }
   if (told > most) words.push_back(fmt::format("So do {} more.", told - most));
@@ -138,8 +158,13 @@ std::vector<std::string> future_words(const Scenario& scenario, const RankResult
       "times to others are the least of all futures."};
   if (!result.complete || result.ranking.empty()) return words;
   if (summary.method == FutureMethod::sampled) words.push_back(error_words(result));
+  // What the vehicle cannot follow would stand behind the others there, too.
+  const auto demoted = [&](const CandidateResult& ranked) {
+    return !ranked.feasible && result.infeasible != Infeasible::keep;
+  };
   const auto best = std::min_element(result.ranking.begin(), result.ranking.end(),
-                                     [](const CandidateResult& p, const CandidateResult& q) {
+                                     [&](const CandidateResult& p, const CandidateResult& q) {
+                                       if (demoted(p) != demoted(q)) return demoted(q);
                                        return likeliest_score(p) < likeliest_score(q);
                                      });
   if (likeliest_score(*best) < likeliest_score(result.ranking.front())) {

@@ -299,10 +299,11 @@ private:
     const detail::CrashSummary others = detail::crash_of_others(ranked);
     return fmt::format(
         "<br>event delta-v m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
-        "<br>harm: ego {:.2g}, others {:.2g}",
+        "<br>harm: ego {}, others {}",
         detail::fixed_text(ego.event_delta_v_mps, 1),
         detail::fixed_text(others.event_delta_v_mps, 1), detail::fixed_text(ego.crush_m, 2),
-        detail::fixed_text(others.crush_m, 2), ego.harm, others.harm);
+        detail::fixed_text(others.crush_m, 2), detail::harm_text(ego.harm),
+        detail::harm_text(others.harm));
   }
 
   void candidate(std::size_t place) {

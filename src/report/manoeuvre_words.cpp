@@ -1,5 +1,7 @@
 #include "report/manoeuvre_words.hpp"
 
+#include "report/score_text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,8 +51,22 @@ std::string demand_words(const ManoeuvreDemand& demand) {
 
 std::string leaving_words(const CandidateResult& ranked) {
   if (!ranked.leaves_road) return {};
-  return fmt::format("leaves the road after {:.2f} s at {:.1f} m/s", ranked.leaves_road->time_s,
-                     ranked.leaves_road->speed_mps);
+  double probability = 0.0;
+  for (const FutureOutcome& future : ranked.futures) {
+    if (future.leaves_road) probability += future.probability;
+  }
+  // Without futures nothing is known of others than the likeliest; a sum of all may be 1 but for
+  // rounding.
+  const bool certain = ranked.futures.empty() || probability > 1.0 - 1e-9;
+  return fmt::format("leaves the road after {:.2f} s at {:.1f} m/s{}", ranked.leaves_road->time_s,
+                     ranked.leaves_road->speed_mps,
+                     certain ? std::string()
+                             : fmt::format(" with a probability of {}", percent_text(probability)));
+}
+
+bool leaves_in_likeliest(const CandidateResult& ranked) {
+  return ranked.futures.empty() ? ranked.leaves_road.has_value()
+                                : ranked.futures.front().leaves_road;
 }
 
 std::string passing_words(const Scenario& scenario, const CandidateResult& ranked) {

@@ -17,6 +17,8 @@ std::string passing_words(const Scenario& scenario, const CandidateResult& ranke
 /// When and how fast a wheel leaves the road: "leaves the road after 1.31 s at 17.2 m/s"; empty
 /// where none does.
 std::string leaving_words(const CandidateResult& ranked);
+/// Whether it leaves the road before its first contact in the likeliest future.
+bool leaves_in_likeliest(const CandidateResult& ranked);
 
 /// What marks a row besides its crash, "cannot be followed, off the road, 0.17 s before a crash";
 /// empty without anything.

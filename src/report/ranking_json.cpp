@@ -85,12 +85,19 @@ Json tied_json(const RankResult& result, std::size_t index) {
 Json futures_json(const Scenario& scenario, const CandidateResult& ranked) {
   Json futures = Json::array();
   for (const FutureOutcome& outcome : ranked.futures) {
-    Json entry{{"probability", outcome.probability}, {"score", outcome.score},
-               {"futures", outcome.futures},         {"likeliest", outcome.is_likeliest},
-               {"collides", outcome.collides},       {"other", nullptr},
-               {"time_of_impact_s", nullptr},        {"closing_speed_mps", nullptr},
-               {"contacts", outcome.contacts}};
+    Json entry{{"probability", outcome.probability},
+               {"score", outcome.score},
+               {"futures", outcome.futures},
+               {"likeliest", outcome.is_likeliest},
+               {"collides", outcome.collides},
+               {"other", nullptr},
+               {"state", nullptr},
+               {"time_of_impact_s", nullptr},
+               {"closing_speed_mps", nullptr},
+               {"contacts", outcome.contacts},
+               {"leaves_road", outcome.leaves_road}};
     if (outcome.collides) {
+      entry["state"] = detail::impact_state_name(outcome.state);
       entry["other"] = scenario.actors[outcome.actor].name;
       entry["time_of_impact_s"] = outcome.time_of_impact_s;
       entry["closing_speed_mps"] = outcome.closing_speed_mps;

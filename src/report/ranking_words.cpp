@@ -136,9 +136,9 @@ std::vector<std::string> pushed_words(const Scenario& scenario, const RankResult
         ++left_out;
         continue;
       }
-      words.push_back(
-          fmt::format("{}: {} at {:.2f} s (harm {:.2g})", result.candidates[ranked.candidate].name,
-                      further_words(scenario, ranked, *pair.first), pair.first->time_s, pair.harm));
+      words.push_back(fmt::format(
+          "{}: {} at {:.2f} s (harm {})", result.candidates[ranked.candidate].name,
+          further_words(scenario, ranked, *pair.first), pair.first->time_s, harm_text(pair.harm)));
     }
   }
   if (left_out > 0) {
@@ -162,7 +162,7 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
   if (ranked.contacts.empty()) {
     std::string text = fmt::format("touches nothing within {:.1f} s{}", scenario.horizon_s,
                                    ranked.grazes.empty() ? "" : ", but grazes");
-    if (ranked.leaves_road) text += ", but " + leaving_words(ranked);
+    if (leaves_in_likeliest(ranked)) text += ", but " + leaving_words(ranked);
     return text;
   }
   const Contact& first = ranked.contacts.front();
@@ -173,7 +173,7 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
     text = fmt::format("overlaps {} at the start, closing at {:.1f} m/s",
                        scenario.actors[first.actor].name, first.closing_speed_mps);
   }
-  if (ranked.leaves_road) text = leaving_words(ranked) + " and " + text;
+  if (leaves_in_likeliest(ranked)) text = leaving_words(ranked) + " and " + text;
   const std::vector<std::size_t> actors = hit_actors(ranked);
   for (std::size_t i = 1; i < actors.size(); ++i) {
     text += (i + 1 == actors.size() ? " and " : ", ") + scenario.actors[actors[i]].name;
@@ -194,8 +194,10 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
   std::string likeliest = outcome_of_likeliest(scenario, ranked);
   if (ranked.futures.size() < 2) return likeliest;
-  return likeliest + fmt::format(" in the likeliest future (the probability of a collision is {})",
-                                 detail::percent_text(ranked.collision_probability));
+  likeliest += fmt::format(" in the likeliest future (the probability of a collision is {})",
+                           detail::percent_text(ranked.collision_probability));
+  if (!ranked.leaves_road || leaves_in_likeliest(ranked)) return likeliest;
+  return likeliest + "; otherwise it " + leaving_words(ranked);
 }
 
 std::string reason_words(const Scenario& scenario, View<const Model> models,
@@ -228,8 +230,8 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
                       first_score, second_score);
   if (*first.score > 0.0 && first.separable) {
     const double ratio = *second.score / *first.score;
-    text += ratio < 2.0 ? fmt::format(", {:.2g} % more", 100.0 * (ratio - 1.0))
-                        : fmt::format(", {:.2g} times as much", ratio);
+    text += ratio < 2.0 ? fmt::format(", {:.2g} % more before rounding", 100.0 * (ratio - 1.0))
+                        : fmt::format(", {:.2g} times as much before rounding", ratio);
   }
   if (!first.separable && first.overtaken > separable_share) {
     text += fmt::format(

@@ -12,9 +12,10 @@
 namespace crashrank::detail {
 
 /// Whether the bodies overlap at time 0: the contact is not simulated from its first touch.
-inline bool begins_in_contact(const Contact& contact) {
-  return contact.state == ImpactState::overlapping || contact.state == ImpactState::contained;
+inline bool begins_in_contact(ImpactState state) {
+  return state == ImpactState::overlapping || state == ImpactState::contained;
 }
+inline bool begins_in_contact(const Contact& contact) { return begins_in_contact(contact.state); }
 
 /// The actors that the ego hits, each once, in the order of its contacts.
 std::vector<std::size_t> hit_actors(const CandidateResult& ranked);

@@ -160,6 +160,12 @@ std::string fixed_text(double value, int decimals) {
   return vanishes ? fmt::format("{:.1g}", value) : fmt::format("{:.{}f}", value, decimals);
 }
 
+std::string harm_text(double persons) {
+  constexpr double least = 1e-4;
+  if (persons > 0.0 && persons < least) return "under 0.0001";
+  return fmt::format("{:.2g}", persons);
+}
+
 std::string percent_text(double probability) {
   constexpr double half = 0.005;
   if (probability > 0.0 && probability < half) return "<1 %";

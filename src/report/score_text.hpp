@@ -22,6 +22,9 @@ std::vector<std::string> score_texts(const RankResult& result);
 /// than 0 as 0.
 std::string fixed_text(double value, int decimals);
 
+/// Harm in persons with two digits; what rounds to less than 0.0001 is not written out.
+std::string harm_text(double persons);
+
 /// A probability in whole percent; "<1 %" and ">99 %" where 0 or 100 would say that it is certain.
 std::string percent_text(double probability);
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crashrank {
@@ -233,6 +234,45 @@ TEST(FuturesOrder, ARankerSeparatesEqualPlansThatAreMovedApart) {
     EXPECT_EQ(answer.ranking[0].collision_probability,
               expected.ranking.front().collision_probability);
   }
+}
+
+// Two candidates collide with 0.3, of which one is the sum of 0.1 and 0.2 that exceeds it by
+// rounding. Both have a quantile of 0, so that what comes next decides: the other one brakes.
+TEST(FuturesOrder, TheRoundingOfAProbabilityDecidesNothing) {
+  ASSERT_GT(0.1 + 0.2, 0.3);
+  Scene scene = scenes::car_on_road(0.8);
+  scene.scenario.risk = {RiskKind::quantile, 0.6};
+  scene.scenario.listed.clear();
+  const std::size_t wall = scene.add_model(
+      "wall", scenes::box_mesh({0.5F, 8.0F, 1.0F}, 1, {0, 0, 1.0F}), BodyKind::barrier, 50000.0);
+  scene.add_candidate("once", 0.0, 0.05);
+  scene.add_candidate("twice", -1.0, -0.05);
+  scene.add_actor("left", wall, 40.0, 12.0);
+  scene.add_actor("right", wall, 40.0, -12.0);
+  // With probability 0.1 and 0.2 there is only the right wall, with 0.3 only the left one.
+  for (const auto& [probability, absent] :
+       {std::pair(0.1, std::vector<std::size_t>{0}), std::pair(0.2, std::vector<std::size_t>{0}),
+        std::pair(0.3, std::vector<std::size_t>{1}),
+        std::pair(0.4, std::vector<std::size_t>{0, 1})}) {
+    JointFuture future;
+    future.probability = probability;
+    future.absent = absent;
+    // Equal futures would count as one.
+    FutureMotion away;
+    away.actor = absent.front() == 0 ? 1 : 0;
+    away.motion.pose = scene.scenario.actors[away.actor].pose;
+    away.motion.pose.translation.x() += probability;
+    if (absent.size() == 1) future.motions = {away};
+    scene.scenario.futures.push_back(future);
+  }
+  const RankResult result = scene.ranked(options_with(false));
+  ASSERT_EQ(result.ranking.size(), 2U);
+  for (const CandidateResult& ranked : result.ranking) {
+    ASSERT_NEAR(ranked.collision_probability, 0.3, 1e-12);
+    ASSERT_EQ(ranked.score, 0.0);
+  }
+  ASSERT_NE(result.ranking[0].collision_probability, result.ranking[1].collision_probability);
+  EXPECT_EQ(result.candidates[result.ranking.front().candidate].name, "twice");
 }
 
 TEST(FuturesOrder, ProbabilitiesNeverExceedOne) {

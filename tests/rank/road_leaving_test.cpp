@@ -1,3 +1,5 @@
+#include "crashrank/rank/anytime/ranker.hpp"
+
 #include "oracle/random.hpp"
 #include "rank/scenes.hpp"
 
@@ -116,6 +118,32 @@ TEST(RoadLeaving, AddsTheStatedHarmUnlessAContactComesFirst) {
     const double without = *of(scene.ranked(), "keeps going").score;
     scene.scenario.road.harm_per_leaving = 0.125;
     EXPECT_NEAR(with - without, left ? 0.125 : 0.0, 1e-12);
+  }
+}
+
+// A wall before the end of the road exists with that probability; a Ranker answers alike.
+TEST(RoadLeaving, IsToldInAnyFuture) {
+  for (const double exists : {0.25, 0.75, 1.0}) {
+    Scene scene = on_road(20.0, rectangle(-10, -3, 30, 3));
+    scene.scenario.road.harm_per_leaving = 0.125;
+    scene.add_candidate("keeps going", 0.0);
+    const std::size_t wall =
+        scene.add_model("wall", box_mesh({0.5F, 8, 1}, 1, {0, 0, 1}), BodyKind::barrier);
+    scene.add_actor("wall", wall, 25.0, 0.0).existence_probability = exists;
+    const RankResult result = scene.ranked();
+    const CandidateResult& going = result.ranking.front();
+    EXPECT_EQ(going.leaves_road.has_value(), exists < 1.0);
+    double leaves = 0.0;
+    for (const FutureOutcome& future : going.futures) {
+      EXPECT_NE(future.leaves_road, future.collides);
+      if (future.leaves_road) leaves += future.probability;
+    }
+    EXPECT_DOUBLE_EQ(leaves, 1.0 - exists);
+    RankerOptions options;
+    Result<Ranker> ranker = Ranker::prepare(scene.scenario, scene.models, options);
+    ASSERT_TRUE(ranker.ok());
+    const RankerAnswer answer = ranker->rank(result.candidates);
+    EXPECT_EQ(answer.ranking[0].leaves_road, exists < 1.0);
   }
 }
 

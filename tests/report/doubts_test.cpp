@@ -114,6 +114,41 @@ TEST(Doubts, BodiesThatOverlapAtTheStartAreNamedOnceInEveryAnswer) {
   }
 }
 
+/// The ranking with a second future, of that probability, in which the first candidate hits the
+/// first actor; `overlapping` and 150 m/s are doubtful.
+Sound with_unlikely_contact(double probability, ImpactState state, double closing_mps) {
+  Sound told;
+  FutureOutcome hit;
+  hit.probability = probability;
+  hit.collides = true;
+  hit.state = state;
+  hit.fastest_contact_mps = closing_mps;
+  FutureOutcome miss;
+  miss.probability = 1.0 - probability;
+  miss.is_likeliest = true;
+  told.result.ranking[0].futures = {miss, hit};
+  return told;
+}
+
+TEST(Doubts, WhatIsDoubtfulInAFutureThatIsNotTheLikeliestIsTold) {
+  EXPECT_TRUE(with_unlikely_contact(0.25, ImpactState::contact, 30.0).doubts().empty());
+  with_unlikely_contact(0.25, ImpactState::contained, 30.0)
+      .expect_one(
+          "the ego overlaps 'wall' at the start (1 of 3 candidates, with a probability of 25 %): ");
+  with_unlikely_contact(0.25, ImpactState::contact, 150.0)
+      .expect_one("1 candidate leads to a contact at more than 140 m/s");
+}
+
+TEST(Doubts, LeavingTheRoadIsToldWithItsProbability) {
+  Sound told = with_unlikely_contact(0.75, ImpactState::contact, 30.0);
+  told.scenario.road.drivable = {{{{-1.0, -1.0}, {9.0, -1.0}, {9.0, 1.0}}, {}}};
+  told.result.ranking[0].leaves_road = RoadLeaving{2.5, 15.0, {9.0, 0.0}};
+  told.result.ranking[0].futures[0].leaves_road = true;
+  told.expect_one(
+      "the first place leaves the road after 2.50 s at 15.0 m/s with a probability of 25 %, and "
+      "what lies beside it counts as harmless");
+}
+
 TEST(Doubts, KeysWithoutEffectAreNamed) {
   Sound told;
   told.scenario.keys_without_effect = {"crush"};
@@ -184,6 +219,20 @@ TEST(Doubts, ActorsWhosePosesEndWhileTheyMoveAreTold) {
   EXPECT_NE(told.doubts()[0].find("'second', at 0.2 s and 20.0 m/s"), std::string::npos);
   EXPECT_NE(told.doubts()[1].find("1 actor has a motion, but nothing moves a body without mass"),
             std::string::npos);
+}
+
+TEST(Doubts, PredictionsWhosePosesEndWhileTheyMoveAreTold) {
+  Sound told;
+  told.result.actors[1].mass_kg = 1200.0;
+  Pose away;
+  away.translation.x() = 4.0;
+  Prediction stays;
+  stays.probability = 0.9;
+  Prediction goes;
+  goes.probability = 0.1;
+  goes.poses = {{0.0, {}}, {0.2, away}};
+  told.scenario.actors[1].predictions = {stays, goes};
+  told.expect_one("the poses of 1 actor end before the horizon (3 s) while moving");
 }
 
 TEST(Doubts, MeshesThatSeemTurnedAreToldWithTheAxesThatMendIt) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -234,21 +235,22 @@ TEST(RankingText, SaysWhomACandidateHitsInAFutureThatIsNotTheLikeliest) {
   CandidateResult& miss = told.result.ranking.front();
   ASSERT_FALSE(miss.collides);
   miss.collision_probability = 0.304;
-  miss.futures.resize(3);
+  miss.futures.resize(4);
   miss.futures[0].probability = 0.696;
   miss.futures[0].is_likeliest = true;
-  for (const std::size_t k : {1U, 2U}) {
-    miss.futures[k].probability = k == 1 ? 0.3 : 0.004;
+  // The wall is the most probable single collision, but the second body is hit more probably.
+  constexpr std::array<double, 4> probabilities{0.696, 0.1, 0.124, 0.08};
+  for (const std::size_t k : {1U, 2U, 3U}) {
+    miss.futures[k].probability = probabilities[k];
     miss.futures[k].collides = true;
-    miss.futures[k].actor = k;
-    miss.futures[k].time_of_impact_s = 1.25;
+    miss.futures[k].actor = k == 2 ? 0 : 1;
+    miss.futures[k].time_of_impact_s = k == 1 ? 1.25 : 1.75;
     miss.futures[k].closing_speed_mps = 19.72;
   }
-  miss.futures[2].actor = 0;
   const std::string text = ranking_text(told.scenario, told.models, told.result);
   EXPECT_NE(
-      text.find("collides with a probability of 30 %; most probably with second after 1.250 s, "
-                "closing with 19.7 m/s."),
+      text.find("collides with a probability of 30 %; most probably with second (18 %), likeliest "
+                "after 1.250 s, closing with 19.7 m/s."),
       std::string::npos)
       << text;
   EXPECT_EQ(text.find("most probably with wall"), std::string::npos) << text;

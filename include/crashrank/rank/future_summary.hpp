@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/motion/time_of_impact.hpp"
 #include "crashrank/scenario/harm_options.hpp"
 
 #include <cstddef>
@@ -63,8 +64,12 @@ struct FutureOutcome {
   bool collides = false;      ///< the ego has a contact
   /// if it collides: first body that the ego hits, index into Scenario::actors
   std::size_t actor = 0;
-  double time_of_impact_s = 0.0;   ///< from the decision
-  double closing_speed_mps = 0.0;  ///< of the points that touch first, m/s
+  ImpactState state = ImpactState::none;  ///< of that contact
+  double time_of_impact_s = 0.0;          ///< from the decision
+  double closing_speed_mps = 0.0;         ///< of the points that touch first, m/s
+  /// Largest closing speed of all contacts, including those between other bodies, m/s.
+  double fastest_contact_mps = 0.0;
+  bool leaves_road = false;  ///< a wheel leaves the road before the first contact
   /// number of contacts with a force, including those between other bodies
   std::size_t contacts = 0;
 };

@@ -162,7 +162,8 @@ struct CandidateResult {
   std::vector<PersonRisk> people;
   ManoeuvreDemand demand;  ///< demand of the plan as far as it is followed in any future
   bool feasible = true;    ///< the vehicle can follow it so far
-  /// Before its first contact in the likeliest future, a wheel leaves the road.
+  /// A wheel leaves the road before the first contact, in any future: in the likeliest if it does
+  /// so there, otherwise in the one in which it is earliest. Probability: see `futures`.
   std::optional<RoadLeaving> leaves_road;
   /// Between the ego's outline and any other's, seen from above and height by height, along the
   /// plans of all futures until the horizon, m; 0 if it has a contact in one of them, absent if no

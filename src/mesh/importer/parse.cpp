@@ -147,7 +147,10 @@ Error parser_error(const std::string& text, const FolderIo& files, const Request
     if (const std::optional<Error> fault = find_obj_fault(STDIN_FILENO)) error = *fault;
   }
   if (text.find("STL storage representation") != std::string::npos) {
-    error.reason = "it is neither a text nor a binary STL file, or it was cut";
+    error.reason = "it is neither a text nor a whole binary STL file";
+    if (const std::string bytes = describe_binary_stl(STDIN_FILENO); !bytes.empty()) {
+      error.reason += ": " + bytes;
+    }
     error.remedy = "name the file after its format, or export it again";
   } else if (request.extension == "stl") {
     if (const std::string cut = describe_stl_cut(STDIN_FILENO); !cut.empty()) error.reason = cut;

@@ -4,6 +4,8 @@
 #include "mesh/importer/obj_lines.hpp"
 #include "mesh/text.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
@@ -131,6 +133,26 @@ Result<std::uint64_t> check_off_lines(int descriptor) {
     }
   }
   return surfaces;
+}
+
+std::string describe_binary_stl(int descriptor) {
+  // 80 bytes of any content, the number of triangles, 50 bytes for each.
+  constexpr std::size_t counted_at = 80;
+  constexpr std::size_t header_bytes = 84;
+  constexpr std::uint64_t triangle_bytes = 50;
+  struct stat file = {};
+  if (::fstat(descriptor, &file) != 0) return {};
+  const std::string number = read_at(descriptor, counted_at, header_bytes - counted_at);
+  if (number.size() < header_bytes - counted_at) {
+    return "a binary one begins with 84 bytes, and it has " + std::to_string(file.st_size);
+  }
+  std::uint64_t triangles = 0;
+  for (std::size_t i = number.size(); i > 0; --i) {
+    triangles = 256 * triangles + static_cast<unsigned char>(number[i - 1]);
+  }
+  return "as a binary one its header promises " + std::to_string(triangles) + " triangles, " +
+         std::to_string(header_bytes + triangle_bytes * triangles) + " bytes in all, and it has " +
+         std::to_string(file.st_size);
 }
 
 std::string describe_stl_cut(int descriptor) {

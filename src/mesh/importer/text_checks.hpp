@@ -19,4 +19,8 @@ Result<std::uint64_t> check_off_lines(int descriptor);
 /// otherwise, and for binary files. Reads the descriptor by position, once.
 std::string describe_stl_cut(int descriptor);
 
+/// The number of bytes against the one that the header of a binary STL file promises, for a file
+/// that the parser takes for neither text nor binary. Reads the descriptor by position.
+std::string describe_binary_stl(int descriptor);
+
 }  // namespace crashrank::importer

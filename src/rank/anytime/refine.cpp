@@ -139,7 +139,7 @@ OrderKey key_of(const RankedCandidate& c, bool by_estimate) noexcept {
   key.demoted = !c.feasible;
   key.score = c.known ? c.score : by_estimate ? c.estimate : c.interval.highest;
   key.known = c.known;
-  key.collision_probability = c.collision_probability;
+  key.set_collision_probability(c.collision_probability);
   key.collides = c.collides;
   key.grazes = c.grazes;
   key.leaves_road = c.leaves_road;

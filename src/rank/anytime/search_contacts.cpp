@@ -22,7 +22,6 @@ bool fill_manoeuvre(const RefineQuery& q, const FollowedPlan& followed, Candidat
   if (!followed.touches && scratch.stopped()) return false;
   RankedCandidate& result = state.result;
   result.feasible = facts.feasible || q.scene.infeasible == Infeasible::keep;
-  result.leaves_road = facts.leaves_road.has_value();
   result.least_distance_m = facts.clearance.distance_m;
   result.least_time_gap_s = facts.clearance.time_gap_s;
   result.time_to_collision_s = facts.clearance.time_to_collision_s;
@@ -52,9 +51,10 @@ bool settle_without_contact(const RefineQuery& q, CandidateState& state, Scratch
   }
   for (std::size_t f = 0; f < futures.size(); ++f) {
     const Motion& ego = ego_motion(q.scene, q.candidate, f, scratch.ego);
-    const double score = leaving_score(q.scene, leaving_of(q, state, ego, scratch), no_contact_s);
+    const std::optional<RoadLeaving> leaving = leaving_of(q, state, ego, scratch);
     if (scratch.stopped()) return false;
-    state.futures[f].score = score;
+    state.futures[f].score = leaving_score(q.scene, leaving, no_contact_s);
+    state.result.leaves_road = state.result.leaves_road || leaving.has_value();
   }
   combine(q, state, scratch);
   return true;
@@ -107,6 +107,8 @@ void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& eg
     followed.touches = followed.touches || touches;
     followed.longest_s = std::max(followed.longest_s, touches ? until_s : q.scene.slice_s.back());
     const double left = leaving_score(q.scene, leaving, until_s);
+    state.result.leaves_road =
+        state.result.leaves_road || (leaving.has_value() && leaving->time_s <= until_s);
     if (touches) {
       future.lower_bound = left;
       future.estimate += left;
@@ -114,7 +116,6 @@ void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& eg
       future.score = left;
     }
     if (f != likeliest) continue;
-    followed.first_s = until_s;
     RankedCandidate& result = state.result;
     result.collides = touches;
     result.grazes = grazes_before(q.scene, scratch, f, until_s);
@@ -145,7 +146,8 @@ bool find_nearby(const RefineQuery& q, CandidateState& state, Scratch& scratch, 
   if (q.scene.road.ends() && scratch.stopped()) return false;
   state.leaving = leaving;
   if (!comes_near(q, scratch, work)) {
-    if (!fill_manoeuvre(q, {horizon_s, no_contact_s, false}, state, scratch) ||
+    state.result.leaves_road = leaving.has_value();
+    if (!fill_manoeuvre(q, {horizon_s, false}, state, scratch) ||
         !settle_without_contact(q, state, scratch)) {
       return false;
     }

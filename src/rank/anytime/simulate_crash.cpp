@@ -2,6 +2,7 @@
 #include "rank/ego_motion.hpp"
 #include "rank/manoeuvre.hpp"
 #include "rank/road_leaving.hpp"
+#include "rank/touches.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -38,6 +39,7 @@ bool share_score(const Scene& scene, std::size_t future, CandidateState& state, 
   std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
   for (std::uint32_t k = 0; k <= found.first; ++k) scratch.relevant[state.first_hits[k].plan] = 1;
   scratch.chain.mark_relevant_plans(scene, scratch.relevant);
+  mark_relevant_touches(scratch, scratch.relevant);
   std::fill(scratch.needed.begin(), scratch.needed.end(), char{0});
   if (scene.futures.mark_needed(scratch.relevant, scratch.needed)) return false;
   scratch.same.clear();
@@ -71,7 +73,8 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   const HarmSample& nominal = q.scene.nominal;
   CrashChain& chain = scratch.chain;
   const Motion& ego = ego_motion(q.scene, q.candidate, index, scratch.ego);
-  const Contact first = first_contact_of(q, ego, state.first_hits[future.first]);
+  begin_touches(q.scene, ego, state.first_hits[future.first], scratch);
+  const Contact first = scratch.touches.front().contact;
   chain.begin(q.scene, ego, index, first, nominal);
   std::size_t added = 0;
   scratch.tally.begin();
@@ -98,8 +101,16 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   future.simulated = std::max(future.simulated, chain.run().work());
   work.crash_steps += chain.run().steps();
   work.crash_pieces += chain.run().work();
+  const bool decided = going || find_touches(q.scene, ego, index, scratch, work);
+  if (!decided) {
+    future = before;
+    state.result = result_before;
+    if (scratch.stopped()) return false;
+    state.unresolved = true;
+    return true;
+  }
   if (!going) {
-    chain.effects(scratch.effects, scratch.order);
+    chain.effects(scratch.touches_view(), scratch.effects, scratch.order);
     scratch.tally.begin();
     for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, nominal);
     future.score = left + scratch.tally.score(q.scene);

@@ -84,7 +84,7 @@ struct RankedCandidate {
   /// (Infeasible::keep). This and the next five are final where the score is known, the first from
   /// the stage `searched` on; true as long as nothing else is known.
   bool feasible = true;
-  bool leaves_road = false;  ///< before the first contact in the likeliest future
+  bool leaves_road = false;  ///< before the first contact, in any future
   /// As in CandidateResult, but infinity if absent there, and 0 while it is not known, m.
   double least_distance_m = 0.0;
   double least_time_gap_s = 0.0;     ///< likewise, s
