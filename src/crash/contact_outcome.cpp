@@ -99,6 +99,7 @@ ContactOutcome ContactRun::outcome(bool swapped) const {
   limit_delta_v(change_first_, motion_of(first_).inverse_mass, first);
   limit_delta_v(change_second_, motion_of(this->second()).inverse_mass, second);
   result.point_m = origin_m_;
+  result.begin_point_m = origin_m_ + Vector3d(begin_point_m_.x(), begin_point_m_.y(), 0.0);
   if (point_weight_ > 0.0) {
     result.point_m += Vector3d(point_x_ / point_weight_, point_y_ / point_weight_, 0.0);
   }

@@ -279,6 +279,9 @@ void ContactRun::apply_forces() {
     max_speed_since_rebound_mps_ = std::max(max_speed_since_rebound_mps_, speed);
     max_speed_mps_ = std::max(max_speed_mps_, speed);
     max_closing_mps_ = std::max(max_closing_mps_, closing);
+    if (point_weight_ == 0.0 && totals_.weight > 0.0) {
+      begin_point_m_ = Eigen::Vector2d(totals_.point_x, totals_.point_y) / totals_.weight;
+    }
     point_x_ += step_s_ * totals_.point_x;
     point_y_ += step_s_ * totals_.point_y;
     point_weight_ += step_s_ * totals_.weight;

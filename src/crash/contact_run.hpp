@@ -282,6 +282,7 @@ private:
   double point_x_ = 0.0;
   double point_y_ = 0.0;
   double point_weight_ = 0.0;
+  Eigen::Vector2d begin_point_m_ = Eigen::Vector2d::Zero();  ///< from the origin
   std::uint32_t steps_ = 0;
   std::uint64_t pieces_ = 0;
 };

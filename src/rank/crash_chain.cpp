@@ -189,7 +189,7 @@ ContactEffect CrashChain::effect(std::size_t index) const {
 }
 
 Vector3d closing_of(const SceneContact& contact) {
-  const Vector3d& point = contact.outcome.point_m;
+  const Vector3d& point = contact.outcome.begin_point_m;
   const auto at = [&](const ContactBody& body) {
     return velocity_of_point(body.velocity, body.pose.translation, point);
   };
@@ -209,13 +209,6 @@ double CrashChain::first_force_s() const {
   return first_s;
 }
 
-bool CrashChain::presses_on_ego(std::size_t actor) const {
-  const View<const SceneContact> all = contacts();
-  return std::any_of(all.begin(), all.end(), [&](const SceneContact& contact) {
-    return body(contact.a) == ego_body && body(contact.b) == actor;
-  });
-}
-
 void CrashChain::effects(View<const Touch> touches, std::vector<ContactEffect>& effects,
                          std::vector<std::size_t>& order) const {
   const View<const SceneContact> all = contacts();
@@ -227,9 +220,13 @@ void CrashChain::effects(View<const Touch> touches, std::vector<ContactEffect>& 
     effect.begin_s = effect.end_s = effect.mean_force_s = contact.time_of_impact_s;
     effect.closing_mps = contact.closing_speed_mps;
     effect.sides[1].body = contact.actor;
+    effect.sides[0].forward = touches[k].ego.rotation.col(0);
+    effect.sides[1].forward = touches[k].other.rotation.col(0);
+    effect.sides[0].road_mps = touches[k].ego_mps;
+    effect.sides[1].road_mps = touches[k].other_mps;
     // If the same bodies have a contact with force later, their closing energy is counted in that
     // one.
-    if (!presses_on_ego(contact.actor)) effect.closing_energy_j = contact.closing_energy_j;
+    if (!touches[k].presses_later) effect.closing_energy_j = contact.closing_energy_j;
     effects.push_back(effect);
     order.push_back(touch + k);
   }

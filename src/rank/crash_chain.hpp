@@ -21,8 +21,11 @@ struct Touch {
   Contact contact;
   std::int32_t triangle_ego = -1;  ///< triangles that touch first; negative if there are none
   std::int32_t triangle_other = -1;
-  Pose ego;  ///< poses at that time
+  Pose ego;  ///< poses and speeds at that time
   Pose other;
+  double ego_mps = 0.0;
+  double other_mps = 0.0;
+  bool presses_later = false;  ///< the same bodies have a contact with a force, too
 };
 
 /// Simulation of the scene that follows from the first contact of a candidate, a limited number of
@@ -52,8 +55,6 @@ public:
   bool first_acts() const;
   /// Time of the first force, until which all bodies follow their plans; infinity if there is none.
   double first_force_s() const;
-  /// Returns true if the ego has a contact with a force with the actor.
-  bool presses_on_ego(std::size_t actor) const;
   /// Indices from this one on stand for touches, which have an effect with zero forces.
   static constexpr std::size_t touch = std::numeric_limits<std::size_t>::max() / 2;
   /// Effects of all contacts in the order of their begin times, those of `touches` first if the
@@ -83,7 +84,7 @@ private:
 };
 
 /// Velocity of the material of body a relative to that of body b at the begin of a contact, at the
-/// mean point of the force, horizontal, m/s.
+/// mean point of the force then, horizontal, m/s.
 Eigen::Vector3d closing_of(const SceneContact& contact);
 
 /// ½·reduced mass·v²; one of the masses may be infinite. J.

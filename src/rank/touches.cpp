@@ -1,8 +1,10 @@
 #include "rank/touches.hpp"
 
+#include "crash/event_times.hpp"
 #include "rank/hits.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace crashrank::detail {
@@ -10,22 +12,39 @@ namespace {
 
 constexpr double never_s = -std::numeric_limits<double>::infinity();
 
+bool are_one(const Scene& scene, std::size_t p, std::size_t q) {
+  const std::size_t joined = p == ego_body ? Scene::not_joined : scene.joined_of[p];
+  return p == q || (joined != Scene::not_joined && q != ego_body && scene.joined_of[q] == joined);
+}
+
+/// First time from which the ego and an actor press on each other; infinity: never.
+double first_press_s(const Scene& scene, const CrashChain& chain, std::size_t actor) {
+  double first_s = std::numeric_limits<double>::infinity();
+  for (const SceneContact& contact : chain.contacts()) {
+    if (chain.body(contact.a) == ego_body && are_one(scene, chain.body(contact.b), actor)) {
+      first_s = std::min(first_s, contact.begin_s);
+    }
+  }
+  return first_s;
+}
+
 void add_touch(const Scene& scene, const Motion& ego, const Scratch::Hit& hit, Scratch& scratch) {
   const Motion& plan = scene.futures.plans[hit.plan].motion;
   Touch touch;
   touch.contact = first_contact(scene, ego, hit.actor, plan, hit.impact);
   touch.triangle_ego = hit.impact.triangle_a;
   touch.triangle_other = hit.impact.triangle_b;
-  touch.ego = ego.pose_at(hit.impact.time_s);
-  touch.other = plan.pose_at(hit.impact.time_s);
+  Velocity velocity;
+  ego.state_at(hit.impact.time_s, touch.ego, velocity);
+  touch.ego_mps = velocity.linear_mps.norm();
+  plan.state_at(hit.impact.time_s, touch.other, velocity);
+  touch.other_mps = velocity.linear_mps.norm();
   scratch.touches.push_back(touch);
 }
 
 bool is_listed(const Scene& scene, const Scratch& scratch, std::size_t actor) {
-  const std::size_t joined = scene.joined_of[actor];
   return std::any_of(scratch.touches.begin(), scratch.touches.end(), [&](const Touch& touch) {
-    const std::size_t other = touch.contact.actor;
-    return other == actor || (joined != Scene::not_joined && scene.joined_of[other] == joined);
+    return are_one(scene, touch.contact.actor, actor);
   });
 }
 
@@ -47,21 +66,26 @@ bool find_touches(const Scene& scene, const Motion& ego, std::size_t future, Scr
   scratch.touched_until_s = never_s;
   if (chain.first_acts()) return true;
   if (!scratch.later_hits_known) {
-    const std::size_t first = scratch.touches.front().contact.actor;
-    if (!find_all_hits(scene, ego, scene.futures.group(future), first, scratch, work) ||
+    const std::size_t except = scratch.touches.front().contact.actor;
+    if (!find_all_hits(scene, ego, scene.futures.group(future), except, scratch, work) ||
         scratch.stopped()) {
       return false;
     }
     scratch.later_hits_known = true;
   }
   scratch.touched_until_s = chain.first_force_s();
+  const auto presses = [&](std::size_t actor) { return first_press_s(scene, chain, actor); };
+  Touch& first = scratch.touches.front();
+  first.presses_later = std::isfinite(presses(first.contact.actor));
   for (const Scratch::Hit& hit : scratch.later_hits) {
     if (hit.impact.time_s > scratch.touched_until_s) break;
-    if (!scene.futures.follows(future, hit.plan) || chain.presses_on_ego(hit.actor) ||
-        is_listed(scene, scratch, hit.actor)) {
-      continue;
-    }
+    if (!scene.futures.follows(future, hit.plan) || is_listed(scene, scratch, hit.actor)) continue;
+    // Surfaces touch just before outlines press: where nothing has changed in between, the contact
+    // with the force says all.
+    const double press_s = presses(hit.actor);
+    if (press_s == scratch.touched_until_s && press_s - hit.impact.time_s < same_event_s) continue;
     add_touch(scene, ego, hit, scratch);
+    scratch.touches.back().presses_later = std::isfinite(press_s);
   }
   return true;
 }

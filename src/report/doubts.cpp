@@ -189,7 +189,7 @@ void doubt_road(const Scenario& scenario, const RankResult& result,
                 std::vector<std::string>& doubts) {
   if (!scenario.road.ends() || result.ranking.empty()) return;
   const auto leaves_at_once = [](const CandidateResult& ranked) {
-    return ranked.leaves_road && ranked.leaves_road->time_s == 0.0;
+    return detail::leaves_in_likeliest(ranked) && ranked.leaves_road->time_s == 0.0;
   };
   if (std::any_of(result.ranking.begin(), result.ranking.end(), leaves_at_once)) {
     doubts.emplace_back(

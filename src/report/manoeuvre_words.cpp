@@ -49,8 +49,10 @@ std::string demand_words(const ManoeuvreDemand& demand) {
   return {};
 }
 
-std::string leaving_words(const CandidateResult& ranked) {
-  if (!ranked.leaves_road) return {};
+namespace {
+
+/// Probability that it leaves the road; empty if it does so in every future.
+std::string leaving_probability(const CandidateResult& ranked) {
   double probability = 0.0;
   for (const FutureOutcome& future : ranked.futures) {
     if (future.leaves_road) probability += future.probability;
@@ -58,10 +60,17 @@ std::string leaving_words(const CandidateResult& ranked) {
   // Without futures nothing is known of others than the likeliest; a sum of all may be 1 but for
   // rounding.
   const bool certain = ranked.futures.empty() || probability > 1.0 - 1e-9;
+  return certain ? std::string() : percent_text(probability);
+}
+
+}  // namespace
+
+std::string leaving_words(const CandidateResult& ranked) {
+  if (!ranked.leaves_road) return {};
+  const std::string probability = leaving_probability(ranked);
   return fmt::format("leaves the road after {:.2f} s at {:.1f} m/s{}", ranked.leaves_road->time_s,
                      ranked.leaves_road->speed_mps,
-                     certain ? std::string()
-                             : fmt::format(" with a probability of {}", percent_text(probability)));
+                     probability.empty() ? "" : " with a probability of " + probability);
 }
 
 bool leaves_in_likeliest(const CandidateResult& ranked) {
@@ -92,7 +101,11 @@ std::string passing_words(const Scenario& scenario, const CandidateResult& ranke
 std::string manoeuvre_mark(const CandidateResult& ranked) {
   std::string mark;
   if (!ranked.feasible) mark = "cannot be followed";
-  if (ranked.leaves_road) mark += mark.empty() ? "off the road" : ", off the road";
+  if (ranked.leaves_road) {
+    const std::string probability = leaving_probability(ranked);
+    mark += mark.empty() ? "off the road" : ", off the road";
+    if (!probability.empty()) mark += " with " + probability;
+  }
   if (ranked.imminent) mark += (mark.empty() ? "" : ", ") + before_crash(ranked);
   return mark;
 }

@@ -104,6 +104,76 @@ TEST(Touches, EndWithTheFirstForce) {
   for (const Contact& contact : on.contacts) EXPECT_NE(contact.actor, 1U);
 }
 
+// The event of a force shortly after a touch begins with the touch, whose directions count for it.
+TEST(Touches, DoNotDependOnTheHeading) {
+  const auto harm_at = [](double heading_rad, double pole_m) {
+    Scene scene = empty_street(15.0);
+    scene.add_actor("brushed", pedestrian, 10.0, 1.15);
+    scene.add_actor("pole", pole, pole_m, 0.0);
+    scene.scenario.ego.pose = pose_from_angles({0, 0, 0}, heading_rad, 0.0, 0.0);
+    for (ScenarioActor& actor : scene.scenario.actors) {
+      const Eigen::Vector3d at = scene.scenario.ego.pose.rotation * actor.pose.translation;
+      actor.pose = pose_from_angles(at, heading_rad, 0.0, 0.0);
+    }
+    return scene.ranked();
+  };
+  int soon = 0;
+  for (double pole_m = 11.5; pole_m < 16.0; pole_m += 0.5) {
+    const RankResult ahead = harm_at(0.0, pole_m);
+    const CandidateResult& on = of(ahead, "on");
+    ASSERT_GE(on.contacts.size(), 2U);
+    const double gap_s = on.contacts[1].time_of_impact_s - on.contacts[0].time_of_impact_s;
+    if (on.contacts[0].actor == 0 && gap_s < 0.2) ++soon;
+    for (const double heading_rad : {0.5, 1.570796, 3.0}) {
+      const RankResult turned = harm_at(heading_rad, pole_m);
+      EXPECT_NEAR(*of(turned, "on").score, *on.score, 1e-3 * *on.score) << pole_m;
+    }
+  }
+  EXPECT_GE(soon, 3);
+}
+
+// A parked car slows the ego between a touch and the press on the same person.
+TEST(Touches, CountBesideALaterForceOnTheSamePerson) {
+  Scene scene = empty_street(30.0);
+  scene.scenario.listed.resize(1);
+  scene.add_actor("brushed", pedestrian, 18.55, -1.18);
+  const double alone = *scene.ranked().ranking.front().score;
+  scene.add_actor("parked", 0, 20.8, 0.5).occupants = 0.0;
+  for (const bool before : {false, true}) {
+    if (before) scene.add_actor("first", pedestrian, 8.0, -1.18);
+    const RankResult result = scene.ranked();
+    double harm = 0.0;
+    int contacts = 0;
+    for (const Contact& contact : result.ranking.front().contacts) {
+      if (contact.actor != 0) continue;
+      harm += contact.severity.harm;
+      ++contacts;
+    }
+    EXPECT_EQ(contacts, 2) << "another person before: " << before;
+    EXPECT_GE(harm, alone - 1e-12) << "another person before: " << before;
+  }
+}
+
+// Parts of a wall that act as one are one contact, whichever is named first.
+TEST(Touches, OfJoinedPartsAreOneContact) {
+  std::vector<double> energies;
+  for (const double side : {1.0, -1.0}) {
+    Scene scene = empty_street(15.0);
+    scene.scenario.listed.resize(1);
+    const std::size_t wall = scene.add_model(
+        "wall", scenes::box_mesh({0.2F, 2.0F, 1.0F}, 1, {0, 0, 1.0F}), BodyKind::building);
+    scene.add_actor("brushed", pedestrian, 8.0, 1.15);
+    scene.add_actor("one", wall, 18.0, 2.0 * side);
+    scene.add_actor("two", wall, 18.0, -2.0 * side);
+    const RankResult result = scene.ranked(Measure::closing_energy);
+    const CandidateResult& on = result.ranking.front();
+    EXPECT_EQ(on.contacts.size(), 2U);
+    EXPECT_EQ(on.contacts[0].actor, 0U);
+    energies.push_back(*on.score);
+  }
+  EXPECT_DOUBLE_EQ(energies[0], energies[1]);
+}
+
 TEST(Touches, HaveTheMeanOverTheFutures) {
   constexpr std::uint64_t seed = 42;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));

@@ -104,10 +104,12 @@ struct ContactOutcome {
   double dissipated_j = 0.0;  ///< loss of kinetic energy of both bodies, >= 0
   double friction_j = 0.0;    ///< part of it dissipated by friction
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< mean point of the force, world, m
-  BodyContact a;                                      ///< result for A
-  BodyContact b;                                      ///< result for B
-  ContactMotion motion;                               ///< motion of both during the contact
-  std::uint32_t steps = 0;                            ///< steps of the integration
+  /// Mean point of the force when it begins, world, m.
+  Eigen::Vector3d begin_point_m = Eigen::Vector3d::Zero();
+  BodyContact a;             ///< result for A
+  BodyContact b;             ///< result for B
+  ContactMotion motion;      ///< motion of both during the contact
+  std::uint32_t steps = 0;   ///< steps of the integration
   std::uint64_t pieces = 0;  ///< outline pieces moved, summed over all steps: the amount of work
 };
 
