@@ -188,6 +188,7 @@ void doubt_horizon(const Scenario& scenario, const RankResult& result,
 void doubt_road(const Scenario& scenario, const RankResult& result,
                 std::vector<std::string>& doubts) {
   if (!scenario.road.ends() || result.ranking.empty()) return;
+  const std::string leaving = detail::leaving_probability(result.ranking.front());
   const auto leaves_at_once = [](const CandidateResult& ranked) {
     return detail::leaves_in_likeliest(ranked) && ranked.leaves_road->time_s == 0.0;
   };
@@ -200,6 +201,7 @@ void doubt_road(const Scenario& scenario, const RankResult& result,
              scenario.road.harm_per_leaving == 0.0) {
     doubts.emplace_back(
         "the first place " + detail::leaving_words(result.ranking.front()) +
+        (leaving.empty() ? "" : " with a probability of " + leaving) +
         ", and what lies beside it counts as harmless; state road.off_road.harm_per_leaving");
   }
 }

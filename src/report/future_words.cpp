@@ -110,6 +110,25 @@ LikeliestBody likeliest_body(const CandidateResult& ranked) {
   return most;
 }
 
+/// Says which body the ego hits first in the futures that make most of an expected score, where
+/// that is not the one that is hit most probably.
+std::string costliest_words(const Scenario& scenario, const RankResult& result,
+                            const CandidateResult& ranked, std::size_t likeliest_actor) {
+  if (result.futures.risk.kind != RiskKind::expected || !ranked.score || !(*ranked.score > 0.0)) {
+    return {};
+  }
+  std::map<std::size_t, double> shares;
+  for (const FutureOutcome& future : ranked.futures) {
+    if (future.collides) shares[future.actor] += future.probability * future.score / *ranked.score;
+  }
+  const auto most =
+      std::max_element(shares.begin(), shares.end(),
+                       [](const auto& p, const auto& q) { return p.second < q.second; });
+  if (most == shares.end() || most->first == likeliest_actor) return {};
+  return fmt::format(" {} of its score comes from futures in which it hits {} first.",
+                     percent_text(most->second), scenario.actors[most->first].name);
+}
+
 /// Whom candidates hit that touch nothing in the likeliest future.
 void add_collisions(const Scenario& scenario, const RankResult& result,
                     std::vector<std::string>& words) {
@@ -121,10 +140,11 @@ void add_collisions(const Scenario& scenario, const RankResult& result,
     if (ranked.collides || hit == nullptr || ++told > most) continue;
     words.push_back(fmt::format(
         "“{}” touches nothing in the likeliest future, but collides with a probability of {}; most "
-        "probably with {} ({}), likeliest after {:.3f} s, closing with {} m/s.",
+        "probably with {} ({}), likeliest after {:.3f} s, closing with {} m/s.{}",
         result.candidates[ranked.candidate].name, percent_text(ranked.collision_probability),
         scenario.actors[hit->actor].name, percent_text(body.probability), hit->time_of_impact_s,
-        fixed_text(hit->closing_speed_mps, 1)));
+        fixed_text(hit->closing_speed_mps, 1),
+        costliest_words(scenario, result, ranked, hit->actor)));
   }
   if (told > most) words.push_back(fmt::format("So do {} more.", told - most));
 }

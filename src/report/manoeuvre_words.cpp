@@ -49,10 +49,8 @@ std::string demand_words(const ManoeuvreDemand& demand) {
   return {};
 }
 
-namespace {
-
-/// Probability that it leaves the road; empty if it does so in every future.
 std::string leaving_probability(const CandidateResult& ranked) {
+  if (!ranked.leaves_road) return {};
   double probability = 0.0;
   for (const FutureOutcome& future : ranked.futures) {
     if (future.leaves_road) probability += future.probability;
@@ -63,14 +61,10 @@ std::string leaving_probability(const CandidateResult& ranked) {
   return certain ? std::string() : percent_text(probability);
 }
 
-}  // namespace
-
 std::string leaving_words(const CandidateResult& ranked) {
   if (!ranked.leaves_road) return {};
-  const std::string probability = leaving_probability(ranked);
-  return fmt::format("leaves the road after {:.2f} s at {:.1f} m/s{}", ranked.leaves_road->time_s,
-                     ranked.leaves_road->speed_mps,
-                     probability.empty() ? "" : " with a probability of " + probability);
+  return fmt::format("leaves the road after {:.2f} s at {:.1f} m/s", ranked.leaves_road->time_s,
+                     ranked.leaves_road->speed_mps);
 }
 
 bool leaves_in_likeliest(const CandidateResult& ranked) {

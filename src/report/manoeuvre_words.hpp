@@ -17,6 +17,8 @@ std::string passing_words(const Scenario& scenario, const CandidateResult& ranke
 /// When and how fast a wheel leaves the road: "leaves the road after 1.31 s at 17.2 m/s"; empty
 /// where none does.
 std::string leaving_words(const CandidateResult& ranked);
+/// Probability of that; empty if it does so in every future, or in none.
+std::string leaving_probability(const CandidateResult& ranked);
 /// Whether it leaves the road before its first contact in the likeliest future.
 bool leaves_in_likeliest(const CandidateResult& ranked);
 

@@ -36,8 +36,9 @@ std::string other_view(const Scenario& scenario, View<const Model> models, const
   const double second_m2 = damaged_area_m2(scenario, models, second);
   if (result.measure != Measure::area && first_m2 > second_m2) {
     return fmt::format(
-        " By damaged area it would be the other way round: {:.2f} m² against {:.2f}.", first_m2,
-        second_m2);
+        " By damaged area{} it would be the other way round: {:.2f} m² against {:.2f}.",
+        first.futures.size() > 1 || second.futures.size() > 1 ? " in the likeliest future" : "",
+        first_m2, second_m2);
   }
   return {};
 }
@@ -194,10 +195,12 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
   std::string likeliest = outcome_of_likeliest(scenario, ranked);
   if (ranked.futures.size() < 2) return likeliest;
-  likeliest += fmt::format(" in the likeliest future (the probability of a collision is {})",
-                           detail::percent_text(ranked.collision_probability));
+  const std::string leaving = leaving_probability(ranked);
+  likeliest += fmt::format(" in the likeliest future (the probability of a collision is {}{})",
+                           percent_text(ranked.collision_probability),
+                           leaving.empty() ? "" : ", of leaving the road " + leaving);
   if (!ranked.leaves_road || leaves_in_likeliest(ranked)) return likeliest;
-  return likeliest + "; otherwise it " + leaving_words(ranked);
+  return likeliest + "; in another it " + leaving_words(ranked);
 }
 
 std::string reason_words(const Scenario& scenario, View<const Model> models,

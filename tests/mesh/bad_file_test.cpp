@@ -31,6 +31,11 @@ std::string cube(const std::string& before = "", const std::string& after = "") 
   return before + cube_vertices + cube_faces + after;
 }
 
+std::string without_end(std::string text, std::size_t bytes) {
+  text.resize(text.size() - bytes);
+  return text;
+}
+
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   const std::size_t at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
@@ -190,6 +195,13 @@ std::vector<Case> cases() {
       {"head.stl", test::as_stl_binary(soup).substr(0, 83),
        "a binary one begins with 84 bytes, and it has 83"},
       {"none.stl", std::string(80, ' ') + std::string(4, '\0'), "STL"},
+      {"cut.ply", without_end(test::as_ply_text(soup), 30),
+       "it ends after 34 of the 36 faces that its header promises"},
+      {"cut_binary.ply", without_end(test::as_ply_binary(soup), 5),
+       "it ends after 35 of the 36 faces that its header promises"},
+      {"cut_vertices.ply", without_end(test::as_ply_binary(soup), 13 * 36 + 1),
+       "it ends after 107 of the 108 vertices that its header promises"},
+      {"cut_face.obj", cube() + "f 1 2", "the file ends within a face: it was cut"},
       {"promises.ply",
        replaced(test::as_ply_text(soup), "element vertex 108", "element vertex 4000000000"), ""},
       {"points.ply",

@@ -1,7 +1,10 @@
 #include "mesh/importer/obj_fault.hpp"
 
+#include "mesh/importer/content.hpp"
 #include "mesh/importer/obj_lines.hpp"
 #include "mesh/text.hpp"
+
+#include <sys/stat.h>
 
 #include <charconv>
 #include <cstddef>
@@ -90,6 +93,20 @@ std::optional<Error> vertex_fault(std::string_view line, std::size_t number) {
   return at_line(number, "a vertex has 3, 4 or 6 numbers, this line " + std::to_string(counted));
 }
 
+std::size_t corners_of(std::string_view face) {
+  word(face);
+  std::size_t corners = 0;
+  while (!word(face).empty()) ++corners;
+  return corners;
+}
+
+bool ends_in_newline(int descriptor) {
+  struct stat file = {};
+  if (::fstat(descriptor, &file) != 0 || file.st_size == 0) return true;
+  const std::string last = read_at(descriptor, static_cast<std::size_t>(file.st_size) - 1, 1);
+  return last == "\n" || last == "\r";
+}
+
 /// Whether the parser is where it passes over all lines up to one that says `end`.
 bool in_section(bool inside, std::string_view line) {
   return inside ? word(line) != "end" : word(line) == "cstype";
@@ -100,7 +117,8 @@ bool in_section(bool inside, std::string_view line) {
 Result<std::uint64_t> check_obj_lines(int descriptor) {
   ObjStatements statements(descriptor);
   std::uint64_t faces = 0;
-  std::size_t section = 0;  // the line of the cstype whose end has not come yet
+  std::size_t section = 0;   // the line of the cstype whose end has not come yet
+  std::size_t cut_face = 0;  // the last line, if it is a face with too few corners
   for (ObjStatement statement; statements.next(statement);) {
     const std::string_view text = statement.text;
     if (statement.swallows > 0) {
@@ -112,6 +130,7 @@ Result<std::uint64_t> check_obj_lines(int descriptor) {
           "take that backslash away");
     }
     if (means(text, 'f')) ++faces;
+    cut_face = means(text, 'f') && corners_of(text) < 3 ? statement.number : 0;
     if (means(text, 'v')) {
       if (section > 0) {
         return at_line(statement.number,
@@ -132,6 +151,9 @@ Result<std::uint64_t> check_obj_lines(int descriptor) {
         section = statement.number;
       }
     }
+  }
+  if (cut_face > 0 && !ends_in_newline(descriptor)) {
+    return at_line(cut_face, "the file ends within a face: it was cut", "export or copy it again");
   }
   return faces;
 }

@@ -5,6 +5,7 @@
 #include "mesh/importer/folder_io.hpp"
 #include "mesh/importer/gltf_count.hpp"
 #include "mesh/importer/obj_fault.hpp"
+#include "mesh/importer/ply_check.hpp"
 #include "mesh/importer/text_checks.hpp"
 
 #include <assimp/config.h>
@@ -83,6 +84,10 @@ std::uint64_t polygons_in(const aiScene& scene) {
 Result<std::uint64_t> check_lines(const Request& request) {
   if (request.extension == "obj") return check_obj_lines(STDIN_FILENO);
   if (request.extension == "off") return check_off_lines(STDIN_FILENO);
+  if (request.extension == "ply") {
+    const Status whole = check_ply_end(STDIN_FILENO);
+    if (!whole) return whole.error();
+  }
   return std::uint64_t{0};
 }
 
