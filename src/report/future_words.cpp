@@ -103,9 +103,11 @@ LikeliestBody likeliest_body(const CandidateResult& ranked) {
       body.likeliest = &future;
     }
   }
+  // Sums that differ by rounding are equal: the first in the order of the actors.
+  constexpr double rounding = 1e-9;
   LikeliestBody most;
   for (const auto& [actor, body] : bodies) {
-    if (body.probability > most.probability) most = body;
+    if (body.probability > most.probability + rounding) most = body;
   }
   return most;
 }
@@ -124,7 +126,8 @@ std::string costliest_words(const Scenario& scenario, const RankResult& result,
   const auto most =
       std::max_element(shares.begin(), shares.end(),
                        [](const auto& p, const auto& q) { return p.second < q.second; });
-  if (most == shares.end() || most->first == likeliest_actor) return {};
+  constexpr double rounding = 1e-9;
+  if (most == shares.end() || most->second < shares[likeliest_actor] + rounding) return {};
   return fmt::format(" {} of its score comes from futures in which it hits {} first.",
                      percent_text(most->second), scenario.actors[most->first].name);
 }

@@ -85,7 +85,7 @@ Result<std::uint64_t> check_lines(const Request& request) {
   if (request.extension == "obj") return check_obj_lines(STDIN_FILENO);
   if (request.extension == "off") return check_off_lines(STDIN_FILENO);
   if (request.extension == "ply") {
-    const Status whole = check_ply_end(STDIN_FILENO);
+    const Status whole = check_ply(STDIN_FILENO);
     if (!whole) return whole.error();
   }
   return std::uint64_t{0};

@@ -130,6 +130,34 @@ std::optional<Header> read_header(int descriptor) {
   return std::nullopt;
 }
 
+/// The fault of a header in the order of its elements; nothing if there is none.
+std::optional<Error> order_fault(const Header& header) {
+  constexpr const char* remedy = "export vertices and faces alone";
+  bool has_vertices = false;
+  for (const Element& element : header.elements) {
+    if (element.count == 0) continue;
+    const std::string named = "element " + detail::quoted(element.name, 40);
+    if (element.properties.empty()) {
+      return make_error(ErrorCode::bad_input, named + " has no properties", remedy);
+    }
+    const bool is_known = header.format == Header::Format::text && element.name == "material";
+    if (!has_vertices && element.name != "vertex" && !is_known) {
+      return make_error(ErrorCode::bad_input,
+                        named + " stands before the vertices, where it cannot be read", remedy);
+    }
+    if (element.name == "face") return std::nullopt;
+    has_vertices = has_vertices || element.name == "vertex";
+    const bool has_lists =
+        std::any_of(element.properties.begin(), element.properties.end(),
+                    [](const Property& property) { return property.count_bytes > 0; });
+    if (has_lists && element.name != "vertex") {
+      return make_error(ErrorCode::bad_input,
+                        named + " has lists before the faces, where they cannot be read", remedy);
+    }
+  }
+  return std::nullopt;
+}
+
 /// Bytes of a file from an offset on, read a window at a time.
 class Bytes {
 public:
@@ -226,21 +254,27 @@ Error cut_after(const Element& element, std::uint64_t whole) {
 
 }  // namespace
 
-Status check_ply_end(int descriptor) {
+Status check_ply(int descriptor) {
   const std::optional<Header> header = read_header(descriptor);
   struct stat file = {};
   if (!header || ::fstat(descriptor, &file) != 0) return Success{};
+  if (std::optional<Error> fault = order_fault(*header)) return *fault;
   const auto size = static_cast<std::uint64_t>(file.st_size);
   Bytes bytes(descriptor, header->end);
   std::string word;
   for (const Element& element : header->elements) {
-    if (element.properties.empty()) continue;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const Read read =
           header->format == Header::Format::text
               ? read_text(element, bytes, word)
               : read_binary(element, header->format == Header::Format::big, size, bytes);
       if (read == Read::ended) return cut_after(element, i);
+      if (read == Read::unknown && header->format == Header::Format::text) {
+        return make_error(ErrorCode::bad_input,
+                          detail::quoted(element.name, 40) + " " + std::to_string(i) + " has " +
+                              detail::quoted(word, 40) + " where the length of a list stands",
+                          "correct it, or export the file again");
+      }
       if (read == Read::unknown) return Success{};
     }
   }
