@@ -1,13 +1,13 @@
 #include "mesh/importer/ply_check.hpp"
 
 #include "mesh/importer/content.hpp"
+#include "mesh/importer/words.hpp"
 #include "mesh/text.hpp"
 
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -42,25 +42,16 @@ bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; 
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
-  for (std::size_t i = 0; i < line.size();) {
-    if (is_space(line[i])) {
-      ++i;
-      continue;
-    }
-    std::size_t end = i;
-    while (end < line.size() && !is_space(line[end])) ++end;
-    words.push_back(line.substr(i, end - i));
-    i = end;
+  for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
+    words.push_back(word);
   }
   return words;
 }
 
 std::optional<std::uint64_t> count_of(std::string_view word) {
-  std::uint64_t number = 0;
-  const char* const end = word.data() + word.size();
-  const std::from_chars_result read = std::from_chars(word.data(), end, number);
-  if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
-  return number;
+  const std::optional<std::int64_t> number = whole_number(word);
+  if (!number || *number < 0) return std::nullopt;
+  return static_cast<std::uint64_t>(*number);
 }
 
 /// Bytes of a number of that type; 0: no type.

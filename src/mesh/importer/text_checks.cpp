@@ -2,12 +2,12 @@
 
 #include "mesh/importer/content.hpp"
 #include "mesh/importer/obj_lines.hpp"
+#include "mesh/importer/words.hpp"
 #include "mesh/text.hpp"
 
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -16,25 +16,6 @@
 
 namespace crashrank::importer {
 namespace {
-
-/// The next word, which is taken off; empty at the end.
-std::string_view take_word(std::string_view& line) {
-  constexpr std::string_view blanks = " \t\v";
-  const std::size_t begin = line.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  line.remove_prefix(begin);
-  const std::string_view word = line.substr(0, line.find_first_of(blanks));
-  line.remove_prefix(word.size());
-  return word;
-}
-
-std::optional<std::int64_t> whole_number(std::string_view word) {
-  std::int64_t number = 0;
-  const char* const end = word.data() + word.size();
-  const std::from_chars_result read = std::from_chars(word.data(), end, number);
-  if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
-  return number;
-}
 
 /// The lines that hold something: without comments and blank ones.
 class FilledLines {
