@@ -287,7 +287,8 @@ private:
   std::uint64_t pieces_ = 0;
 };
 
-/// Returns true if at least one body is movable and at least one is deformable.
+/// Returns true if at least one body is movable, at least one is deformable and both have outlines
+/// that press.
 bool can_press(const Vehicle& a, const Vehicle& b);
 
 }  // namespace detail

@@ -37,6 +37,12 @@ struct CrushCurves {
     length = minimum(length, all(crush_share) * thickness);
     hardening_length = minimum(hardening_length, all(hardens) * thickness);
   }
+  HWY_INLINE void scale(F8 factor) {
+    yield = yield * factor;
+    slope = slope * factor;
+    hardening = hardening * factor;
+    rigid = rigid * factor;
+  }
   HWY_INLINE F8 force_at(F8 depth) const {
     return yield + slope * depth + hardening * positive(depth - length) +
            rigid * positive(depth - length - hardening_length);

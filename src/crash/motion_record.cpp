@@ -7,6 +7,7 @@ Pose moved_pose(const Pose& given, const Eigen::Vector3d& center, const PlanarPl
   Pose pose = given;
   pose.translation.x() += now.x - start.x;
   pose.translation.y() += now.y - start.y;
+  pose.translation.z() += ground_rise(given).dot(Eigen::Vector2d(now.x - start.x, now.y - start.y));
   if (now.cosine == start.cosine && now.sine == start.sine) return pose;
   // The origin rotates about the centre of mass by the change of heading since the start.
   pose.translation.x() +=

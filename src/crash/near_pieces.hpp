@@ -27,6 +27,9 @@ struct alignas(64) PieceCurves {
   std::array<float, block_pieces> rigid{};
 };
 
+/// No band of the other body lies at the height.
+inline constexpr std::uint8_t no_band = 255;
+
 /// A group of eight blocks with a bit for each block that is in the list.
 struct NearGroup {
   std::uint32_t group = 0;
@@ -46,6 +49,9 @@ struct NearPieces {
   std::uint32_t list = 0;              ///< number of the current list
   std::uint32_t first_list = 0;        ///< number of the first list of this pair of bodies
   double valid_for_m = -1e9;           ///< relative travel until a new list is needed
+  /// By band of these pieces: the band of the other body at the same height when the list was made,
+  /// or `no_band`.
+  std::array<std::uint8_t, profile_bands> target_band{};
 
   /// Allocates room for outlines with up to `most_pieces` pieces.
   void resize(std::size_t most_pieces);

@@ -38,7 +38,7 @@ inline void start_tracking(const PressQuery& q, const PieceBlock& block, const P
     const F8 y = load(rows.y.data() + h);
     const F8 at_x = all(q.to.c) * x - all(q.to.s) * y + all(q.to.x);
     const F8 at_y = all(q.to.s) * x + all(q.to.c) * y + all(q.to.y);
-    const F8 least = depths_at(target, block.band, at_x, at_y).least();
+    const F8 least = depths_at(target, q.target_band[block.band], at_x, at_y).least();
     const F8 crushed = minimum(load(states.path.data() + h), load(states.furthest.data() + h));
     const M8 any = less(all(0.0F), crushed);
     // Measured from the present position, outside the body: add the distance to the surface.
@@ -61,11 +61,15 @@ inline void start_tracking(const PressQuery& q, const PieceBlock& block, const P
 /// Computes the force-deflection curves of the block's pieces for their own body's material.
 inline void compute_block_curves(const PressQuery& q, const PieceBlock& block,
                                  const PieceRows& rows, PieceCurves& curves) {
+  // The force of both bodies counts for the height of the pressed body's band.
+  const float scale =
+      static_cast<float>(band_height_m(q.target_band[block.band]) / band_height_m(block.band));
   for (std::size_t h = 0; h < block_pieces; h += 8) {
     CrushCurves c = crush_curves(q.pusher->response, block.band, load(rows.x.data() + h),
                                  load(rows.y.data() + h), -load(rows.normal_x.data() + h),
                                  -load(rows.normal_y.data() + h));
     c.shorten(load(rows.thickness_m.data() + h));
+    c.scale(all(scale));
     store(c.yield, curves.yield.data() + h);
     store(c.slope, curves.slope.data() + h);
     store(c.length, curves.length.data() + h);
@@ -116,7 +120,9 @@ HWY_INLINE M8 are_near(const TransformedBoxes& at, const BandBounds& bounds, flo
 /// Returns the blocks of a group with pieces within `near_m` of the bounds of a height band, a bit
 /// for each.
 HWY_INLINE std::uint32_t near_blocks(const PressQuery& q, const BlockGroup& group, float near_m) {
-  const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[group.band];
+  const std::uint8_t band = q.target_band[group.band];
+  if (band == no_band) return 0;
+  const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[band];
   return bits(are_near(transform_boxes(q.to, group), bounds, near_m));
 }
 
@@ -125,7 +131,7 @@ HWY_INLINE std::uint32_t near_blocks(const PressQuery& q, const BlockGroup& grou
 /// other pieces of its block, and no piece that turns later is first found inside the body.
 HWY_INLINE std::uint32_t near_pieces(const PressQuery& q, const PieceBlock& block,
                                      const PieceRows& rows, float near_m) {
-  const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[block.band];
+  const BandBounds& bounds = q.pressed->vehicle->silhouettes.bands[q.target_band[block.band]];
   std::uint32_t which = 0;
   for (std::size_t h = 0; h < block.count; h += 8) {
     const F8 x = load(rows.x.data() + h);

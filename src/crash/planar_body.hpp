@@ -27,6 +27,11 @@ struct PlanarBody {
   double cosine = 1.0;
   double sine = 0.0;
   double turned = 0.0;  ///< heading change since the start, rad
+  /// Ground that the body stands on: its height under the point of first contact, world z, m, and
+  /// its rise per metre along x and y. It stays as it is while the body slides.
+  double ground_m = 0.0;
+  double rise_x = 0.0;
+  double rise_y = 0.0;
 
   double energy() const {
     if (inverse_mass == 0.0) return 0.0;
@@ -52,7 +57,20 @@ struct PlanarBody {
     cosine = turned_cosine;
     turned += seconds * spin;
   }
+  /// Height of its ground at a place, world z, m.
+  double ground_at(double at_x, double at_y) const {
+    return ground_m + (rise_x * at_x + rise_y * at_y);
+  }
 };
+
+/// Rise of the ground that a body stands on, per metre along world x and y: the plane of its own x
+/// and y axes; level for a body that lies on its side or on its roof.
+inline Eigen::Vector2d ground_rise(const Pose& pose) {
+  constexpr double standing = 0.5;
+  const Eigen::Vector3d up = pose.rotation.col(2);
+  if (!(up.z() > standing)) return Eigen::Vector2d::Zero();
+  return -up.head<2>() / up.z();
+}
 
 /// Centre of mass and heading of a planar body.
 struct PlanarPlace {
@@ -67,7 +85,7 @@ inline PlanarPlace place_of(const PlanarBody& body) {
 }
 
 /// Pose of a body's origin when its planar state is `now`, given that it was `given` when the
-/// planar state was `start`. `center_m`: centre of mass, body axes.
+/// planar state was `start`; it slides along the ground that it stands on. `center_m`: centre of mass, body axes.
 Pose moved_pose(const Pose& given, const Eigen::Vector3d& center_m, const PlanarPlace& start,
                 const PlanarPlace& now);
 
@@ -88,6 +106,12 @@ inline PlanarBody make_planar(const ContactBody& body, const Eigen::Vector3d& or
   const double arm_y = p.sine * v.center_m.x() + p.cosine * v.center_m.y();
   p.x = body.pose.translation.x() + arm_x - origin_m.x();
   p.y = body.pose.translation.y() + arm_y - origin_m.y();
+  const Eigen::Vector3d ground =
+      body.pose.translation + body.pose.rotation.col(2) * v.profile->ground_m;
+  const Eigen::Vector2d rise = ground_rise(body.pose);
+  p.rise_x = rise.x();
+  p.rise_y = rise.y();
+  p.ground_m = ground.z() - rise.dot(ground.head<2>() - origin_m.head<2>());
   if (!v.movable()) return p;
   p.inverse_mass = 1.0 / v.mass_kg;
   p.inverse_inertia = 1.0 / v.yaw_inertia_kgm2;

@@ -83,6 +83,25 @@ double SceneRun::closing_bound(std::size_t i, std::size_t j) const {
   return plane_length(p.vx - q.vx, p.vy - q.vy) + turning;
 }
 
+/// Returns true if no height of two bodies can be the same while both are within `listed_m` of where
+/// they are. `at`: state of the second body.
+bool SceneRun::heights_apart(std::size_t i, std::size_t j, const PlanarBody& at) const {
+  const PlanarBody& own = body(i);
+  const HeightRange& p = bodies_[i].vehicle->silhouettes.all_heights;
+  const HeightRange& q = bodies_[j].vehicle->silhouettes.all_heights;
+  // The smaller body is where both meet; the way to there and while the list is valid.
+  const double reach_m =
+      2.0 * listed_m + std::min(members_[i].radius_m, members_[j].radius_m);
+  const bool own_is_smaller = members_[i].radius_m < members_[j].radius_m;
+  const double x = own_is_smaller ? own.x : at.x;
+  const double y = own_is_smaller ? own.y : at.y;
+  const double rise_m = own.ground_at(x, y) - at.ground_at(x, y);
+  const double varies_m =
+      reach_m * plane_length(own.rise_x - at.rise_x, own.rise_y - at.rise_y) + 1e-3;
+  return static_cast<double>(p.low_m) + rise_m > static_cast<double>(q.high_m) + varies_m ||
+         static_cast<double>(p.high_m) + rise_m < static_cast<double>(q.low_m) - varies_m;
+}
+
 bool SceneRun::has_listed(std::size_t i, std::size_t j) const {
   const auto begin = near_.begin() + static_cast<std::ptrdiff_t>(i * most_near);
   const auto end = begin + static_cast<std::ptrdiff_t>(members_[i].near);
@@ -118,7 +137,7 @@ void SceneRun::list_near(std::size_t i) {
     const PlanarBody at =
         members_[j].state == State::planned ? make_planar(contact_body(j), origin_m_) : body(j);
     const double gap = gap_m(m, body(i), members_[j], at);
-    if (gap > listed_m) continue;
+    if (gap > listed_m || heights_apart(i, j, at)) continue;
     // Place the body for the middle of the last step, as a body that was already listed would have
     // been: results then do not depend on when the list is made.
     if (members_[j].placed_s < placed_s_) place_planned(j);

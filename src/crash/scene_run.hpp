@@ -205,6 +205,7 @@ private:
                                  double cosine, double sine);
   static void compute_extents(const Vehicle& vehicle, Member& member);
   double closing_bound(std::size_t i, std::size_t j) const;
+  bool heights_apart(std::size_t i, std::size_t j, const PlanarBody& at) const;
   bool has_listed(std::size_t i, std::size_t j) const;
   void track(double step_s);
   bool comes_near(const SceneBody& body, const Member& member, std::size_t place,

@@ -46,23 +46,48 @@ struct Edges {
   F8 greatest, least;
 };
 
-HWY_INLINE Edges edges_at(const Silhouettes& s, const Silhouette& of, const NodePlace& place) {
+/// Edges of the interval that holds a value; of several, none of which does, of the one nearest.
+HWY_INLINE Edges edges_at(const Silhouettes& s, const Silhouette& of, const NodePlace& place,
+                          F8 value) {
   static_assert(sizeof(SilhouetteNode) == 2 * sizeof(float));
   alignas(32) std::int32_t at[8];
   store(place.node + place.node, at);
   // Values of a node and the next one: greatest, least, greatest, least.
   F8 node[4];
   gather_rows(&s.nodes[of.first].greatest_m, at, node);
+  for (std::uint32_t layer = 1; layer < of.layers; ++layer) {
+    F8 other[4];
+    gather_rows(&s.nodes[of.first + layer * of.count].greatest_m, at, other);
+    for (std::size_t k = 0; k < 4; k += 2) {
+      const F8 inside = minimum(node[k] - value, value - node[k + 1]);
+      const M8 nearer = less(inside, minimum(other[k] - value, value - other[k + 1]));
+      node[k] = select(nearer, other[k], node[k]);
+      node[k + 1] = select(nearer, other[k + 1], node[k + 1]);
+    }
+  }
   return {node[0] + place.share * (node[2] - node[0]), node[1] + place.share * (node[3] - node[1])};
 }
 
 HWY_INLINE Depths depths_at(const Silhouettes& s, std::size_t band, F8 x, F8 y) {
   const NodePlace row = node_place(s.along_x[band], y);
   const NodePlace column = node_place(s.along_y[band], x);
-  const Edges ends = edges_at(s, s.along_x[band], row);
-  const Edges flanks = edges_at(s, s.along_y[band], column);
+  const Edges ends = edges_at(s, s.along_x[band], row, x);
+  const Edges flanks = edges_at(s, s.along_y[band], column, y);
   return {ends.greatest - x, x - ends.least, flanks.greatest - y, y - flanks.least,
           both(row.known, column.known)};
+}
+
+/// Heights that the body takes up at places along its x axis, m over its ground.
+HWY_INLINE Edges heights_at(const Silhouettes& s, std::size_t band, F8 x) {
+  static_assert(sizeof(HeightRange) == 2 * sizeof(float));
+  const NodePlace column = node_place(s.along_y[band], x);
+  alignas(32) std::int32_t at[8];
+  store(column.node + column.node, at);
+  // Values of a node and the next one: low, high, low, high.
+  F8 node[4];
+  gather_rows(&s.heights[s.first_height[band]].low_m, at, node);
+  return {node[1] + column.share * (node[3] - node[1]),
+          node[0] + column.share * (node[2] - node[0])};
 }
 
 }  // namespace crashrank::detail::HWY_NAMESPACE

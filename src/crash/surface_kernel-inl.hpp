@@ -15,6 +15,7 @@
 #include "crash/surface_kernel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -103,8 +104,9 @@ struct PressingPieces {
   const PieceCurves* curves = nullptr;
   float* path = nullptr;    ///< see PieceStates
   float* path_x = nullptr;  ///< see PieceStates
-  std::size_t band = 0;
-  std::size_t first = 0;  ///< first of the eight pieces within the block, 0 or 8
+  std::size_t band = 0;    ///< of the pieces
+  std::size_t target = 0;  ///< of the pressed body at the same height
+  std::size_t first = 0;   ///< first of the eight pieces within the block, 0 or 8
 };
 
 class ForceAccumulator {
@@ -127,8 +129,9 @@ private:
   LaneSums sums_;
   LaneBounds own_bounds_;
   LaneBounds other_bounds_;
-  std::size_t lowest_band_ = profile_bands;
-  std::size_t highest_band_ = 0;
+  /// Lowest and highest band that presses: of the pressed body and of the pusher.
+  std::array<std::size_t, 2> lowest_band_{profile_bands, profile_bands};
+  std::array<std::size_t, 2> highest_band_{0, 0};
 };
 
 template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const PressingPieces& p) {
@@ -146,17 +149,31 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   // Upper bound of 1/sine of the angle between the path of a piece and the surface, in the first
   // step inside.
   constexpr float max_inverse_sine = 10.0F;
+  constexpr auto profile_depth = static_cast<float>(profile_depth_m);
   const F8 zero = all(0.0F);
   const F8 one = all(1.0F);
   const F8 flank = all(flank_share);
   const F8 x = p.at.x;
   const F8 y = p.at.y;
-  Depths d = depths_at(target_, p.band, x, y);
+  Depths d = depths_at(target_, p.target, x, y);
   F8 least = d.least();
-  const M8 where = both(p.where, less(zero, least));
+  M8 where = both(p.where, less(zero, least));
   if (bits(where) == 0) return;
-  lowest_band_ = std::min(lowest_band_, p.band);
-  highest_band_ = std::max(highest_band_, p.band);
+  // Heights that both bodies take up: the piece at the surface and behind it, the pressed body
+  // there.
+  const Edges column = heights_at(target_, p.target, x);
+  const F8 rise = all(q_.rise_m);
+  const auto common_m = [&](const std::array<float, block_pieces>& low,
+                            const std::array<float, block_pieces>& high) {
+    return positive(minimum(load(high.data() + p.first) + rise, column.greatest) -
+                    maximum(load(low.data() + p.first) + rise, column.least));
+  };
+  const F8 common_at_edge = common_m(p.rows->edge_low_m, p.rows->edge_high_m);
+  const F8 common_behind = common_m(p.rows->behind_low_m, p.rows->behind_high_m);
+  where = both(where, less(zero, common_behind));
+  if (bits(where) == 0) return;
+  lowest_band_ = {std::min(lowest_band_[0], p.target), std::min(lowest_band_[1], p.band)};
+  highest_band_ = {std::max(highest_band_[0], p.target), std::max(highest_band_[1], p.band)};
   // Fill the lanes outside `where` with a number that keeps all results finite.
   const auto or_filler = [&](F8 a) { return select(where, a, all(0.01F)); };
   least = or_filler(least);
@@ -190,7 +207,9 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   const F8 end_weight = nx * nx;
   const F8 side_weight = flank * ny * ny;
   const F8 depth = end_weight * end + side_weight * minimum(side, end_depth_limit);
-  CrushCurves own = crush_curves(own_, p.band, x, y, nx, ny);
+  const F8 common = common_at_edge + (common_behind - common_at_edge) *
+                                         minimum(one, depth * all(1.0F / profile_depth));
+  CrushCurves own = crush_curves(own_, p.target, x, y, nx, ny);
   own.shorten(end_weight * (d.front + d.rear) + side_weight * (d.left + d.right));
   F8 force;
   F8 own_depth = depth;
@@ -227,10 +246,11 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   const F8 extra_width =
       minimum(all(2.0F * spread) * minimum(depth, depth_ahead), all(q_.excess_width_m));
   force = force * (one + extra_width * all(1.0F / q_.narrower_width_m));
-  const auto height = static_cast<float>(profile_edges_m[p.band + 1] - profile_edges_m[p.band]);
+  const auto height = static_cast<float>(band_height_m(p.target));
   const F8 length = load(p.rows->length_m.data() + p.first);
   const F8 pressed = (force + all(q_.dragged_density_kgm3 * height) * advance * advance) *
-                     minimum(one, least * all(1.0F / soft_m)) * own_share * length;
+                     minimum(one, least * all(1.0F / soft_m)) * own_share *
+                     (length * (common * all(1.0F / height)));
   const F8 whole = select(where, pressed, zero);
   const F8 least_ramp = all(least_ramp_mps);
   const F8 closing = minimum(one, advance / maximum(least_ramp, all(closing_share) * speed));
@@ -271,7 +291,7 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   };
   s.depth_own = maximum(s.depth_own, select(where, own_crush, zero));
   own_bounds_.grow(where, px, py);
-  if (p.band >= own_.cabin_band) {
+  if (p.target >= own_.cabin_band) {
     const F8 inside = inside_compartment(own_, px, py, nx);
     s.intrusion_own = maximum(s.intrusion_own, intrusion(inside, own_crush));
   }
@@ -294,7 +314,7 @@ inline constexpr double least_intruding_n = 10e3;
 
 inline void ForceAccumulator::store_sums(PressTotals& totals, PassSums& sums,
                                          PassRecord& record) const {
-  if (lowest_band_ == profile_bands) return;
+  if (lowest_band_[0] == profile_bands) return;
   const LaneSums& s = sums_;
   totals.force_x = sum_lanes(s.force_x);
   totals.force_y = sum_lanes(s.force_y);
@@ -313,17 +333,17 @@ inline void ForceAccumulator::store_sums(PressTotals& totals, PassSums& sums,
   sums.depth_other = greatest_lane(s.depth_other);
   const auto counted = static_cast<float>(std::min(1.0, sums.weight / least_intruding_n));
   record.intrusion_own = std::max(record.intrusion_own, counted * greatest_lane(s.intrusion_own));
-  const auto low = static_cast<float>(profile_edges_m[lowest_band_]);
-  const auto high = static_cast<float>(profile_edges_m[highest_band_ + 1]);
-  const auto grow = [&](const LaneBounds& lanes, Box& box) {
+  const auto grow = [&](const LaneBounds& lanes, std::size_t body, Box& box) {
+    const auto low = static_cast<float>(profile_edges_m[lowest_band_[body]]);
+    const auto high = static_cast<float>(profile_edges_m[highest_band_[body] + 1]);
     box.grow(Eigen::Vector3f(-greatest_lane(-lanes.min_x), -greatest_lane(-lanes.min_y), low));
     box.grow(Eigen::Vector3f(greatest_lane(lanes.max_x), greatest_lane(lanes.max_y), high));
   };
-  grow(own_bounds_, record.own);
+  grow(own_bounds_, 0, record.own);
   if (other_.rigid) return;
   record.intrusion_other =
       std::max(record.intrusion_other, counted * greatest_lane(s.intrusion_other));
-  grow(other_bounds_, record.other);
+  grow(other_bounds_, 1, record.other);
 }
 
 /// Advances the pieces of a block by a step and adds the forces of those that go beyond the depth
@@ -334,7 +354,8 @@ HWY_INLINE void advance_block(const PressQuery& q, std::size_t block, NearPieces
   constexpr float rounding_m = 1e-4F;
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
   const F8 step = all(static_cast<float>(q.settings->step_s));
-  const BandBounds& target = q.pressed->vehicle->silhouettes.bands[own.blocks[block].band];
+  const std::uint8_t target_band = q.target_band[own.blocks[block].band];
+  const BandBounds& target = q.pressed->vehicle->silhouettes.bands[target_band];
   const PieceRows& rows = own.rows[block];
   PieceStates& states = near.states[block];
   near.pieces += own.blocks[block].count;
@@ -362,6 +383,7 @@ HWY_INLINE void advance_block(const PressQuery& q, std::size_t block, NearPieces
     p.path = states.path.data() + h;
     p.path_x = states.path_x.data() + h;
     p.band = own.blocks[block].band;
+    p.target = target_band;
     p.first = h;
     accumulator.add_forces<both_yield>(p);
   }

@@ -7,6 +7,7 @@
 #include "crashrank/internal/vehicle/silhouettes.hpp"
 
 #include <array>
+#include <cstdint>
 
 namespace crashrank::detail {
 
@@ -31,7 +32,11 @@ struct PressQuery {
   float narrower_width_m = 1.0F;  ///< width of the narrower body
   float excess_width_m = 0.0F;  ///< width of the pressed body in excess of that of the pusher, >= 0
   float dragged_density_kgm3 = 0.0F;
+  float rise_m = 0.0F;  ///< height of the ground of the pusher over that of the pressed body
+  /// By band of the pusher: the band of the pressed body at the same height, or `no_band`.
+  std::array<std::uint8_t, profile_bands> target_band{};
 };
+
 
 /// Sums of a pass, in the pressed body's axes.
 struct PressTotals {

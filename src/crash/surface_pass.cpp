@@ -43,6 +43,38 @@ RelativeMotion relative_motion(const PressedBody& from, const PressedBody& to) {
   return relative_motion;
 }
 
+/// Height of the ground of the pusher over that of the pressed body, m: near the smaller of both.
+double rise_of(const PressedBody& pusher, const PressedBody& pressed) {
+  const PlanarBody& p = pusher.motion;
+  const PlanarBody& q = pressed.motion;
+  const double of_p = pusher.vehicle->silhouettes.longest_m();
+  const double of_q = pressed.vehicle->silhouettes.longest_m();
+  const double share = of_p / (of_p + of_q);
+  const double x = p.x + share * (q.x - p.x);
+  const double y = p.y + share * (q.y - p.y);
+  return p.ground_at(x, y) - q.ground_at(x, y);
+}
+
+/// By band of the pusher the band of the pressed body that shares most height with it.
+std::array<std::uint8_t, profile_bands> target_bands(double rise_m) {
+  constexpr double level_m = 1e-3;
+  std::array<std::uint8_t, profile_bands> target{};
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    target[band] = std::abs(rise_m) < level_m ? static_cast<std::uint8_t>(band) : no_band;
+    if (target[band] != no_band) continue;
+    double most_m = 0.0;
+    for (std::size_t other = lowest_pressing_band; other < profile_bands; ++other) {
+      const double common_m =
+          std::min(profile_edges_m[band + 1] + rise_m, profile_edges_m[other + 1]) -
+          std::max(profile_edges_m[band] + rise_m, profile_edges_m[other]);
+      if (common_m <= most_m) continue;
+      most_m = common_m;
+      target[band] = static_cast<std::uint8_t>(other);
+    }
+  }
+  return target;
+}
+
 }  // namespace
 
 bool inside_outline(const Vehicle& vehicle, std::size_t band, float x, float y) {
@@ -106,8 +138,13 @@ void compute_piece_forces(const PressedBody& pusher, const PressedBody& pressed,
   query.excess_width_m = std::max(0.0F, own_width - pusher_width);
   query.dragged_density_kgm3 =
       dragged_mass_factor * static_cast<float>(pressed.vehicle->density_kgm3);
+  const double rise_m = rise_of(pusher, pressed);
+  query.rise_m = static_cast<float>(rise_m);
   near.valid_for_m -= moved_m;
-  if (!(near.valid_for_m > 0.0)) {
+  const bool is_due = !(near.valid_for_m > 0.0);
+  if (is_due) near.target_band = target_bands(rise_m);
+  query.target_band = near.target_band;
+  if (is_due) {
     list_blocks(query, static_cast<float>(list_travel_m + step_travel_m), near);
     near.valid_for_m = list_travel_m;
   }

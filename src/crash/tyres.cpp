@@ -24,7 +24,7 @@ constexpr double lorry_cornering = 0.13 * radian_deg;
 // pick-up by which MASH (AASHTO 2016, table 4-1) selects test vehicles.
 constexpr double track_over_width = 0.86;
 // Height bands of the outline that hold the body's width but no mirrors: up to 0.6 m.
-constexpr std::size_t low_bands = 3;
+constexpr std::size_t low_bands = 4;
 
 // Below this speed the direction of sliding is undefined, m/s.
 constexpr double least_sliding_mps = 1e-9;

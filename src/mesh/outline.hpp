@@ -1,26 +1,40 @@
 #pragma once
 
+#include "mesh/band_raster.hpp"
+
 #include <Eigen/Core>
 
-#include <array>
 #include <vector>
 
 namespace crashrank::detail {
 
-/// A straight piece of a mesh's section by a horizontal plane, m.
-using SectionSegment = std::array<Eigen::Vector2d, 2>;
+/// A closed line with the body to its left, first point not repeated.
+struct OutlineLoop {
+  std::vector<Eigen::Vector2d> points;  ///< m
+  bool inner = false;                   ///< goes round free space inside the body
 
-/// A closed line, first point not repeated; what it encloses lies to its left.
-using OutlineLoop = std::vector<Eigen::Vector2d>;
+  /// Area that it encloses, m²; negative where it runs clockwise.
+  double area_m2() const;
+};
 
-/// Lines around what a section encloses, seen from outside: gaps of up to two cells are closed and
-/// what lies inside is left out. `cell_m` grows where the raster would exceed 4 million cells, or
-/// the segments together would be longer than 10 million cells. Points lie on the segments where
-/// those are near, and within `tolerance_m` of the rastered line.
-std::vector<OutlineLoop> trace_outlines(const std::vector<SectionSegment>& segments, double cell_m,
-                                        double tolerance_m);
+/// Lines around what a body has within a height band, seen from above, and the heights of its
+/// surface there.
+class BandOutline {
+public:
+  /// `cell_m`: see `raster_over`. Points lie on edges of the surface where those are near, and
+  /// within `tolerance_cells` cells of the rastered line.
+  BandOutline(const BandSurface& surface, double cell_m, double tolerance_cells);
 
-/// Area that a loop encloses, m²; negative where it runs clockwise.
-double loop_area_m2(const OutlineLoop& loop);
+  /// Outer loops, then inner ones.
+  const std::vector<OutlineLoop>& loops() const noexcept { return loops_; }
+  /// Heights of the surface at a piece of a loop and up to `behind_m` behind it, over the ground.
+  HeightRange heights(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                      double behind_m) const;
+
+private:
+  Raster raster_;
+  std::vector<HeightRange> heights_;
+  std::vector<OutlineLoop> loops_;
+};
 
 }  // namespace crashrank::detail

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace crashrank {
 namespace {
@@ -52,59 +54,77 @@ Result<Box> surface_bounds(const TriangleMesh& mesh) {
   return box;
 }
 
-/// Section of the mesh by a horizontal plane, body coordinates.
-void cut(const TriangleMesh& mesh, double height, std::vector<detail::SectionSegment>& segments) {
-  segments.clear();
-  for (const auto& triangle : mesh.triangles) {
-    std::array<Vector2d, 3> point;
-    std::size_t count = 0;
-    for (std::size_t e = 0; e < 3; ++e) {
-      const Eigen::Vector3d p = mesh.vertices[triangle[e]].cast<double>();
-      const Eigen::Vector3d q = mesh.vertices[triangle[(e + 1) % 3]].cast<double>();
-      if ((p.z() < height) == (q.z() < height)) continue;
-      // From the lower end, whichever way the edge runs: neighbours meet at the same point.
-      const Eigen::Vector3d& low = p.z() < q.z() ? p : q;
-      const Eigen::Vector3d& high = p.z() < q.z() ? q : p;
-      const double t = (height - low.z()) / (high.z() - low.z());
-      point[count++] = low.head<2>() + t * (high.head<2>() - low.head<2>());
+/// Triangles that reach into each band, in their order.
+std::array<std::vector<std::uint32_t>, profile_bands> triangles_by_band(const TriangleMesh& mesh,
+                                                                        double ground_m) {
+  std::array<std::vector<std::uint32_t>, profile_bands> by_band;
+  for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const std::uint32_t index : mesh.triangles[i]) {
+      const double z = static_cast<double>(mesh.vertices[index].z()) - ground_m;
+      low = std::min(low, z);
+      high = std::max(high, z);
     }
-    if (count == 2) segments.push_back({point[0], point[1]});
+    for (std::size_t band = 0; band < profile_bands; ++band) {
+      if (low < profile_edges_m[band + 1] && high > profile_edges_m[band]) {
+        by_band[band].push_back(i);
+      }
+    }
   }
+  return by_band;
 }
 
 /// Area that a loop encloses, m²; 0 where that is rounding.
 double enclosed_m2(const detail::OutlineLoop& loop) {
   double length = 0.0;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    length += (loop[(i + 1) % loop.size()] - loop[i]).norm();
+  for (std::size_t i = 0; i < loop.points.size(); ++i) {
+    length += (loop.points[(i + 1) % loop.points.size()] - loop.points[i]).norm();
   }
-  const double area = detail::loop_area_m2(loop);
+  const double area = loop.area_m2();
   return area > least_area_per_length2 * length * length ? area : 0.0;
 }
 
-void add_pieces(const detail::OutlineLoop& loop, double longest_m,
-                std::vector<OutlinePiece>& pieces) {
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Vector2d& from = loop[i];
-    const Vector2d along = loop[(i + 1) % loop.size()] - from;
+void add_pieces(const detail::BandOutline& outline, const detail::OutlineLoop& loop,
+                double longest_m, std::vector<OutlinePiece>& pieces) {
+  for (std::size_t i = 0; i < loop.points.size(); ++i) {
+    const Vector2d& from = loop.points[i];
+    const Vector2d& to = loop.points[(i + 1) % loop.points.size()];
+    const Vector2d along = to - from;
     const double length = along.norm();
     if (!(length > 1e-6)) continue;
     const int count = std::max(1, static_cast<int>(std::ceil(length / longest_m - 1e-6)));
     const Vector2d normal(along.y() / length, -along.x() / length);
-    const Vector2d half_sum = 0.5 * (from + loop[(i + 1) % loop.size()]);
     for (int k = 0; k < count; ++k) {
       // From the middle: the same bits whichever way the line runs.
-      const Vector2d middle = half_sum + ((2 * k + 1 - count) / (2.0 * count)) * along;
-      pieces.push_back({static_cast<float>(middle.x()), static_cast<float>(middle.y()),
-                        static_cast<float>(normal.x()), static_cast<float>(normal.y()),
-                        static_cast<float>(length / count)});
+      const Vector2d middle =
+          0.5 * (from + to) + ((2 * k + 1 - count) / (2.0 * count)) * along;
+      const Vector2d half = (0.5 / count) * along;
+      OutlinePiece piece{static_cast<float>(middle.x()), static_cast<float>(middle.y()),
+                         static_cast<float>(normal.x()), static_cast<float>(normal.y()),
+                         static_cast<float>(length / count), {}, {}};
+      piece.at_edge = outline.heights(middle - half, middle + half, 0.0);
+      piece.behind = outline.heights(middle - half, middle + half, profile_depth_m);
+      pieces.push_back(piece);
     }
   }
 }
 
+/// Share of the height of a band that the surface behind the pieces takes up, by their lengths.
+double occupied_share(const OutlinePiece* first, const OutlinePiece* last, double height_m) {
+  double length = 0.0;
+  double occupied = 0.0;
+  for (const OutlinePiece* piece = first; piece != last; ++piece) {
+    const auto piece_m = static_cast<double>(piece->length_m);
+    length += piece_m;
+    if (piece->behind.empty()) continue;
+    occupied += piece_m * static_cast<double>(piece->behind.high_m - piece->behind.low_m);
+  }
+  return length > 0.0 ? std::min(1.0, occupied / (length * height_m)) : 0.0;
+}
+
 Result<Profile> profile_of(const TriangleMesh& mesh) {
   constexpr double below_ground_m = 0.3;
-  constexpr double beside_vertices_m = 1.3e-6;
   Profile profile;
   const Result<Box> box = surface_bounds(mesh);
   if (!box) return box.error();
@@ -115,30 +135,33 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
   const double cell_m = std::clamp(longest / cells_along, finest_cell_m, coarsest_cell_m);
   const double piece_m =
       std::max(std::min(usual_piece_m, longest / 16.0), longest / most_pieces_along);
-  std::vector<detail::SectionSegment> segments;
+  const auto triangles = triangles_by_band(mesh, profile.ground_m);
   for (std::size_t band = 0; band < profile_bands; ++band) {
-    profile.first[band] = static_cast<std::uint32_t>(profile.pieces.size());
-    const double middle = 0.5 * (profile_edges_m[band] + profile_edges_m[band + 1]);
-    cut(mesh, profile.ground_m + middle + beside_vertices_m, segments);
+    profile.first[band] = profile.first_inner[band] =
+        static_cast<std::uint32_t>(profile.pieces.size());
+    if (triangles[band].empty()) continue;
+    const detail::BandSurface surface{&mesh, &triangles[band], profile.ground_m,
+                                      profile_edges_m[band], profile_edges_m[band + 1]};
+    const detail::BandOutline outline(surface, cell_m, tolerance_cells);
     double area = 0.0;
-    for (const detail::OutlineLoop& loop :
-         detail::trace_outlines(segments, cell_m, tolerance_cells * cell_m)) {
-      add_pieces(loop, piece_m, profile.pieces);
-      area += enclosed_m2(loop);
+    for (const detail::OutlineLoop& loop : outline.loops()) {
+      add_pieces(outline, loop, piece_m, profile.pieces);
+      if (!loop.inner) {
+        area += enclosed_m2(loop);
+        profile.first_inner[band] = static_cast<std::uint32_t>(profile.pieces.size());
+      }
       if (profile.pieces.size() > max_profile_pieces) {
         return make_error(ErrorCode::limit_exceeded,
                           "has outlines of more than 2 million pieces between 0 and 4 m",
                           "simplify it, or check its scale");
       }
     }
-    profile.area_m2[band] = static_cast<float>(area);
+    profile.area_m2[band] = static_cast<float>(
+        area * occupied_share(profile.pieces.data() + profile.first[band],
+                              profile.pieces.data() + profile.first_inner[band],
+                              band_height_m(band)));
   }
   profile.first[profile_bands] = static_cast<std::uint32_t>(profile.pieces.size());
-  if (!(profile.volume_m3() > 0.0)) {
-    return make_error(ErrorCode::bad_input,
-                      "has no outline between 0 and 4 m over the ground that encloses anything",
-                      "check its scale, its up axis and its origin on the ground");
-  }
   return profile;
 }
 
@@ -148,9 +171,26 @@ double Profile::volume_m3() const {
   double volume = 0.0;
   for (std::size_t band = 0; band < profile_bands; ++band) {
     volume +=
-        static_cast<double>(area_m2[band]) * (profile_edges_m[band + 1] - profile_edges_m[band]);
+        static_cast<double>(area_m2[band]) * band_height_m(band);
   }
   return volume;
+}
+
+bool Profile::has_inner() const noexcept {
+  return !std::equal(first_inner.begin(), first_inner.end(), first.begin() + 1);
+}
+
+Profile Profile::filled() const {
+  Profile profile = *this;
+  profile.pieces.clear();
+  for (std::size_t band = 0; band < profile_bands; ++band) {
+    profile.first[band] = static_cast<std::uint32_t>(profile.pieces.size());
+    profile.pieces.insert(profile.pieces.end(), pieces.begin() + first[band],
+                          pieces.begin() + first_inner[band]);
+    profile.first_inner[band] = static_cast<std::uint32_t>(profile.pieces.size());
+  }
+  profile.first[profile_bands] = static_cast<std::uint32_t>(profile.pieces.size());
+  return profile;
 }
 
 Result<Profile> make_profile(const TriangleMesh& mesh) {

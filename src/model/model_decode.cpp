@@ -2,6 +2,7 @@
 #include "model/model_layout.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -32,7 +33,8 @@ Status check_size(const ModelHeader& header, std::size_t found) {
 Status check_counts(const ModelHeader& header) {
   constexpr std::uint32_t flags = flag_axes_are_world | flag_center_of_mass_is_stated;
   const bool stated = (header.flags & flag_center_of_mass_is_stated) != 0;
-  const bool unused = !stated && header.center_of_mass_um != std::array<std::int32_t, 3>{};
+  const bool unused = (!stated && header.center_of_mass_um != std::array<std::int32_t, 3>{}) ||
+                      header.unused != 0 || std::bit_cast<std::uint64_t>(header.unused_too) != 0;
   if (unused || (header.flags & ~flags) != 0 || header.up > 5 || header.forward > 5) {
     return refused("head", "it holds what this version never writes");
   }
@@ -130,24 +132,29 @@ std::shared_ptr<const Profile> read_profile(const ModelHeader& header,
   profile->pieces.resize(place.bytes / sizeof(OutlinePiece));
   std::memcpy(profile->pieces.data(), bytes.data() + place.offset, place.bytes);
   profile->first = header.first_piece;
+  profile->first_inner = header.first_inner_piece;
   profile->area_m2 = header.band_area_m2;
   profile->ground_m = header.ground_m;
   return profile;
 }
 
-/// A file without a profile says so in one way, and only where its mesh has none: otherwise it
-/// would be written again as another file.
-Status check_missing_profile(const ModelHeader& header, const TriangleMesh& mesh) {
+/// The profile of a file without outline pieces: of a mesh without outlines an empty one, of a mesh
+/// without a profile none. Such a file must be canonical, so that encode(decode(file)) == file.
+Result<std::shared_ptr<const Profile>> missing_profile(const ModelHeader& header,
+                                                       const TriangleMesh& mesh) {
   const auto* const head = reinterpret_cast<const unsigned char*>(&header);
   if (std::any_of(head + offsetof(ModelHeader, ground_m),
                   head + offsetof(ModelHeader, center_of_mass_um),
                   [](unsigned char byte) { return byte != 0; })) {
     return refused("profile", "it has no piece");
   }
-  const Result<Profile> made = make_profile(mesh);
-  if (made) return refused("profile", "there is none, though the mesh has outlines");
-  if (means_no_profile(made.error())) return Success{};
-  return made.error();
+  Result<Profile> made = make_profile(mesh);
+  if (!made) {
+    if (means_no_profile(made.error())) return std::shared_ptr<const Profile>();
+    return made.error();
+  }
+  if (!made->pieces.empty()) return refused("profile", "it has no piece, but the mesh has outlines");
+  return std::shared_ptr<const Profile>(std::make_shared<Profile>(std::move(*made)));
 }
 
 Error with_remedy(Error error) {
@@ -215,7 +222,9 @@ Result<LoadedModel> decode_model(View<const unsigned char> bytes,
   const Model& read = model;
   if (Status status = validate(read); !status) return with_remedy(status.error());
   if (model.profile == nullptr) {
-    if (Status status = check_missing_profile(header, read.mesh); !status) return status.error();
+    Result<std::shared_ptr<const Profile>> profile = missing_profile(header, read.mesh);
+    if (!profile) return profile.error();
+    model.profile = std::move(*profile);
   }
   return loaded;
 }

@@ -114,6 +114,16 @@ bool is_unit(float x, float y) {
   return std::abs(std::sqrt(p * p + q * q) - 1.0) <= rounding;
 }
 
+/// True for an empty range, whose bits are those of a new one, and for one within a band.
+bool lies_in_band(const HeightRange& range, std::size_t band) {
+  const HeightRange none;
+  if (range.low_m == none.low_m && range.high_m == none.high_m) return true;
+  constexpr double rounding_m = 1e-6;
+  return static_cast<double>(range.low_m) >= profile_edges_m[band] - rounding_m &&
+         range.low_m <= range.high_m &&
+         static_cast<double>(range.high_m) <= profile_edges_m[band + 1] + rounding_m;
+}
+
 Status check_bands(const Profile& profile, double most_area_m2) {
   const auto& first = profile.first;
   if (first.front() != 0 || !std::is_sorted(first.begin(), first.end()) ||
@@ -121,6 +131,9 @@ Status check_bands(const Profile& profile, double most_area_m2) {
     return broken("profile", "its bands do not follow each other or do not share out its pieces");
   }
   for (std::size_t band = 0; band < profile_bands; ++band) {
+    if (profile.first_inner[band] < first[band] || profile.first_inner[band] > first[band + 1]) {
+      return broken("profile", "its inner outlines do not lie within their bands");
+    }
     const auto area = static_cast<double>(profile.area_m2[band]);
     if (!(area >= 0.0 && area <= most_area_m2) || (area > 0.0 && first[band] == first[band + 1])) {
       return broken("profile", "the area of a band is negative, not finite or not within its mesh");
@@ -130,7 +143,7 @@ Status check_bands(const Profile& profile, double most_area_m2) {
 }
 
 Status check_profile(const Profile& profile, const TriangleMesh& mesh) {
-  if (profile.pieces.empty()) return broken("profile", "it has no piece");
+  if (profile.pieces.empty()) return Success{};
   if (profile.pieces.size() > max_profile_pieces) {
     Error error = broken("profile", "it has more than 2 million pieces");
     error.code = ErrorCode::limit_exceeded;
@@ -144,8 +157,10 @@ Status check_profile(const Profile& profile, const TriangleMesh& mesh) {
     return broken("profile", "its ground is not a finite height within its mesh");
   }
   if (Status status = check_bands(profile, bounds.area_m2()); !status) return status;
+  std::size_t band = 0;
   for (std::size_t i = 0; i < profile.pieces.size(); ++i) {
     const OutlinePiece& piece = profile.pieces[i];
+    while (i >= profile.first[band + 1]) ++band;
     const auto refuse = [&](const char* reason) {
       return broken("outline piece " + std::to_string(i), reason);
     };
@@ -154,8 +169,10 @@ Status check_profile(const Profile& profile, const TriangleMesh& mesh) {
     if (!(piece.length_m > 0.0F && static_cast<double>(piece.length_m) <= max_piece_m)) {
       return refuse("its length is not above 0 and at most 1 km");
     }
+    if (!lies_in_band(piece.at_edge, band) || !lies_in_band(piece.behind, band)) {
+      return refuse("its heights do not lie within its band");
+    }
   }
-  if (!(profile.volume_m3() > 0.0)) return broken("profile", "its outlines enclose nothing");
   return Success{};
 }
 
@@ -230,9 +247,10 @@ ModelHeader header_of(const StoredModel& stored, const Profile* profile, std::si
   header.origin_m = three(stored.transform.origin_m);
   header.up = static_cast<std::uint32_t>(stored.transform.up);
   header.forward = static_cast<std::uint32_t>(stored.transform.forward);
-  if (profile != nullptr) {
+  if (profile != nullptr && !profile->pieces.empty()) {
     header.ground_m = profile->ground_m;
     header.first_piece = profile->first;
+    header.first_inner_piece = profile->first_inner;
     header.band_area_m2 = profile->area_m2;
   }
   return header;

@@ -52,15 +52,18 @@ struct ModelHeader {
   double ground_m;  ///< the members of the profile; 0, all of them, where there is none
   /// Of each band, then the number of pieces.
   std::array<std::uint32_t, profile_bands + 1> first_piece;
+  std::array<std::uint32_t, profile_bands> first_inner_piece;
   std::array<float, profile_bands> band_area_m2;
   std::array<std::int32_t, 3> center_of_mass_um;  ///< µm; 0 where it is not stated
+  std::uint32_t unused;                           ///< 0
   double yaw_inertia_kgm2;                        ///< 0: not stated
+  double unused_too;                              ///< 0
 };
-static_assert(sizeof(ModelHeader) == 384);
+static_assert(sizeof(ModelHeader) == 448);
 static_assert(offsetof(ModelHeader, axes) == 64 && offsetof(ModelHeader, ground_m) == 272);
-static_assert(offsetof(ModelHeader, band_area_m2) == 324);
-static_assert(offsetof(ModelHeader, center_of_mass_um) == 364);
-static_assert(offsetof(ModelHeader, yaw_inertia_kgm2) == 376);
+static_assert(offsetof(ModelHeader, band_area_m2) == 372);
+static_assert(offsetof(ModelHeader, center_of_mass_um) == 416);
+static_assert(offsetof(ModelHeader, yaw_inertia_kgm2) == 432);
 
 /// Where the checksum begins. It ends where the corners begin: they and the clusters repeat what
 /// other sections hold, and are compared with it bit for bit.
@@ -74,7 +77,7 @@ struct StoredPart {
 
 static_assert(sizeof(StoredPart) == 8 && sizeof(Eigen::Vector3f) == 12 && sizeof(Node) == 32);
 static_assert(sizeof(Triangle) == 36 && sizeof(WideLanes) == 8);
-static_assert(sizeof(std::array<std::uint32_t, 3>) == 12 && sizeof(OutlinePiece) == 20);
+static_assert(sizeof(std::array<std::uint32_t, 3>) == 12 && sizeof(OutlinePiece) == 36);
 
 enum Section : std::size_t {
   section_parts,

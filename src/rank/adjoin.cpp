@@ -55,6 +55,11 @@ bool boxes_within(const Rectangle& p, const Rectangle& q, double reach_m) {
   return true;
 }
 
+/// Returns true if the heights of two bodies come within `reach_m` of each other.
+bool heights_within(const Rectangle& p, const Rectangle& q, double reach_m) {
+  return p.low_m - q.high_m <= reach_m && q.low_m - p.high_m <= reach_m;
+}
+
 /// A straight piece of an outline in plan view.
 struct FixedSegment {
   Vector2d middle;  ///< relative to the origin of the search, world axes, m
@@ -220,7 +225,9 @@ Rectangle rectangle_of(const Body& fixed) {
   return {
       center.head<2>(),
       {pose.rotation.col(0).head<2>().normalized(), pose.rotation.col(1).head<2>().normalized()},
-      {0.5 * size.x(), 0.5 * size.y()}};
+      {0.5 * size.x(), 0.5 * size.y()},
+      center.z() - 0.5 * size.z(),
+      center.z() + 0.5 * size.z()};
 }
 
 double distance_m(const Rectangle& rectangle, const Vector2d& point) {
@@ -232,7 +239,9 @@ double distance_m(const Rectangle& rectangle, const Vector2d& point) {
 
 bool adjoin(const Body& p, const Rectangle& box_p, const Body& q, const Rectangle& box_q) {
   const double reach_m = max_gap_m(box_p, box_q);
-  if (!boxes_within(box_p, box_q, reach_m)) return false;
+  if (!boxes_within(box_p, box_q, reach_m) || !heights_within(box_p, box_q, side_gap_m)) {
+    return false;
+  }
   const Vector2d origin = box_p.center;
   const std::vector<FixedSegment> of_p = segments_near(p, box_q, origin, reach_m);
   const std::vector<FixedSegment> of_q = segments_near(q, box_p, origin, reach_m);

@@ -15,6 +15,8 @@ struct Rectangle {
   Eigen::Vector2d center;
   std::array<Eigen::Vector2d, 2> axis;  ///< unit vectors of the sides
   std::array<double, 2> half;           ///< half the side along each axis, m
+  double low_m = 0.0;                   ///< world z of its lower end, m
+  double high_m = 0.0;                  ///< and of its upper end, m
 };
 
 Rectangle rectangle_of(const Body& fixed);

@@ -27,6 +27,73 @@ Ends ends_of(const OutlinePiece& piece, bool over_x) {
   return ends;
 }
 
+/// Calls back for every node that a piece passes, with the value there.
+template <class Visit>
+void visit_nodes(const OutlinePiece& piece, bool over_x, const Silhouette& s, Visit&& visit) {
+  const float step = 1.0F / s.nodes_per_m;
+  const Ends e = ends_of(piece, over_x);
+  const auto last = static_cast<int>(s.count) - 1;
+  const int from = std::max(0, static_cast<int>(std::ceil((e.from - s.low_m) / step - 1e-3F)));
+  const int to = std::min(last, static_cast<int>(std::floor((e.to - s.low_m) / step + 1e-3F)));
+  for (int k = from; k <= to; ++k) {
+    const float place = s.low_m + step * static_cast<float>(k);
+    const float share =
+        e.to > e.from ? std::clamp((place - e.from) / (e.to - e.from), 0.0F, 1.0F) : 0.5F;
+    visit(static_cast<std::size_t>(k), e.value_from + share * (e.value_to - e.value_from));
+  }
+}
+
+/// An outline on a line of nodes: the body begins, ends (`out` above 0) or runs along the line.
+struct Crossing {
+  float value = 0.0F;
+  float out = 0.0F;
+};
+
+/// Intervals of a line that belong to the body. What lies between two crossings is free where the
+/// body ends at the first and begins at the second.
+std::vector<SilhouetteNode> intervals_of(std::vector<Crossing>& crossings) {
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    return a.value != b.value ? a.value < b.value : a.out < b.out;
+  });
+  std::vector<SilhouetteNode> intervals;
+  float out = -1.0F;
+  for (const Crossing& c : crossings) {
+    const bool begins = intervals.empty() ||
+                        (out > 0.0F && c.out < 0.0F &&
+                         c.value - intervals.back().greatest_m >=
+                             static_cast<float>(least_free_width_m));
+    if (begins) intervals.push_back({c.value, c.value});
+    intervals.back().greatest_m = std::max(intervals.back().greatest_m, c.value);
+    if (c.out != 0.0F) out = c.out;
+  }
+  while (intervals.size() > Silhouette::most_layers) {
+    std::size_t narrowest = 1;
+    const auto gap = [&](std::size_t k) {
+      return intervals[k].least_m - intervals[k - 1].greatest_m;
+    };
+    for (std::size_t k = 2; k < intervals.size(); ++k) {
+      if (gap(k) < gap(narrowest)) narrowest = k;
+    }
+    intervals[narrowest - 1].greatest_m = intervals[narrowest].greatest_m;
+    intervals.erase(intervals.begin() + static_cast<std::ptrdiff_t>(narrowest));
+  }
+  return intervals;
+}
+
+/// One node beyond each edge repeats the edge, so that interpolation reaches up to it.
+template <class Row, class Covered>
+void repeat_edges(std::vector<Row>& rows, Covered&& is_covered) {
+  const std::vector<Row> sampled = rows;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (is_covered(sampled[k])) continue;
+    if (k > 0 && is_covered(sampled[k - 1])) {
+      rows[k] = sampled[k - 1];
+    } else if (k + 1 < rows.size() && is_covered(sampled[k + 1])) {
+      rows[k] = sampled[k + 1];
+    }
+  }
+}
+
 Silhouette sample(const Profile& profile, std::size_t band, bool over_x, float low, float high,
                   float step, std::vector<SilhouetteNode>& nodes) {
   constexpr float rim = 2.5F;  // steps beside the outline, so that no edge falls on the last node
@@ -37,35 +104,58 @@ Silhouette sample(const Profile& profile, std::size_t band, bool over_x, float l
   s.count = static_cast<std::uint32_t>((high - low) / step + 2.0F * rim) + 2;
   // About the middle, so that a mirrored body has mirrored nodes.
   s.low_m = 0.5F * (low + high) - 0.5F * step * static_cast<float>(s.count - 1);
-  nodes.resize(nodes.size() + s.count);
-  SilhouetteNode* const at = nodes.data() + s.first;
-  const auto last = static_cast<int>(s.count) - 1;
+  std::vector<std::vector<Crossing>> crossings(s.count);
   for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
-    const Ends e = ends_of(profile.pieces[i], over_x);
-    const int from = std::max(0, static_cast<int>(std::ceil((e.from - s.low_m) / step - 1e-3F)));
-    const int to = std::min(last, static_cast<int>(std::floor((e.to - s.low_m) / step + 1e-3F)));
-    for (int k = from; k <= to; ++k) {
-      const float place = s.low_m + step * static_cast<float>(k);
-      const float share =
-          e.to > e.from ? std::clamp((place - e.from) / (e.to - e.from), 0.0F, 1.0F) : 0.5F;
-      const float value = e.value_from + share * (e.value_to - e.value_from);
-      at[k].greatest_m = std::max(at[k].greatest_m, value);
-      at[k].least_m = std::min(at[k].least_m, value);
+    const OutlinePiece& piece = profile.pieces[i];
+    visit_nodes(piece, over_x, s, [&](std::size_t k, float value) {
+      crossings[k].push_back({value, over_x ? piece.normal_y : piece.normal_x});
+    });
+  }
+  std::vector<std::vector<SilhouetteNode>> intervals;
+  intervals.reserve(crossings.size());
+  for (std::vector<Crossing>& of_node : crossings) intervals.push_back(intervals_of(of_node));
+  repeat_edges(intervals, [](const auto& of_node) { return !of_node.empty(); });
+  s.layers = 1;
+  for (const auto& of_node : intervals) {
+    s.layers = std::max(s.layers, static_cast<std::uint32_t>(of_node.size()));
+  }
+  nodes.resize(nodes.size() + std::size_t{s.layers} * s.count);
+  for (std::size_t k = 0; k < intervals.size(); ++k) {
+    for (std::size_t layer = 0; layer < intervals[k].size(); ++layer) {
+      nodes[s.first + layer * s.count + k] = intervals[k][layer];
     }
   }
-  // One node beyond each edge repeats the edge, so that interpolation reaches up to it.
-  const std::vector<SilhouetteNode> sampled(at, at + s.count);
-  for (int k = 0; k <= last; ++k) {
-    const auto covered = [&](int j) {
-      return j >= 0 && j <= last && sampled[static_cast<std::size_t>(j)].greatest_m > -1e8F;
-    };
-    if (covered(k)) continue;
-    if (covered(k - 1))
-      at[k] = sampled[static_cast<std::size_t>(k) - 1];
-    else if (covered(k + 1))
-      at[k] = sampled[static_cast<std::size_t>(k) + 1];
-  }
   return s;
+}
+
+/// Heights that the body takes up in a band over each node of a silhouette over x. Where they reach
+/// an edge of the band beyond which the body goes on, so do they.
+void sample_heights(const Profile& profile, std::size_t band, Silhouettes& s) {
+  constexpr float at_edge_m = 0.01F;
+  constexpr float far_m = 1e3F;
+  const Silhouette& over = s.along_y[band];
+  s.first_height[band] = static_cast<std::uint32_t>(s.heights.size());
+  std::vector<HeightRange> heights(over.count);
+  for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
+    const OutlinePiece& piece = profile.pieces[i];
+    visit_nodes(piece, true, over, [&](std::size_t k, float) { heights[k].grow(piece.behind); });
+    s.all_heights.grow(piece.behind);
+  }
+  repeat_edges(heights, [](const HeightRange& range) { return !range.empty(); });
+  const auto goes_on = [&](std::size_t next) {
+    return next < profile_bands && profile.first[next] < profile.first[next + 1];
+  };
+  for (HeightRange& range : heights) {
+    if (range.empty()) continue;
+    if (range.low_m < static_cast<float>(profile_edges_m[band]) + at_edge_m && goes_on(band - 1)) {
+      range.low_m = -far_m;
+    }
+    if (range.high_m > static_cast<float>(profile_edges_m[band + 1]) - at_edge_m &&
+        goes_on(band + 1)) {
+      range.high_m = far_m;
+    }
+  }
+  s.heights.insert(s.heights.end(), heights.begin(), heights.end());
 }
 
 /// Puts a block into a place of its group.
@@ -107,7 +197,7 @@ void add_groups(const Profile& profile, std::size_t first_block, Silhouettes& s)
 BandBounds bounds_of(const Silhouettes& s, std::size_t band) {
   BandBounds bounds;
   const auto grow = [&](const Silhouette& of, float& least, float& greatest) {
-    for (std::uint32_t i = of.first; i < of.first + of.count; ++i) {
+    for (std::uint32_t i = of.first; i < of.first + of.layers * of.count; ++i) {
       least = std::min(least, s.nodes[i].least_m);
       greatest = std::max(greatest, s.nodes[i].greatest_m);
     }
@@ -117,23 +207,36 @@ BandBounds bounds_of(const Silhouettes& s, std::size_t band) {
   return bounds;
 }
 
-/// Greatest less least value at a coordinate; 0 beside the outline.
-float chord(const Silhouettes& s, const Silhouette& of, float at) {
+/// Length of the interval of a node that a value lies in or nearest to; 0 without one.
+float chord_at(const Silhouettes& s, const Silhouette& of, std::uint32_t node, float value) {
+  float best = -1e9F;
+  float length = 0.0F;
+  for (std::uint32_t layer = 0; layer < of.layers; ++layer) {
+    const SilhouetteNode& n = s.nodes[of.first + layer * of.count + node];
+    const float inside = std::min(n.greatest_m - value, value - n.least_m);
+    if (inside <= best) continue;
+    best = inside;
+    length = n.greatest_m - n.least_m;
+  }
+  return length;
+}
+
+/// Chord of the body through a value at a coordinate; 0 beside the outline.
+float chord(const Silhouettes& s, const Silhouette& of, float at, float value) {
   const float place = (at - of.low_m) * of.nodes_per_m;
   const auto i = static_cast<std::uint32_t>(std::max(place, 0.0F));
   if (i + 1 >= of.count) return 0.0F;
-  const SilhouetteNode* const node = s.nodes.data() + of.first + i;
   const float share = place - static_cast<float>(i);
-  const float first = node[0].greatest_m - node[0].least_m;
-  return std::max(0.0F, first + share * (node[1].greatest_m - node[1].least_m - first));
+  const float first = chord_at(s, of, i, value);
+  return std::max(0.0F, first + share * (chord_at(s, of, i + 1, value) - first));
 }
 
 /// See `PieceRows::thickness_m`.
 float thickness(const Silhouettes& s, std::size_t band, const OutlinePiece& p) {
   constexpr float least_m = 0.02F;
   return std::max(least_m,
-                  p.normal_x * p.normal_x * chord(s, s.along_x[band], p.y) +
-                      flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x));
+                  p.normal_x * p.normal_x * chord(s, s.along_x[band], p.y, p.x) +
+                      flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x, p.y));
 }
 
 PieceRows make_rows(const Profile& profile, const Silhouettes& s, const PieceBlock& block) {
@@ -147,6 +250,10 @@ PieceRows make_rows(const Profile& profile, const Silhouettes& s, const PieceBlo
     rows.normal_y[k] = piece.normal_y;
     rows.length_m[k] = piece.length_m;
     rows.thickness_m[k] = thickness(s, block.band, piece);
+    rows.edge_low_m[k] = piece.at_edge.low_m;
+    rows.edge_high_m[k] = piece.at_edge.high_m;
+    rows.behind_low_m[k] = piece.behind.low_m;
+    rows.behind_high_m[k] = piece.behind.high_m;
   }
   return rows;
 }
@@ -159,10 +266,11 @@ Silhouettes make_silhouettes(const Profile& profile) {
   constexpr float nodes_across = 20.0F;
   constexpr float most_nodes = 4096.0F;
   Silhouettes s;
-  if (profile.pieces.empty()) return s;
+  if (!profile.presses()) return s;
   s.min_x = s.min_y = std::numeric_limits<float>::max();
   s.max_x = s.max_y = -s.min_x;
-  for (const OutlinePiece& piece : profile.pieces) {
+  for (std::size_t i = profile.first[lowest_pressing_band]; i < profile.pieces.size(); ++i) {
+    const OutlinePiece& piece = profile.pieces[i];
     s.min_x = std::min(s.min_x, piece.x);
     s.max_x = std::max(s.max_x, piece.x);
     s.min_y = std::min(s.min_y, piece.y);
@@ -172,10 +280,11 @@ Silhouettes make_silhouettes(const Profile& profile) {
   const float longest = std::max(s.max_x - s.min_x, s.max_y - s.min_y);
   const float step =
       std::max(std::clamp(width / nodes_across, finest_m, coarsest_m), longest / most_nodes);
-  for (std::size_t band = 0; band < profile_bands; ++band) {
+  for (std::size_t band = lowest_pressing_band; band < profile_bands; ++band) {
     s.along_x[band] = sample(profile, band, false, s.min_y, s.max_y, step, s.nodes);
     s.along_y[band] = sample(profile, band, true, s.min_x, s.max_x, step, s.nodes);
     s.bands[band] = bounds_of(s, band);
+    sample_heights(profile, band, s);
     constexpr auto most = static_cast<std::uint32_t>(block_pieces);
     const std::size_t first_block = s.blocks.size();
     for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += most) {

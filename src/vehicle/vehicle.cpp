@@ -219,13 +219,11 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
                           std::shared_ptr<const Profile> profile) {
   constexpr double least_gyration2_m2 = 1e-6;
   Vehicle v;
-  if (profile == nullptr || profile->pieces.empty()) {
+  if (profile == nullptr) {
     Result<Profile> made = make_profile(mesh);
     if (!made) return made.error();
     profile = std::make_shared<const Profile>(std::move(*made));
   }
-  v.profile = std::move(profile);
-  v.silhouettes = make_silhouettes(*v.profile);
   v.kind = facts.kind;
   const Box box = mesh.bounds();
   const Vector3d size = box.extent().cast<double>();
@@ -234,6 +232,11 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
   v.mass_is_guessed = !facts.mass_kg.has_value();
   v.center_m = box.center().cast<double>();
   v.leading_edge_m = 0.0;
+  // What a vehicle is filled with is structure.
+  v.profile = v.movable() && profile->has_inner()
+                  ? std::make_shared<const Profile>(profile->filled())
+                  : std::move(profile);
+  v.silhouettes = make_silhouettes(*v.profile);
   const Axles axles = axles_of(v.kind, *v.profile, rear_x, size.x());
   v.rear_axle_x_m = axles.rear_x_m;
   v.wheelbase_m = axles.wheelbase_m;
@@ -251,7 +254,10 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
         return status.error();
       }
     }
-    v.density_kgm3 = v.mass_kg / v.profile->volume_m3();
+    // No body is denser than steel; one without volume drags nothing along.
+    constexpr double steel_kgm3 = 7850.0;
+    const double volume_m3 = v.profile->volume_m3();
+    v.density_kgm3 = volume_m3 > 0.0 ? std::min(steel_kgm3, v.mass_kg / volume_m3) : 0.0;
   }
   v.strength = facts.honeycomb ? honeycomb_strength(*facts.honeycomb)
                : v.movable()   ? strength_of(v, box)

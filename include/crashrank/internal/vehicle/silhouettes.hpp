@@ -11,16 +11,20 @@
 
 namespace crashrank {
 
-/// Greatest and least coordinate of an outline along one body axis, sampled on nodes along the
-/// other. Nodes without outline hold -1e9 and 1e9.
+/// Intervals in which the body lies along one body axis, sampled on nodes along the other: one where
+/// it is convex, several where free space at least `least_free_width_m` wide parts them. They are
+/// stored in layers by rising coordinate: layer k of a node is its interval number k. Nodes with
+/// fewer intervals than layers hold -1e9 and 1e9 in the others.
 struct Silhouette {
+  static constexpr std::size_t most_layers = 4;  ///< the narrowest gaps beyond are closed
   float low_m = 0.0F;        ///< coordinate of the first node, m
   float nodes_per_m = 0.0F;  ///< 1 over their distance, 1/m
-  std::uint32_t first = 0;   ///< of its nodes in `Silhouettes::nodes`
-  std::uint32_t count = 0;   ///< number of nodes; 0: no outline in the band
+  std::uint32_t first = 0;   ///< of its nodes in `Silhouettes::nodes`, layer by layer
+  std::uint32_t count = 0;   ///< nodes of a layer; 0: no outline in the band
+  std::uint32_t layers = 0;  ///< number of layers
 };
 
-/// A node of a silhouette.
+/// An interval of a silhouette.
 struct SilhouetteNode {
   float greatest_m = -1e9F;  ///< m
   float least_m = 1e9F;      ///< m
@@ -59,6 +63,10 @@ struct alignas(64) PieceRows {
   /// The body's chords through the piece along x and across, blended as depths are by the squares
   /// of its normal, those across times `flank_share`, m.
   std::array<float, block_pieces> thickness_m{};
+  std::array<float, block_pieces> edge_low_m{};     ///< see `OutlinePiece::at_edge`
+  std::array<float, block_pieces> edge_high_m{};    ///< m
+  std::array<float, block_pieces> behind_low_m{};   ///< see `OutlinePiece::behind`
+  std::array<float, block_pieces> behind_high_m{};  ///< m
 };
 
 /// Share in which flanks count their depth below the body's side: what is swept aside has less
@@ -74,12 +82,16 @@ struct BandBounds {
 };
 
 /// What contacts read of a profile besides its pieces: the depth of a point below the front, rear
-/// and flanks of the body, by height band, and blocks of pieces. Holes between the silhouettes of a
-/// band are taken to be filled; a body that gives way is a vehicle or a person, whose outline has
-/// no deep bays.
+/// and flanks of the body, by height band, and blocks of pieces. Bands that do not press are empty.
 struct Silhouettes {
   std::array<Silhouette, profile_bands> along_x{};  ///< x of front and rear over y
   std::array<Silhouette, profile_bands> along_y{};  ///< y of left and right over x
+  /// First of the heights of each band in `heights`, one for every node of `along_y`.
+  std::array<std::uint32_t, profile_bands> first_height{};
+  /// Heights that the body takes up across its width, m over its ground; they go on beyond the edge
+  /// of a band where the body does.
+  std::vector<HeightRange> heights;
+  HeightRange all_heights;  ///< of all bands that press, m over the ground
   std::array<BandBounds, profile_bands> bands{};    ///< around both
   std::vector<SilhouetteNode> nodes;                ///< of all
   std::vector<PieceBlock> blocks;                   ///< by rising band
@@ -90,11 +102,14 @@ struct Silhouettes {
   float min_y = 0.0F;                               ///< m
   float max_y = 0.0F;                               ///< m
 
+  /// Larger side of the bounds, m.
+  double longest_m() const { return static_cast<double>(std::max(max_x - min_x, max_y - min_y)); }
   /// Smaller side of the bounds, m.
   double width_m() const { return static_cast<double>(std::min(max_x - min_x, max_y - min_y)); }
 };
 
-/// Samples a profile: nodes every 50 mm, every twentieth of the width of narrow bodies. O(pieces).
+/// Samples a profile: nodes every 50 mm, every twentieth of the width of narrow bodies. O(pieces log
+/// pieces).
 CRASHRANK_API Silhouettes make_silhouettes(const Profile& profile);
 
 }  // namespace crashrank
