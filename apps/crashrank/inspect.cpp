@@ -3,6 +3,9 @@
 #include "interrupt.hpp"
 #include "json.hpp"
 #include "mesh_arguments.hpp"
+#include "options.hpp"
+#include "profile_picture.hpp"
+#include "streams.hpp"
 
 #include "crashrank/internal/report/escape.hpp"
 #include "crashrank/internal/report/table.hpp"
@@ -12,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,6 +29,7 @@ namespace {
 struct InspectArguments {
   std::vector<std::string> files;
   bool json = false;
+  std::string profile;
   MeshArguments mesh;
 };
 
@@ -167,7 +172,37 @@ Result<ImportedMesh> look_at(const std::string& file, const MeshArguments& argum
   return mesh;
 }
 
+/// Draws the outlines of a mesh, or those stored in its model.
+Status draw_profile(const std::string& path, const std::string& mesh_file, const TriangleMesh& mesh,
+                    const std::optional<Compiled>& compiled) {
+  std::shared_ptr<const Profile> profile;
+  if (compiled) profile = compiled->stored.model.profile;
+  if (profile == nullptr) {
+    Result<Profile> made = make_profile(mesh);
+    if (!made) {
+      Error error = made.error();
+      error.file = mesh_file;
+      return error;
+    }
+    profile = std::make_shared<const Profile>(std::move(*made));
+  }
+  Result<OutputFile> out = OutputFile::open(path, svg_picture);
+  if (!out) return out.error();
+  out->write(profile_picture(*profile, std::filesystem::path(mesh_file).filename().string()));
+  return out->close();
+}
+
 int run(const InspectArguments& options) {
+  if (!options.profile.empty() && options.files.size() != 1) {
+    return fail(make_error(ErrorCode::usage, "--profile draws one mesh, so it needs exactly one MESH"));
+  }
+  if (is_standard(options.profile)) {
+    return fail(make_error(ErrorCode::usage,
+                           "--profile needs a file: the answer goes to standard output"));
+  }
+  if (const Status sound = can_be_written(options.profile, svg_picture, options.files); !sound) {
+    return fail(sound.error());
+  }
   if (const Status single = one_standard_input(options.files); !single) return fail(single.error());
   int code = exit_done;
   Json files = Json::array();
@@ -188,6 +223,10 @@ int run(const InspectArguments& options) {
       if (code == exit_done) code = failed;
       if (failed == exit_usage) return failed;
       continue;
+    }
+    if (!options.profile.empty()) {
+      const Status drawn = draw_profile(options.profile, file, imported->mesh, compiled);
+      if (!drawn) return fail(drawn.error());
     }
     const ImportTransform transform =
         compiled ? compiled->stored.transform : *options.mesh.transform();
@@ -215,8 +254,12 @@ void add_inspect(CLI::App& app, Action& action) {
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "Answer in JSON");
+  add_file(*command, "--profile", options->profile,
+           "Draw the outlines that a crash sees, by height, into this SVG file");
   options->mesh.add_to(*command);
-  command->footer("Example:\n  crashrank inspect car.obj --scale 0.001 --up +y --forward -z");
+  command->footer(
+      "Examples:\n  crashrank inspect car.obj --scale 0.001 --up +y --forward -z\n"
+      "  crashrank inspect car.obj --profile outlines.svg");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -43,6 +43,8 @@ struct OutputKind {
   bool follow_links = true;  ///< unset: symbolic links are refused, it has to be in its folder
 };
 
+inline constexpr OutputKind svg_picture{"an SVG picture", "<svg "};
+
 /// Whether both are, or would be, the same file or folder; links are followed.
 bool same_place(const std::string& a, const std::string& b);
 

@@ -29,7 +29,6 @@
 namespace crashrank::cli {
 namespace {
 
-constexpr OutputKind svg_picture{"an SVG picture", "<svg "};
 
 struct SweepArguments {
   std::string a;

@@ -44,9 +44,11 @@ struct CrushResponse {
     while (cabin_band < profile_bands && profile_edges_m[cabin_band] < strength.core.floor_m) {
       ++cabin_band;
     }
-    for (std::size_t band = 0; band < profile_bands; ++band) {
+    for (std::size_t band = lowest_pressing_band; band < profile_bands; ++band) {
+      // The lowest band bears for what is below, which does not press.
+      const double low_m = band == lowest_pressing_band ? 0.0 : profile_edges_m[band];
       share[band] = static_cast<float>(
-          factor * strength.share_of_band(profile_edges_m[band], profile_edges_m[band + 1]));
+          factor * strength.share_of_band(low_m, profile_edges_m[band + 1]));
     }
   }
 

@@ -19,6 +19,8 @@ namespace crashrank::detail::HWY_NAMESPACE {
 struct Depths {
   F8 front, rear, left, right;
   M8 known;  ///< the place lies within the nodes of all silhouettes
+  I8 column;     ///< node of the heights before the place
+  F8 share;      ///< of the way to the next one
 
   HWY_INLINE F8 least() const {
     return select(known, minimum(minimum(front, rear), minimum(left, right)), all(-1.0F));
@@ -55,12 +57,16 @@ HWY_INLINE Edges edges_at(const Silhouettes& s, const Silhouette& of, const Node
   // Values of a node and the next one: greatest, least, greatest, least.
   F8 node[4];
   gather_rows(&s.nodes[of.first].greatest_m, at, node);
+  const auto inside = [&](const F8(&of_nodes)[4], std::size_t k) {
+    return minimum(of_nodes[k] - value, value - of_nodes[k + 1]);
+  };
   for (std::uint32_t layer = 1; layer < of.layers; ++layer) {
+    // The first layer has the longest intervals, which hold most values.
+    if (bits(less(minimum(inside(node, 0), inside(node, 2)), all(0.0F))) == 0) break;
     F8 other[4];
     gather_rows(&s.nodes[of.first + layer * of.count].greatest_m, at, other);
     for (std::size_t k = 0; k < 4; k += 2) {
-      const F8 inside = minimum(node[k] - value, value - node[k + 1]);
-      const M8 nearer = less(inside, minimum(other[k] - value, value - other[k + 1]));
+      const M8 nearer = less(inside(node, k), inside(other, k));
       node[k] = select(nearer, other[k], node[k]);
       node[k + 1] = select(nearer, other[k + 1], node[k + 1]);
     }
@@ -74,20 +80,19 @@ HWY_INLINE Depths depths_at(const Silhouettes& s, std::size_t band, F8 x, F8 y) 
   const Edges ends = edges_at(s, s.along_x[band], row, x);
   const Edges flanks = edges_at(s, s.along_y[band], column, y);
   return {ends.greatest - x, x - ends.least, flanks.greatest - y, y - flanks.least,
-          both(row.known, column.known)};
+          both(row.known, column.known), column.node, column.share};
 }
 
-/// Heights that the body takes up at places along its x axis, m over its ground.
-HWY_INLINE Edges heights_at(const Silhouettes& s, std::size_t band, F8 x) {
+/// Heights that the body takes up at places whose depths are known, m over its ground.
+HWY_INLINE Edges heights_at(const Silhouettes& s, std::size_t band, const Depths& place) {
   static_assert(sizeof(HeightRange) == 2 * sizeof(float));
-  const NodePlace column = node_place(s.along_y[band], x);
   alignas(32) std::int32_t at[8];
-  store(column.node + column.node, at);
+  store(place.column + place.column, at);
   // Values of a node and the next one: low, high, low, high.
   F8 node[4];
   gather_rows(&s.heights[s.first_height[band]].low_m, at, node);
-  return {node[1] + column.share * (node[3] - node[1]),
-          node[0] + column.share * (node[2] - node[0])};
+  return {node[1] + place.share * (node[3] - node[1]),
+          node[0] + place.share * (node[2] - node[0])};
 }
 
 }  // namespace crashrank::detail::HWY_NAMESPACE

@@ -161,7 +161,7 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   if (bits(where) == 0) return;
   // Heights that both bodies take up: the piece at the surface and behind it, the pressed body
   // there.
-  const Edges column = heights_at(target_, p.target, x);
+  const Edges column = heights_at(target_, p.target, d);
   const F8 rise = all(q_.rise_m);
   const auto common_m = [&](const std::array<float, block_pieces>& low,
                             const std::array<float, block_pieces>& high) {
@@ -177,7 +177,8 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   // Fill the lanes outside `where` with a number that keeps all results finite.
   const auto or_filler = [&](F8 a) { return select(where, a, all(0.01F)); };
   least = or_filler(least);
-  d = {or_filler(d.front), or_filler(d.rear), or_filler(d.left), or_filler(d.right), d.known};
+  d = {or_filler(d.front), or_filler(d.rear), or_filler(d.left), or_filler(d.right), d.known,
+       d.column,           d.share};
   const F8 advance = or_filler(p.at.advance);
 
   const F8 nx = p.at.normal_x;

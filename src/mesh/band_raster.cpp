@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -55,7 +56,6 @@ bool is_ordered(const Vector3d& p, const Vector3d& q) {
 /// Calls back for the cells whose middles a facet covers, with its height there.
 template <class Visit>
 void visit_covered(const Raster& raster, const BandFacet& facet, Visit&& visit) {
-  const Vector3d normal = normal_of(facet);
   const Vector3d& first = facet.corner[0];
   double low_y = first.y();
   double high_y = first.y();
@@ -67,10 +67,17 @@ void visit_covered(const Raster& raster, const BandFacet& facet, Visit&& visit) 
     low_z = std::min(low_z, facet.corner[i].z());
     high_z = std::max(high_z, facet.corner[i].z());
   }
+  // The rows whose middles it spans.
+  std::ptrdiff_t row = raster.row_of(low_y);
+  std::ptrdiff_t last_row = raster.row_of(high_y);
+  if (raster.center(0, row).y() < low_y) ++row;
+  if (raster.center(0, last_row).y() > high_y) --last_row;
+  if (row > last_row) return;
+  const Vector3d normal = normal_of(facet);
   if (normal.z() == 0.0) return;
   const double slope_x = -normal.x() / normal.z();
   const double slope_y = -normal.y() / normal.z();
-  for (std::ptrdiff_t row = raster.row_of(low_y); row <= raster.row_of(high_y); ++row) {
+  for (; row <= last_row; ++row) {
     const double y = raster.center(0, row).y();
     double from = std::numeric_limits<double>::infinity();
     double to = -from;
@@ -86,7 +93,7 @@ void visit_covered(const Raster& raster, const BandFacet& facet, Visit&& visit) 
       to = std::max(to, x);
     }
     if (!(from <= to)) continue;
-    const auto place = [&](double x) { return (x - raster.low_x) / raster.cell_m - 0.5; };
+    const auto place = [&](double x) { return (x - raster.low_x) * raster.cells_per_m - 0.5; };
     const auto last = static_cast<std::ptrdiff_t>(std::floor(place(to)));
     for (auto column = static_cast<std::ptrdiff_t>(std::ceil(place(from))); column <= last;
          ++column) {
@@ -97,38 +104,13 @@ void visit_covered(const Raster& raster, const BandFacet& facet, Visit&& visit) 
   }
 }
 
-/// Calls back for the cells around one, itself included.
+/// Calls back for the cells around one, itself included; not for cells of the rim.
 template <class Visit> void visit_around(const Raster& raster, std::size_t cell, Visit&& visit) {
-  const auto column = static_cast<std::ptrdiff_t>(cell) % raster.columns;
-  const auto row = static_cast<std::ptrdiff_t>(cell) / raster.columns;
-  for (std::ptrdiff_t j = row - 1; j <= row + 1; ++j) {
-    for (std::ptrdiff_t i = column - 1; i <= column + 1; ++i) {
-      if (raster.holds(i, j)) visit(raster.index(i, j));
-    }
-  }
-}
-
-/// Gives all cells that are `from` and can be reached from a cell without passing others a label.
-void flood(const Raster& raster, std::size_t start, std::int32_t from, std::int32_t label,
-           std::vector<std::int32_t>& labels, std::vector<std::size_t>& open) {
-  open.assign(1, start);
-  labels[start] = label;
-  while (!open.empty()) {
-    const std::size_t cell = open.back();
-    open.pop_back();
-    const auto column = static_cast<std::ptrdiff_t>(cell) % raster.columns;
-    const auto row = static_cast<std::ptrdiff_t>(cell) / raster.columns;
-    const auto enter = [&](std::ptrdiff_t i, std::ptrdiff_t j) {
-      if (!raster.holds(i, j)) return;
-      const std::size_t c = raster.index(i, j);
-      if (labels[c] != from) return;
-      labels[c] = label;
-      open.push_back(c);
-    };
-    enter(column + 1, row);
-    enter(column - 1, row);
-    enter(column, row + 1);
-    enter(column, row - 1);
+  const auto columns = static_cast<std::size_t>(raster.columns);
+  for (const std::size_t row : {cell - columns, cell, cell + columns}) {
+    visit(row - 1);
+    visit(row);
+    visit(row + 1);
   }
 }
 
@@ -136,34 +118,44 @@ constexpr std::int32_t unreached = 0;
 constexpr std::int32_t surface_label = -1;
 constexpr std::int32_t outside_label = 1;
 
-/// Labels above `outside_label` of the spaces that no way leads to, and of those the ones that are
-/// wide enough to be free.
+/// Gives a label to all unreached cells that can be reached from a cell without passing others. The
+/// outermost cells of the raster are reached already.
+void flood(const Raster& raster, std::size_t start, std::int32_t label,
+           std::vector<std::int32_t>& labels, std::vector<std::size_t>& open) {
+  const auto columns = static_cast<std::size_t>(raster.columns);
+  open.assign(1, start);
+  labels[start] = label;
+  while (!open.empty()) {
+    const std::size_t cell = open.back();
+    open.pop_back();
+    for (const std::size_t next : {cell + 1, cell - 1, cell + columns, cell - columns}) {
+      if (labels[next] != unreached) continue;
+      labels[next] = label;
+      open.push_back(next);
+    }
+  }
+}
+
+/// By label above `outside_label`: whether the space that no way leads to holds a square of
+/// `least_free_width_m`.
 std::vector<char> wide_spaces(const Raster& raster, const std::vector<std::int32_t>& labels,
                               std::int32_t count) {
-  // Distance to the fattened surface in steps of one cell in any of eight directions, in two
-  // passes (Rosenfeld and Pfaltz 1966). The surface was made one cell fatter on each side.
-  const auto needed = static_cast<std::uint16_t>(
-      std::min(60000.0, std::max(1.0, 0.5 * least_free_width_m / raster.cell_m - 1.0)));
-  std::vector<std::uint16_t> distance(raster.size(), needed);
-  const auto pass = [&](std::ptrdiff_t from, std::ptrdiff_t step) {
-    for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(raster.size()); ++n) {
-      const auto cell = static_cast<std::size_t>(from + step * n);
-      if (labels[cell] == surface_label) {
-        distance[cell] = 0;
-        continue;
-      }
-      visit_around(raster, cell, [&](std::size_t c) {
-        distance[cell] = std::min<std::uint16_t>(
-            distance[cell], static_cast<std::uint16_t>(distance[c] + 1));
-      });
-    }
-  };
-  pass(0, 1);
-  pass(static_cast<std::ptrdiff_t>(raster.size()) - 1, -1);
+  // The surface was made one cell fatter on each side.
+  const auto needed = static_cast<std::int32_t>(
+      std::min(1e6, std::max(1.0, least_free_width_m / raster.cell_m - 2.0)));
   std::vector<char> wide(static_cast<std::size_t>(count) + 1, 0);
-  for (std::size_t cell = 0; cell < raster.size(); ++cell) {
-    if (labels[cell] > outside_label && distance[cell] >= needed) {
-      wide[static_cast<std::size_t>(labels[cell])] = 1;
+  // Side of the largest free square that ends in each cell of a row and of the one before.
+  const auto columns = static_cast<std::size_t>(raster.columns);
+  std::vector<std::int32_t> side(columns, 0);
+  std::vector<std::int32_t> before(columns, 0);
+  for (std::size_t row = 0; row < labels.size(); row += columns) {
+    std::swap(side, before);
+    for (std::size_t i = 1; i < columns; ++i) {
+      const std::int32_t label = labels[row + i];
+      side[i] = label > outside_label
+                    ? 1 + std::min(before[i - 1], std::min(before[i], side[i - 1]))
+                    : 0;
+      if (side[i] >= needed) wide[static_cast<std::size_t>(label)] = 1;
     }
   }
   return wide;
@@ -197,7 +189,7 @@ std::vector<std::int32_t> winding_numbers(const BandSurface& surface, const Rast
       const double x = end[0].x() + (y - end[0].y()) / (end[1].y() - end[0].y()) *
                                         (end[1].x() - end[0].x());
       const auto column = static_cast<std::ptrdiff_t>(
-          std::floor((x - raster.low_x) / raster.cell_m - 0.5));
+          std::floor((x - raster.low_x) * raster.cells_per_m - 0.5));
       if (raster.holds(column, row)) {
         winding[raster.index(column, row)] += end[0].y() < y ? 1 : -1;
       }
@@ -211,31 +203,10 @@ std::vector<std::int32_t> winding_numbers(const BandSurface& surface, const Rast
   return winding;
 }
 
-/// Marks the cells that have a part of the mesh above a height over them.
-std::vector<char> covered_above(const BandSurface& surface, const Raster& raster, double height) {
-  std::vector<char> covered(raster.size(), 0);
-  const double rim = 2.0 * raster.cell_m;
-  for (std::uint32_t i = 0; i < surface.mesh->size(); ++i) {
-    const std::array<Vector3d, 3> corner = surface.triangle(i);
-    BandFacet facet;
-    facet.count = 3;
-    std::copy(corner.begin(), corner.end(), facet.corner.begin());
-    facet = cut_at(facet, height, 1.0);
-    if (facet.count < 3) continue;
-    // Only within the raster: bend what lies beyond its rim onto it.
-    const Vector2d low = raster.corner(0, 0) + Vector2d::Constant(rim);
-    const Vector2d high = raster.corner(raster.columns, raster.rows) - Vector2d::Constant(rim);
-    for (std::size_t k = 0; k < facet.count; ++k) {
-      facet.corner[k].head<2>() = facet.corner[k].head<2>().cwiseMax(low).cwiseMin(high);
-    }
-    visit_covered(raster, facet, [&](std::size_t cell, double) { covered[cell] = 1; });
-  }
-  return covered;
-}
-
 /// Of the wide spaces those that are free.
 std::vector<char> free_spaces(const BandSurface& surface, const Raster& raster,
-                              const std::vector<std::int32_t>& labels, std::int32_t count) {
+                              const std::vector<std::int32_t>& labels, std::int32_t count,
+                              std::optional<SkyMap>& sky) {
   std::vector<char> free = wide_spaces(raster, labels, count);
   if (std::none_of(free.begin(), free.end(), [](char wide) { return wide != 0; })) return free;
   // Beside the middle, where no vertex of a drawn body lies.
@@ -257,14 +228,16 @@ std::vector<char> free_spaces(const BandSurface& surface, const Raster& raster,
   const auto wound = [&](std::size_t space) {
     return free[space] != 0 && sums[space].wound > 0.5 * sums[space].cells;
   };
-  bool any_wound = false;
-  for (std::size_t space = 0; space < free.size(); ++space) any_wound = any_wound || wound(space);
-  if (!any_wound) return free;
-  const std::vector<char> covered = covered_above(surface, raster, surface.high_m);
+  const auto columns = static_cast<std::size_t>(raster.columns);
   for (std::size_t cell = 0; cell < raster.size(); ++cell) {
-    if (labels[cell] > outside_label && covered[cell] != 0) {
-      sums[static_cast<std::size_t>(labels[cell])].covered += 1.0;
-    }
+    if (labels[cell] <= outside_label) continue;
+    const auto space = static_cast<std::size_t>(labels[cell]);
+    if (!wound(space)) continue;
+    if (!sky) sky.emplace(surface);
+    const Vector2d place = raster.center(static_cast<std::ptrdiff_t>(cell % columns),
+                                         static_cast<std::ptrdiff_t>(cell / columns));
+    // A roof at the edge of the band covers.
+    if (sky->covers(place, surface.high_m - 1e-3)) sums[space].covered += 1.0;
   }
   for (std::size_t space = 0; space < free.size(); ++space) {
     if (wound(space) && sums[space].covered > 0.5 * sums[space].cells) free[space] = 0;
@@ -272,7 +245,51 @@ std::vector<char> free_spaces(const BandSurface& surface, const Raster& raster,
   return free;
 }
 
+Raster make_raster(const Vector2d& low, const Vector2d& high, double cell_m) {
+  const Vector2d size = high - low;
+  Raster raster;
+  raster.cell_m = cell_m;
+  raster.cells_per_m = 1.0 / cell_m;
+  raster.low_x = low.x() - 4.37 * cell_m;
+  raster.columns = static_cast<std::ptrdiff_t>(size.x() / cell_m) + 10;
+  // An odd number: no corner lies in the middle, as near to one side of an even body as to the
+  // other.
+  raster.rows = (static_cast<std::ptrdiff_t>(size.y() / cell_m) + 10) | 1;
+  raster.middle_y = 0.5 * (low.y() + high.y());
+  raster.half_rows = 0.5 * static_cast<double>(raster.rows);
+  return raster;
+}
+
 }  // namespace
+
+SkyMap::SkyMap(const BandSurface& surface) {
+  constexpr double finest_m = 0.1;
+  constexpr double cells_along = 400.0;
+  const Vector2d low = surface.bounds.min.head<2>().cast<double>();
+  const Vector2d high = surface.bounds.max.head<2>().cast<double>();
+  raster_ = make_raster(low, high, std::max(finest_m, (high - low).maxCoeff() / cells_along));
+  heights_.resize(raster_.size());
+  for (std::uint32_t i = 0; i < surface.mesh->size(); ++i) {
+    const std::array<Vector3d, 3> corner = surface.triangle(i);
+    BandFacet facet;
+    facet.count = 3;
+    std::copy(corner.begin(), corner.end(), facet.corner.begin());
+    for (const Vector3d& p : corner) {
+      const std::size_t cell = raster_.index(raster_.column_of(p.x()), raster_.row_of(p.y()));
+      heights_[cell].grow(static_cast<float>(p.z()));
+    }
+    visit_covered(raster_, facet, [&](std::size_t cell, double z) {
+      heights_[cell].grow(static_cast<float>(z));
+    });
+  }
+}
+
+bool SkyMap::covers(const Vector2d& place, double height_m) const {
+  const std::ptrdiff_t column = raster_.column_of(place.x());
+  const std::ptrdiff_t row = raster_.row_of(place.y());
+  return raster_.holds(column, row) &&
+         static_cast<double>(heights_[raster_.index(column, row)].high_m) > height_m;
+}
 
 BandFacet clip_to_band(const std::array<Vector3d, 3>& triangle, double low, double high) {
   BandFacet facet;
@@ -309,22 +326,13 @@ Raster raster_over(const BandSurface& surface, double cell_m) {
     }
     area += 0.5 * std::abs(normal_of(facet).z());
   });
-  Raster raster;
-  if (!(low.x() <= high.x())) return raster;
+  if (!(low.x() <= high.x())) return {};
   const Vector2d size = high - low;
   while ((size.x() / cell_m + 10.0) * (size.y() / cell_m + 10.0) > most_cells ||
          length / cell_m + area / (cell_m * cell_m) > most_cells_passed) {
     cell_m *= 1.25;
   }
-  raster.cell_m = cell_m;
-  raster.low_x = low.x() - 4.37 * cell_m;
-  raster.columns = static_cast<std::ptrdiff_t>(size.x() / cell_m) + 10;
-  // An odd number: no corner lies in the middle, as near to one side of an even body as to the
-  // other.
-  raster.rows = (static_cast<std::ptrdiff_t>(size.y() / cell_m) + 10) | 1;
-  raster.middle_y = 0.5 * (low.y() + high.y());
-  raster.half_rows = 0.5 * static_cast<double>(raster.rows);
-  return raster;
+  return make_raster(low, high, cell_m);
 }
 
 std::vector<HeightRange> rasterise_heights(const BandSurface& surface, const Raster& raster) {
@@ -335,9 +343,11 @@ std::vector<HeightRange> rasterise_heights(const BandSurface& surface, const Ras
       const Vector3d& b = facet.corner[(i + 1) % facet.count];
       const Vector3d& p = is_ordered(a, b) ? a : b;
       const Vector3d& q = is_ordered(a, b) ? b : a;
-      visit_cells(raster, p.head<2>(), q.head<2>(), [&](std::size_t cell, double share) {
-        heights[cell].grow(static_cast<float>(p.z() + share * (q.z() - p.z())));
-      });
+      visit_cells(raster, p.head<2>(), q.head<2>(),
+                  [&](std::size_t cell, double entered, double left) {
+                    heights[cell].grow(static_cast<float>(p.z() + entered * (q.z() - p.z())));
+                    heights[cell].grow(static_cast<float>(p.z() + left * (q.z() - p.z())));
+                  });
     }
     visit_covered(raster, facet, [&](std::size_t cell, double z) {
       heights[cell].grow(static_cast<float>(z));
@@ -347,30 +357,45 @@ std::vector<HeightRange> rasterise_heights(const BandSurface& surface, const Ras
 }
 
 std::vector<Cell> divide_cells(const BandSurface& surface, const Raster& raster,
-                               const std::vector<HeightRange>& heights) {
+                               const std::vector<HeightRange>& heights,
+                               std::optional<SkyMap>& sky) {
   std::vector<std::int32_t> labels(raster.size(), unreached);
+  const auto columns = static_cast<std::size_t>(raster.columns);
+  for (std::size_t i = 0; i < columns; ++i) {
+    labels[i] = labels[labels.size() - 1 - i] = outside_label;
+  }
+  for (std::size_t row = 0; row < labels.size(); row += columns) {
+    labels[row] = labels[row + columns - 1] = outside_label;
+  }
   for (std::size_t cell = 0; cell < raster.size(); ++cell) {
     if (heights[cell].empty()) continue;
     visit_around(raster, cell, [&](std::size_t c) { labels[c] = surface_label; });
   }
   std::vector<std::size_t> open;
-  flood(raster, 0, unreached, outside_label, labels, open);
+  flood(raster, columns + 1, outside_label, labels, open);
   std::int32_t last = outside_label;
   for (std::size_t cell = 0; cell < raster.size(); ++cell) {
-    if (labels[cell] == unreached) flood(raster, cell, unreached, ++last, labels, open);
+    if (labels[cell] == unreached) flood(raster, cell, ++last, labels, open);
   }
-  const std::vector<char> free = last > outside_label
-                                     ? free_spaces(surface, raster, labels, last)
-                                     : std::vector<char>(outside_label + 1, 0);
+  std::vector<char> free(outside_label + 1, 0);
+  if (last > outside_label) free = free_spaces(surface, raster, labels, last, sky);
+  const auto kind_of = [&](std::int32_t label) {
+    if (label == outside_label) return Cell::outside;
+    return label > outside_label && free[static_cast<std::size_t>(label)] != 0 ? Cell::inside
+                                                                               : Cell::solid;
+  };
   std::vector<Cell> cells(raster.size(), Cell::solid);
   for (std::size_t cell = 0; cell < raster.size(); ++cell) {
-    const std::int32_t label = labels[cell];
-    if (label < outside_label) continue;
-    if (label > outside_label && free[static_cast<std::size_t>(label)] == 0) continue;
-    visit_around(raster, cell, [&](std::size_t c) {
-      if (!heights[c].empty() || cells[c] == Cell::outside) return;
-      cells[c] = label == outside_label ? Cell::outside : Cell::inside;
-    });
+    if (labels[cell] != surface_label) {
+      cells[cell] = kind_of(labels[cell]);
+    } else if (heights[cell].empty()) {
+      Cell kind = Cell::solid;
+      visit_around(raster, cell, [&](std::size_t c) {
+        const Cell beside = labels[c] == surface_label ? Cell::solid : kind_of(labels[c]);
+        if (kind != Cell::outside && beside != Cell::solid) kind = beside;
+      });
+      cells[cell] = kind;
+    }
   }
   return cells;
 }

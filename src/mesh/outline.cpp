@@ -50,17 +50,38 @@ BorderEdges border_edges(const BandSurface& surface, const Raster& raster,
   }
   BorderEdges border;
   std::vector<std::array<std::uint32_t, 2>> passed;  // cell, edge
+  // Most facets of fine meshes lie in few cells, none of them near the border.
+  const auto is_far = [&](const BandFacet& facet) {
+    constexpr std::ptrdiff_t few = 4;
+    std::ptrdiff_t low_column = raster.columns;
+    std::ptrdiff_t low_row = raster.rows;
+    std::ptrdiff_t high_column = 0;
+    std::ptrdiff_t high_row = 0;
+    for (std::size_t i = 0; i < facet.count; ++i) {
+      const std::ptrdiff_t column = raster.column_of(facet.corner[i].x());
+      const std::ptrdiff_t row = raster.row_of(facet.corner[i].y());
+      low_column = std::min(low_column, column);
+      low_row = std::min(low_row, row);
+      high_column = std::max(high_column, column);
+      high_row = std::max(high_row, row);
+    }
+    if (high_column - low_column >= few || high_row - low_row >= few) return false;
+    for (std::ptrdiff_t row = low_row; row <= high_row; ++row) {
+      for (std::ptrdiff_t column = low_column; column <= high_column; ++column) {
+        if (near[raster.index(column, row)] != 0) return false;
+      }
+    }
+    return true;
+  };
   surface.for_each_facet([&](const BandFacet& facet) {
+    if (is_far(facet)) return;
     for (std::size_t i = 0; i < facet.count; ++i) {
       const Vector2d p = facet.corner[i].head<2>();
       const Vector2d q = facet.corner[(i + 1) % facet.count].head<2>();
       const auto number = static_cast<std::uint32_t>(border.edges.size());
       const std::size_t before = passed.size();
-      std::size_t last = raster.size();
-      visit_cells(raster, p, q, [&](std::size_t cell, double) {
-        if (cell == last || near[cell] == 0) return;
-        last = cell;
-        passed.push_back({static_cast<std::uint32_t>(cell), number});
+      visit_cells(raster, p, q, [&](std::size_t cell, double, double) {
+        if (near[cell] != 0) passed.push_back({static_cast<std::uint32_t>(cell), number});
       });
       if (passed.size() > before) border.edges.push_back({p, q});
     }
@@ -74,34 +95,38 @@ BorderEdges border_edges(const BandSurface& surface, const Raster& raster,
   return border;
 }
 
-/// The point of the edges that is nearest to a place within two cells; the place itself where there
-/// is none. Cells of the border that the surface leaves free lie outside the body, so the nearest
-/// point of all edges is on its outline.
-Vector2d snap(const Raster& raster, const BorderEdges& border, const Vector2d& p) {
-  double best = static_cast<double>(snap_cells * snap_cells) * raster.cell_m * raster.cell_m;
+/// The point of the edges that is nearest to a corner of the raster within two cells; the corner
+/// itself where there is none. Cells of the border that the surface leaves free lie outside the
+/// body, so the nearest point of all edges is on its outline.
+Vector2d snap(const Raster& raster, const BorderEdges& border, std::ptrdiff_t x,
+              std::ptrdiff_t y) {
+  const Vector2d p = raster.corner(x, y);
   Vector2d at = p;
-  const std::ptrdiff_t column = raster.column_of(p.x());
-  const std::ptrdiff_t row = raster.row_of(p.y());
-  for (std::ptrdiff_t j = row - snap_cells; j <= row + snap_cells; ++j) {
-    for (std::ptrdiff_t i = column - snap_cells; i <= column + snap_cells; ++i) {
-      if (!raster.holds(i, j)) continue;
-      const std::size_t cell = raster.index(i, j);
-      for (std::uint32_t k = border.first[cell]; k < border.first[cell + 1]; ++k) {
-        const std::array<Vector2d, 2>& s = border.edges[border.edge[k]];
-        // From the middle: the same bits whichever end comes first.
-        const Vector2d middle = 0.5 * (s[0] + s[1]);
-        const Vector2d half = 0.5 * (s[1] - s[0]);
-        const double length2 = half.squaredNorm();
-        const double t =
-            length2 > 0.0 ? std::clamp((p - middle).dot(half) / length2, -1.0, 1.0) : 0.0;
-        const Vector2d q = middle + t * half;
-        const double distance2 = (q - p).squaredNorm();
-        if (distance2 < best || (distance2 == best && is_preferred(q, at, raster.middle_y))) {
-          best = distance2;
-          at = q;
+  for (std::ptrdiff_t reach = 1; reach <= snap_cells; ++reach) {
+    // No edge of the cells further out is nearer than this.
+    double best = static_cast<double>(reach * reach) * raster.cell_m * raster.cell_m;
+    for (std::ptrdiff_t row = y - reach; row < y + reach; ++row) {
+      for (std::ptrdiff_t column = x - reach; column < x + reach; ++column) {
+        if (!raster.holds(column, row)) continue;
+        const std::size_t cell = raster.index(column, row);
+        for (std::uint32_t k = border.first[cell]; k < border.first[cell + 1]; ++k) {
+          const std::array<Vector2d, 2>& s = border.edges[border.edge[k]];
+          // From the middle: the same bits whichever end comes first.
+          const Vector2d middle = 0.5 * (s[0] + s[1]);
+          const Vector2d half = 0.5 * (s[1] - s[0]);
+          const double length2 = half.squaredNorm();
+          const double t =
+              length2 > 0.0 ? std::clamp((p - middle).dot(half) / length2, -1.0, 1.0) : 0.0;
+          const Vector2d q = middle + t * half;
+          const double distance2 = (q - p).squaredNorm();
+          if (distance2 < best || (distance2 == best && is_preferred(q, at, raster.middle_y))) {
+            best = distance2;
+            at = q;
+          }
         }
       }
     }
+    if (at != p) return at;
   }
   return at;
 }
@@ -184,11 +209,12 @@ double OutlineLoop::area_m2() const {
   return 0.5 * area;
 }
 
-BandOutline::BandOutline(const BandSurface& surface, double cell_m, double tolerance_cells)
+BandOutline::BandOutline(const BandSurface& surface, double cell_m, double tolerance_cells,
+                         std::optional<SkyMap>& sky)
     : raster_(raster_over(surface, cell_m)) {
   if (raster_.columns == 0) return;
   heights_ = rasterise_heights(surface, raster_);
-  const std::vector<Cell> cells = divide_cells(surface, raster_, heights_);
+  const std::vector<Cell> cells = divide_cells(surface, raster_, heights_, sky);
   const BorderEdges border = border_edges(surface, raster_, cells);
 
   // Along the border with the solid cells to the left: steps of one cell in the directions 0 (+x),
@@ -215,7 +241,7 @@ BandOutline::BandOutline(const BandSurface& surface, double cell_m, double toler
       std::size_t direction = 0;
       do {
         if (direction == 0) begun[raster_.index(x, y)] = 1;
-        loop.points.push_back(snap(raster_, border, raster_.corner(x, y)));
+        loop.points.push_back(snap(raster_, border, x, y));
         x += step_x[direction];
         y += step_y[direction];
         // Left where that keeps solid cells to the left and free ones to the right, else ahead,
@@ -244,28 +270,33 @@ BandOutline::BandOutline(const BandSurface& surface, double cell_m, double toler
                         [](const OutlineLoop& loop) { return !loop.inner; });
 }
 
-HeightRange BandOutline::heights(const Vector2d& from, const Vector2d& to, double behind_m) const {
-  HeightRange range;
+BandOutline::PieceHeights BandOutline::heights(const Vector2d& from, const Vector2d& to,
+                                               double behind_m) const {
+  PieceHeights heights;
   const Vector2d along = to - from;
   const double length = along.norm();
-  if (!(length > 0.0)) return range;
+  if (!(length > 0.0)) return heights;
   const Vector2d inward(-along.y() / length, along.x() / length);
-  constexpr double ahead_cells = 1.0;
-  const auto last_across = static_cast<int>(std::ceil(behind_m / raster_.cell_m + ahead_cells));
-  const auto last_along = static_cast<int>(std::ceil(length / raster_.cell_m));
-  for (int k = 0; k <= last_along; ++k) {
-    // From the middle: the same bits whichever way the piece runs.
+  // The piece lies within a cell of the edge of the surface.
+  constexpr int edge_cells = 1;
+  const auto last_across = static_cast<int>(std::ceil(behind_m / raster_.cell_m));
+  const auto samples = static_cast<int>(std::ceil(length / raster_.cell_m - 1e-6));
+  for (int k = 0; k < samples; ++k) {
+    // From the middle, the same bits whichever way the piece runs; and between the lines of the
+    // raster, on which corners of loops can lie.
     const Vector2d on_line =
-        0.5 * (from + to) + (static_cast<double>(2 * k - last_along) / (2 * last_along)) * along;
-    for (int j = 0; j <= last_across; ++j) {
-      const Vector2d p =
-          on_line + (raster_.cell_m * (static_cast<double>(j) - ahead_cells)) * inward;
+        0.5 * (from + to) + (static_cast<double>(2 * k + 1 - samples) / (2 * samples)) * along;
+    for (int j = -edge_cells; j <= last_across; ++j) {
+      const Vector2d p = on_line + (raster_.cell_m * (static_cast<double>(j) + 0.5)) * inward;
       const std::ptrdiff_t column = raster_.column_of(p.x());
       const std::ptrdiff_t row = raster_.row_of(p.y());
-      if (raster_.holds(column, row)) range.grow(heights_[raster_.index(column, row)]);
+      if (!raster_.holds(column, row)) continue;
+      const HeightRange& here = heights_[raster_.index(column, row)];
+      if (j <= edge_cells) heights.at_edge.grow(here);
+      heights.behind.grow(here);
     }
   }
-  return range;
+  return heights;
 }
 
 }  // namespace crashrank::detail

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <vector>
 
 namespace crashrank::detail {
@@ -23,13 +24,18 @@ class BandOutline {
 public:
   /// `cell_m`: see `raster_over`. Points lie on edges of the surface where those are near, and
   /// within `tolerance_cells` cells of the rastered line.
-  BandOutline(const BandSurface& surface, double cell_m, double tolerance_cells);
+  BandOutline(const BandSurface& surface, double cell_m, double tolerance_cells,
+              std::optional<SkyMap>& sky);
 
   /// Outer loops, then inner ones.
   const std::vector<OutlineLoop>& loops() const noexcept { return loops_; }
-  /// Heights of the surface at a piece of a loop and up to `behind_m` behind it, over the ground.
-  HeightRange heights(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-                      double behind_m) const;
+  /// Heights of the surface over the ground at a piece of a loop, and up to `behind_m` behind it.
+  struct PieceHeights {
+    HeightRange at_edge;
+    HeightRange behind;
+  };
+  PieceHeights heights(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                       double behind_m) const;
 
 private:
   Raster raster_;

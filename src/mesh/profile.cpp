@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace crashrank {
@@ -57,6 +58,8 @@ Result<Box> surface_bounds(const TriangleMesh& mesh) {
 /// Triangles that reach into each band, in their order.
 std::array<std::vector<std::uint32_t>, profile_bands> triangles_by_band(const TriangleMesh& mesh,
                                                                         double ground_m) {
+  // What reaches less far into a band is rounding of single precision.
+  constexpr double least_m = 1e-4;
   std::array<std::vector<std::uint32_t>, profile_bands> by_band;
   for (std::uint32_t i = 0; i < mesh.size(); ++i) {
     double low = std::numeric_limits<double>::infinity();
@@ -67,7 +70,7 @@ std::array<std::vector<std::uint32_t>, profile_bands> triangles_by_band(const Tr
       high = std::max(high, z);
     }
     for (std::size_t band = 0; band < profile_bands; ++band) {
-      if (low < profile_edges_m[band + 1] && high > profile_edges_m[band]) {
+      if (low < profile_edges_m[band + 1] - least_m && high > profile_edges_m[band] + least_m) {
         by_band[band].push_back(i);
       }
     }
@@ -103,8 +106,9 @@ void add_pieces(const detail::BandOutline& outline, const detail::OutlineLoop& l
       OutlinePiece piece{static_cast<float>(middle.x()), static_cast<float>(middle.y()),
                          static_cast<float>(normal.x()), static_cast<float>(normal.y()),
                          static_cast<float>(length / count), {}, {}};
-      piece.at_edge = outline.heights(middle - half, middle + half, 0.0);
-      piece.behind = outline.heights(middle - half, middle + half, profile_depth_m);
+      const auto heights = outline.heights(middle - half, middle + half, profile_depth_m);
+      piece.at_edge = heights.at_edge;
+      piece.behind = heights.behind;
       pieces.push_back(piece);
     }
   }
@@ -136,13 +140,14 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
   const double piece_m =
       std::max(std::min(usual_piece_m, longest / 16.0), longest / most_pieces_along);
   const auto triangles = triangles_by_band(mesh, profile.ground_m);
+  std::optional<detail::SkyMap> sky;
   for (std::size_t band = 0; band < profile_bands; ++band) {
     profile.first[band] = profile.first_inner[band] =
         static_cast<std::uint32_t>(profile.pieces.size());
     if (triangles[band].empty()) continue;
-    const detail::BandSurface surface{&mesh, &triangles[band], profile.ground_m,
+    const detail::BandSurface surface{&mesh, &triangles[band], *box, profile.ground_m,
                                       profile_edges_m[band], profile_edges_m[band + 1]};
-    const detail::BandOutline outline(surface, cell_m, tolerance_cells);
+    const detail::BandOutline outline(surface, cell_m, tolerance_cells, sky);
     double area = 0.0;
     for (const detail::OutlineLoop& loop : outline.loops()) {
       add_pieces(outline, loop, piece_m, profile.pieces);

@@ -77,6 +77,10 @@ std::vector<SilhouetteNode> intervals_of(std::vector<Crossing>& crossings) {
     intervals[narrowest - 1].greatest_m = intervals[narrowest].greatest_m;
     intervals.erase(intervals.begin() + static_cast<std::ptrdiff_t>(narrowest));
   }
+  std::stable_sort(intervals.begin(), intervals.end(),
+                   [](const SilhouetteNode& a, const SilhouetteNode& b) {
+                     return a.greatest_m - a.least_m > b.greatest_m - b.least_m;
+                   });
   return intervals;
 }
 

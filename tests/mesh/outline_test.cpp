@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstddef>
+#include <numeric>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -13,52 +14,52 @@ namespace crashrank {
 namespace {
 
 using Eigen::Vector2d;
-using test::area_of;
+using test::add_wall;
 using test::perimeter_of;
-using test::Polygon;
+using test::prism;
 using test::rectangle;
 
-TEST(Outline, OfNothingIsNothing) {
-  EXPECT_TRUE(detail::trace_outlines({}, 0.02, 0.005).empty());
-  EXPECT_EQ(detail::loop_area_m2({{0, 0}, {1, 1}}), 0.0);
-  EXPECT_EQ(detail::loop_area_m2({{0, 0}, {2, 0}, {0, 1}}), 1.0);
-  EXPECT_EQ(detail::loop_area_m2({{0, 1}, {2, 0}, {0, 0}}), -1.0);
+/// Outlines of a mesh between 0 and 1 m.
+std::vector<detail::OutlineLoop> loops_of(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> all(mesh.size());
+  std::iota(all.begin(), all.end(), 0U);
+  std::optional<detail::SkyMap> sky;
+  return detail::BandOutline({&mesh, &all, mesh.bounds(), 0.0, 0.0, 1.0}, 0.02, 0.25, sky).loops();
 }
 
-TEST(Outline, OfAPointOrALineEnclosesNothing) {
-  const detail::SectionSegment point{Vector2d(1.0, 2.0), Vector2d(1.0, 2.0)};
-  EXPECT_TRUE(detail::trace_outlines({point}, 0.02, 0.005).empty());
-  const detail::SectionSegment line{Vector2d(1.0, 2.0), Vector2d(4.0, -2.0)};
-  const std::vector<detail::OutlineLoop> loops = detail::trace_outlines({line}, 0.02, 0.005);
-  ASSERT_EQ(loops.size(), 1U);
-  EXPECT_NEAR(perimeter_of(loops[0]), 10.0, 0.01);
-  EXPECT_NEAR(detail::loop_area_m2(loops[0]), 0.0, 1e-12);
+TEST(Outline, AreaHasTheSignOfItsTurn) {
+  EXPECT_EQ((detail::OutlineLoop{{{0, 0}, {1, 1}}, false}.area_m2()), 0.0);
+  EXPECT_EQ((detail::OutlineLoop{{{0, 0}, {2, 0}, {0, 1}}, false}.area_m2()), 1.0);
+  EXPECT_EQ((detail::OutlineLoop{{{0, 1}, {2, 0}, {0, 0}}, false}.area_m2()), -1.0);
 }
 
-TEST(Outline, OfAnObliqueSheetIsOne) {
+TEST(Outline, OfNothingIsNothing) { EXPECT_TRUE(loops_of({}).empty()); }
+
+TEST(Outline, OfAnObliqueSheetIsOneThatEnclosesNothing) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> coordinate(-3.0, 3.0);
   for (int i = 0; i < 100; ++i) {
-    const detail::SectionSegment line{Vector2d(coordinate(random), coordinate(random)),
-                                      Vector2d(coordinate(random), coordinate(random))};
-    const std::vector<detail::OutlineLoop> loops = detail::trace_outlines({line}, 0.02, 0.005);
-    ASSERT_EQ(loops.size(), 1U) << line[0].transpose() << ", " << line[1].transpose();
-    EXPECT_NEAR(perimeter_of(loops[0]), 2.0 * (line[1] - line[0]).norm(), 0.02);
+    const Vector2d from(coordinate(random), coordinate(random));
+    const Vector2d to(coordinate(random), coordinate(random));
+    TriangleMesh mesh;
+    add_wall(mesh, from, to, 0.2, 0.8);
+    const std::vector<detail::OutlineLoop> loops = loops_of(mesh);
+    ASSERT_EQ(loops.size(), 1U) << from.transpose() << ", " << to.transpose();
+    EXPECT_NEAR(perimeter_of(loops[0].points), 2.0 * (to - from).norm(), 0.02);
+    EXPECT_NEAR(loops[0].area_m2(), 0.0, 1e-6);
   }
 }
 
 TEST(Outline, GoesRoundWithTheBodyToItsLeft) {
-  const Polygon base = rectangle(0, 0, 3, 1);
-  std::vector<detail::SectionSegment> segments;
-  for (std::size_t i = 0; i < base.size(); ++i) segments.push_back({base[i], base[(i + 1) % 4]});
-  // Neither the order nor the direction of the segments matters.
-  std::swap(segments[0], segments[2]);
-  std::swap(segments[1][0], segments[1][1]);
-  const std::vector<detail::OutlineLoop> loops = detail::trace_outlines(segments, 0.02, 0.005);
-  ASSERT_EQ(loops.size(), 1U);
-  EXPECT_NEAR(area_of(loops[0]), 3.0, 1e-3);
-  EXPECT_NEAR(detail::loop_area_m2(loops[0]), 3.0, 1e-3);
-  EXPECT_LE(loops[0].size(), 8U);
+  TriangleMesh mesh = prism(rectangle(0, 0, 3, 1), 0.0, 1.0);
+  // Neither the order nor the direction of the triangles matters for outer outlines.
+  std::swap(mesh.triangles[0], mesh.triangles[5]);
+  std::swap(mesh.triangles[1][0], mesh.triangles[1][1]);
+  const std::vector<detail::OutlineLoop> loops = loops_of(mesh);
+  ASSERT_GE(loops.size(), 1U);
+  EXPECT_FALSE(loops[0].inner);
+  EXPECT_NEAR(loops[0].area_m2(), 3.0, 1e-3);
+  EXPECT_LE(loops[0].points.size(), 8U);
 }
 
 }  // namespace

@@ -20,28 +20,36 @@ using test::profile_of;
 using test::reason_of;
 using test::rectangle;
 
-TEST(Profile, IsRefusedForMeshesWithoutOne) {
+TEST(Profile, IsRefusedForMeshesWithoutTriangles) {
   EXPECT_EQ(reason_of({}), "has no triangle to take an outline from");
   TriangleMesh loose;
   loose.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
   EXPECT_EQ(reason_of(loose), "has no triangle to take an outline from");
+}
 
-  constexpr const char* nothing =
-      "has no outline between 0 and 4 m over the ground that encloses anything";
-  TriangleMesh one = loose;
-  one.triangles = {{0, 1, 2}};
-  EXPECT_EQ(reason_of(one), nothing);
-  one.vertices = {{0.3F, 0.1F, 0.0F}, {4.7F, 1.3F, 0.2F}, {1.1F, -0.4F, 2.9F}};
-  EXPECT_EQ(reason_of(one), nothing);
-  one.triangles = {{0, 0, 0}};
-  EXPECT_EQ(reason_of(one), nothing);
-
+TEST(Profile, IsEmptyWhereNothingCanPress) {
   TriangleMesh plate;
   plate.vertices = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
-  EXPECT_EQ(reason_of(plate), nothing);
-  EXPECT_EQ(reason_of(prism(rectangle(0, 0, 2, 2), 4.0, 6.0)), nothing);
-  EXPECT_EQ(reason_of(prism(rectangle(0, 0, 0, 7), 0.0, 2.0)), nothing) << "a sheet";
+  TriangleMesh point;
+  point.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+  point.triangles = {{0, 0, 0}};
+  for (const TriangleMesh& mesh : {plate, point, prism(rectangle(0, 0, 2, 2), 4.0, 6.0)}) {
+    const Profile profile = profile_of(mesh);
+    EXPECT_TRUE(profile.pieces.empty());
+    EXPECT_FALSE(profile.presses());
+    EXPECT_EQ(profile.volume_m3(), 0.0);
+  }
+  const Profile kerb = profile_of(prism(rectangle(0, 0, 2, 2), 0.0, 0.08));
+  EXPECT_FALSE(kerb.pieces.empty());
+  EXPECT_FALSE(kerb.presses());
+}
+
+TEST(Profile, OfAnUprightSheetRunsAlongItAndBack) {
+  const Profile sheet = profile_of(prism(rectangle(0, 0, 0, 7), 0.0, 2.0));
+  EXPECT_TRUE(sheet.presses());
+  EXPECT_EQ(sheet.volume_m3(), 0.0);
+  EXPECT_NEAR(band_of(sheet, 3).length(), 14.0, 0.1);
 }
 
 TEST(Profile, IsRefusedForVerticesThatAreNotThereOrFarOut) {
@@ -71,9 +79,9 @@ TEST(Profile, IsRefusedForVerticesThatAreNotThereOrFarOut) {
 TEST(Profile, OfTheLargestBodiesIsWithinTheLimits) {
   const Profile profile = profile_of(prism(rectangle(-1e6, -2e5, 1e6, 2e5), 0.0, 3.0));
   expect_sound(profile);
-  EXPECT_NEAR(band_of(profile, 0).area_m2, 8e11, 0.01 * 8e11);
+  EXPECT_NEAR(band_of(profile, 2).area_of_pieces(), 8e11, 0.01 * 8e11);
   for (const OutlinePiece& piece : profile.pieces) EXPECT_LE(piece.length_m, 100.01F);
-  EXPECT_LT(profile.pieces.size(), 600'000U);
+  EXPECT_LT(profile.filled().pieces.size(), 600'000U);
 }
 
 TEST(Profile, OfTooManySmallBodiesIsRefused) {
@@ -92,14 +100,14 @@ TEST(Profile, OfTooManySmallBodiesIsRefused) {
 TEST(Profile, OfManyLargeTrianglesHasACoarserRaster) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> coordinate(-90.0, 90.0);
-  TriangleMesh mesh = prism(rectangle(-100, -100, 100, 100), 0.05, 0.15);
+  TriangleMesh mesh = prism(rectangle(-100, -100, 100, 100), 0.2, 0.35);
   for (int i = 0; i < 100'000; ++i) {
     add_wall(mesh, {coordinate(random), coordinate(random)},
-             {coordinate(random), coordinate(random)}, 0.05, 0.15);
+             {coordinate(random), coordinate(random)}, 0.2, 0.35);
   }
   const Profile profile = profile_of(mesh);
-  EXPECT_NEAR(band_of(profile, 0).area_m2, 4e4, 40.0);
-  EXPECT_EQ(band_of(profile, 0).outlines(), 1);
+  EXPECT_NEAR(band_of(profile, 2).area_of_pieces(), 4e4, 40.0);
+  EXPECT_EQ(band_of(profile, 2).outlines(), 1);
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ using test::Band;
 using test::band_of;
 using test::circle;
 using test::expect_sound;
-using test::middle_m;
 using test::perimeter_of;
 using test::pi;
 using test::Polygon;
@@ -37,19 +36,25 @@ TEST(Profile, OfABoxHasItsAreaAndPerimeterInTheBandsThatItSpans) {
   double volume = 0.0;
   for (std::size_t i = 0; i < profile_bands; ++i) {
     const Band band = band_of(profile, i);
-    if (middle_m(i) < 0.2 || middle_m(i) > 1.5) {
+    const double low = std::max(0.2, profile_edges_m[i]);
+    const double high = std::min(1.5, profile_edges_m[i + 1]);
+    if (!(low < high)) {
       EXPECT_TRUE(band.pieces.empty()) << "band " << i;
       EXPECT_EQ(band.area_m2, 0.0);
       continue;
     }
     EXPECT_EQ(band.outlines(), 1);
-    EXPECT_NEAR(band.area_m2, 4.5 * 1.8, 1e-3 * 4.5 * 1.8) << "band " << i;
+    const double taken = (high - low) / band_height_m(i);
+    EXPECT_NEAR(band.area_m2, taken * 4.5 * 1.8, 1e-3 * 4.5 * 1.8) << "band " << i;
+    EXPECT_NEAR(band.area_of_pieces(), 4.5 * 1.8, 1e-3 * 4.5 * 1.8) << "band " << i;
+    EXPECT_NEAR(static_cast<double>(band.heights().low_m), low, 1e-6);
+    EXPECT_NEAR(static_cast<double>(band.heights().high_m), high, 1e-6);
     EXPECT_NEAR(band.length(), 2.0 * (4.5 + 1.8), 1e-3 * 12.6) << "band " << i;
     EXPECT_GE(band.pieces.size(), static_cast<std::size_t>(12.6 / longest_piece_m));
     for (const OutlinePiece& piece : band.pieces) {
       EXPECT_LE(static_cast<double>(piece.length_m), longest_piece_m * 1.00001);
     }
-    volume += 4.5 * 1.8 * (profile_edges_m[i + 1] - profile_edges_m[i]);
+    volume += 4.5 * 1.8 * (high - low);
   }
   EXPECT_NEAR(profile.volume_m3(), volume, 1e-3 * volume);
 }
@@ -100,7 +105,7 @@ TEST(Profile, KeepsTheConcavityOfACurvedBarrier) {
   }
   const Profile profile = profile_of(prism(arc, 0.0, 1.0));
   expect_sound(profile);
-  for (std::size_t i = 0; i < 5; ++i) {
+  for (std::size_t i = 0; i < 6; ++i) {
     const Band band = band_of(profile, i);
     EXPECT_EQ(band.outlines(), 1);
     EXPECT_NEAR(band.area_m2, area_of(arc), 0.02 * area_of(arc));
@@ -143,26 +148,27 @@ TEST(Profile, OfAnOpenShellClosesSmallHoles) {
     // Beside it, so that there is a profile in any case.
     add_prism(mesh, rectangle(8, 0, 9, 1), 0.0, 1.0);
     const Profile profile = profile_of(mesh);
-    for (std::size_t i = 0; i < 5; ++i) {
+    for (std::size_t i = 0; i < 6; ++i) {
       const Band band = band_of(profile, i);
       EXPECT_EQ(band.outlines(), 2) << hole;
       EXPECT_NEAR(band.area_m2, hole < 0.1 ? 13.0 : 1.0, 0.05) << hole;
       EXPECT_NEAR(band.length(), 4.0 + (hole < 0.1 ? 16.0 : 2.0 * (16.0 - hole)), 0.2) << hole;
       EXPECT_LE(band.opening().norm(), 1e-4);
     }
-    EXPECT_TRUE(band_of(profile, 5).pieces.empty());
+    EXPECT_TRUE(band_of(profile, 6).pieces.empty());
   }
 }
 
 TEST(Profile, StandsOnTheLowestPointOfABodyBelowTheGround) {
   const Profile sunk = profile_of(prism(rectangle(0, 0, 2, 2), -0.75, 0.5));
   EXPECT_EQ(sunk.ground_m, -0.75);
-  EXPECT_FALSE(band_of(sunk, 5).pieces.empty()) << "0.35 m over the origin";
-  EXPECT_TRUE(band_of(sunk, 6).pieces.empty()) << "0.65 m over the origin";
+  EXPECT_FALSE(band_of(sunk, 7).pieces.empty()) << "0.25 to 0.45 m over the origin";
+  EXPECT_NEAR(static_cast<double>(band_of(sunk, 7).heights().high_m), 1.25, 1e-6);
+  EXPECT_TRUE(band_of(sunk, 8).pieces.empty()) << "from 0.85 m over the origin on";
   const Profile standing = profile_of(prism(rectangle(0, 0, 2, 2), -0.25, 0.5));
   EXPECT_EQ(standing.ground_m, 0.0);
-  EXPECT_FALSE(band_of(standing, 1).pieces.empty());
-  EXPECT_TRUE(band_of(standing, 2).pieces.empty());
+  EXPECT_FALSE(band_of(standing, 3).pieces.empty());
+  EXPECT_TRUE(band_of(standing, 4).pieces.empty());
 }
 
 /// A star-shaped polygon with corners at even angles.
@@ -202,14 +208,14 @@ TEST(Profile, OfRandomPrismsHasTheAreaOfTheirBaseWhicheverWayTheyStand) {
     const double cell = std::clamp((high - low).maxCoeff() / 250.0, 0.002, 0.02);
     const double tolerance = 0.25 * cell * perimeter_of(base);
     for (std::size_t i = 0; i < profile_bands; ++i) {
-      if (middle_m(i) > height) {
+      if (profile_edges_m[i] >= height) {
         EXPECT_TRUE(band_of(profile, i).pieces.empty());
         continue;
       }
       const Band band = band_of(profile, i);
       EXPECT_EQ(band.outlines(), 1);
-      EXPECT_NEAR(band.area_m2, area_of(base), tolerance);
-      EXPECT_NEAR(band_of(other, i).area_m2, band.area_m2, tolerance);
+      EXPECT_NEAR(band.area_of_pieces(), area_of(base), tolerance);
+      EXPECT_NEAR(band_of(other, i).area_of_pieces(), band.area_of_pieces(), tolerance);
       EXPECT_NEAR(band.length(), perimeter_of(base), 0.03 * perimeter_of(base));
       for (const Vector2d& p : base) EXPECT_LE(band.distance(p), 2.0 * cell);
     }

@@ -186,24 +186,25 @@ TEST_F(ModelFile, RefusesForgedBands) {
   ASSERT_LT(head.first_piece[2], head.first_piece[3]);
   refuse(bands, [](detail::ModelHeader& h) { h.first_piece[0] = 1; });
   refuse(bands, [](detail::ModelHeader& h) { std::swap(h.first_piece[2], h.first_piece[3]); });
-  refuse(bands, [](detail::ModelHeader& h) { h.first_piece[9] = h.first_piece[10] + 1; });
+  refuse(bands, [](detail::ModelHeader& h) { h.first_piece[10] = h.first_piece[11] + 1; });
+  refuse("its inner outlines do not lie within their bands",
+         [](detail::ModelHeader& h) { h.first_inner_piece[2] = h.first_piece[3] + 1; });
   refuse(bands, [](detail::ModelHeader& h) { h.first_piece[1] = 0xffffffffU; });
   for (const float wrong : {std::nanf(""), infinity, -infinity, -1e-6F, 2.0F}) {
     refuse(areas, [&](detail::ModelHeader& h) { h.band_area_m2[2] = wrong; });
   }
-  ASSERT_EQ(head.first_piece[9], head.first_piece[10]) << "a band without a piece has no area";
-  refuse(areas, [](detail::ModelHeader& h) { h.band_area_m2[9] = 0.1F; });
+  ASSERT_EQ(head.first_piece[10], head.first_piece[11]) << "a band without a piece has no area";
+  refuse(areas, [](detail::ModelHeader& h) { h.band_area_m2[10] = 0.1F; });
   for (const double wrong : {std::nan(""), -0.1, 1.3, 1e300, -HUGE_VAL, HUGE_VAL}) {
     refuse(ground, [&](detail::ModelHeader& h) { h.ground_m = wrong; });
   }
-  refuse("its outlines enclose nothing", [](detail::ModelHeader& h) { h.band_area_m2 = {}; });
 
   // Another number of pieces does not fit the size of the file; one that does is limited.
   const Bytes fewer =
-      with_other_head(bytes, [](detail::ModelHeader& h) { h.first_piece[10] -= 64; });
+      with_other_head(bytes, [](detail::ModelHeader& h) { h.first_piece[11] -= 64; });
   expect_refused(fewer, "head", "the numbers of elements do not add up to the size of the file");
   Bytes many = with_other_head(
-      bytes, [](detail::ModelHeader& h) { h.first_piece[10] = max_profile_pieces + 1; });
+      bytes, [](detail::ModelHeader& h) { h.first_piece[11] = max_profile_pieces + 1; });
   many.resize(detail::layout_of(head_of(many)).end, 0);
   many = with_other_head(many, [&](detail::ModelHeader& h) { h.file_bytes = many.size(); });
   expect_refused(many, "head", "there are more than 2 million outline pieces");

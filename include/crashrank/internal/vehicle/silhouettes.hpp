@@ -13,8 +13,8 @@ namespace crashrank {
 
 /// Intervals in which the body lies along one body axis, sampled on nodes along the other: one where
 /// it is convex, several where free space at least `least_free_width_m` wide parts them. They are
-/// stored in layers by rising coordinate: layer k of a node is its interval number k. Nodes with
-/// fewer intervals than layers hold -1e9 and 1e9 in the others.
+/// stored in layers by falling length: layer k of a node is its interval number k. Nodes with fewer
+/// intervals than layers hold -1e9 and 1e9 in the others.
 struct Silhouette {
   static constexpr std::size_t most_layers = 4;  ///< the narrowest gaps beyond are closed
   float low_m = 0.0F;        ///< coordinate of the first node, m

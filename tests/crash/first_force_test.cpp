@@ -1,0 +1,163 @@
+// When and where the contact law begins to press, against the exact time of impact of the meshes.
+#include "crash/scene_cases.hpp"
+
+#include "campaign.hpp"
+#include "crashrank/model/make_model.hpp"
+#include "crashrank/motion/time_of_impact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+namespace crashrank {
+namespace {
+
+using Eigen::Vector3d;
+using test::flat_pose;
+using test::Random;
+
+void append(TriangleMesh& mesh, TriangleMesh part, const Vector3d& at, double turn) {
+  const Eigen::AngleAxisd about(turn, Vector3d::UnitZ());
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Eigen::Vector3f& v : part.vertices) {
+    mesh.vertices.push_back((about * v.cast<double>() + at).cast<float>());
+  }
+  for (const auto& [a, b, c] : part.triangles) {
+    mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+}
+
+/// Size of a box and the height of its middle.
+void append_box(TriangleMesh& mesh, const Vector3d& size, double x, double y, double middle_z,
+                double turn) {
+  append(mesh, test::box_mesh(0.5 * size), {x, y, middle_z}, turn);
+}
+
+/// A body of boxes, beams, plates and posts, a ring, a walled yard or a portal, at random heights
+/// and turns.
+TriangleMesh random_body(Random& random) {
+  TriangleMesh mesh;
+  const double turn = random.uniform(-3.1, 3.1);
+  switch (random.below(4)) {
+    case 0: {  // a ring of straight walls
+      const double radius = random.uniform(2.0, 6.0);
+      const double low = random.uniform(0.0, 1.0);
+      const double height = random.uniform(0.1, 1.5);
+      constexpr int walls = 8;
+      for (int k = 0; k < walls; ++k) {
+        const double round = turn + 2.0 * detail::pi * k / walls;
+        append_box(mesh, {0.3, 2.2 * radius * std::tan(detail::pi / walls), height},
+                   radius * std::cos(round), radius * std::sin(round), low + 0.5 * height, round);
+      }
+      break;
+    }
+    case 1: {  // a portal: two posts and a beam
+      const double half = random.uniform(0.8, 3.0);
+      const double high = random.uniform(0.6, 3.5);
+      const double beam = random.uniform(0.05, 0.4);
+      for (const double side : {-half, half}) {
+        append_box(mesh, {0.2, 0.2, high}, -side * std::sin(turn), side * std::cos(turn),
+                   0.5 * high, turn);
+      }
+      append_box(mesh, {0.2, 2.0 * half, beam}, 0, 0, high - 0.5 * beam, turn);
+      break;
+    }
+    default: {
+      const std::size_t parts = 1 + random.below(4);
+      for (std::size_t k = 0; k < parts; ++k) {
+        const Vector3d size(random.uniform(0.1, 4.0), random.uniform(0.1, 1.5),
+                            random.uniform(0.03, 1.2));
+        append_box(mesh, size, random.uniform(-1.5, 1.5), random.uniform(-1.0, 1.0),
+                   random.uniform(0.15, 2.5) + 0.5 * size.z(), random.uniform(-3.1, 3.1));
+      }
+    }
+  }
+  return mesh;
+}
+
+TEST(FirstForce, ComesWithTheExactTimeOfImpactAndNeverWithoutOne) {
+  const test::Campaign campaign = test::scene_campaign(4001, 150);
+  Random random(campaign.seed);
+  std::uint64_t meet = 0;
+  std::uint64_t apart = 0;
+  std::uint64_t late = 0;       // over 2 cm of travel off
+  std::uint64_t missing = 0;    // a contact without a force
+  std::uint64_t invented = 0;   // a force without a contact
+  std::uint64_t shallow = 0;    // of the missing: under 2 cm of overlap at most
+  double furthest = 0.0;
+  for (std::uint64_t n = 0; n < campaign.count; ++n) {
+    const TriangleMesh mesh_a = random_body(random);
+    const TriangleMesh mesh_b = random_body(random);
+    VehicleFacts moving;
+    moving.mass_kg = 1500.0;
+    VehicleFacts standing;
+    standing.kind = BodyKind::building;
+    const Vehicle a = test::vehicle_from(mesh_a, moving);
+    const Vehicle b = test::vehicle_from(mesh_b, standing);
+    const double speed_mps = random.uniform(2.0, 20.0);
+    const double way_m = 14.0;
+    const Pose from = flat_pose(-way_m, random.uniform(-3.0, 3.0), random.uniform(-0.15, 0.15));
+    const Pose at = flat_pose(0.0, 0.0, random.uniform(-3.1, 3.1));
+    test::SceneSetup setup;
+    setup.add(a, from, speed_mps);
+    setup.add(b, at, 0.0);
+
+    const Result<Model> model_a = make_model(mesh_a);
+    const Result<Model> model_b = make_model(mesh_b);
+    ASSERT_TRUE(model_a && model_b);
+    ImpactWorkspace workspace;
+    const double until_s = 2.0 * way_m / speed_mps;
+    const Impact impact = time_of_impact(model_a->tree, setup.plans[0], model_b->tree,
+                                         setup.plans[1], 0.0, until_s, workspace);
+    if (impact.state != ImpactState::contact && impact.state != ImpactState::none) continue;
+
+    detail::SceneRun run;
+    run.prepare(2, std::max(a.profile->pieces.size(), b.profile->pieces.size()));
+    detail::SceneOptions options = test::options_with_steps(0.25);
+    options.until_s = until_s;
+    options.longest_s = until_s;
+    options.fastest_plan_mps = speed_mps;
+    run.begin(setup.make_bodies(false), 0, 1, 0.0, Vector3d::Zero(), options);
+    double force_s = -1.0;
+    while (force_s < 0.0 && run.advance(1)) {
+      if (run.touched(0)) force_s = run.now_s();
+    }
+    const bool contact = impact.state == ImpactState::contact;
+    (contact ? meet : apart) += 1;
+    if (!contact) {
+      invented += force_s >= 0.0 ? 1U : 0U;
+      if (force_s >= 0.0) std::printf("scene %llu: a force without a contact\n",
+                                      static_cast<unsigned long long>(n));
+      continue;
+    }
+    if (force_s < 0.0) {
+      ++missing;
+      std::printf("scene %llu: a contact at %.3f s without a force\n",
+                  static_cast<unsigned long long>(n), impact.time_s);
+      continue;
+    }
+    const double off_m = std::abs(force_s - impact.time_s) * speed_mps;
+    furthest = std::max(furthest, off_m);
+    if (off_m > 0.02) {
+      ++late;
+      std::printf("scene %llu: the force begins %+.3f m after the contact\n",
+                  static_cast<unsigned long long>(n), (force_s - impact.time_s) * speed_mps);
+    }
+  }
+  std::printf("%llu contacts, %llu apart: %llu over 2 cm off (furthest %.3f m), %llu without a force, "
+              "%llu forces without a contact\n",
+              static_cast<unsigned long long>(meet), static_cast<unsigned long long>(apart),
+              static_cast<unsigned long long>(late), furthest,
+              static_cast<unsigned long long>(missing), static_cast<unsigned long long>(invented));
+  (void)shallow;
+  EXPECT_GT(meet, campaign.count / 4);
+  EXPECT_LE(static_cast<double>(late + missing), 0.01 * static_cast<double>(meet) + 1.0);
+  EXPECT_LE(static_cast<double>(invented), 0.01 * static_cast<double>(apart) + 1.0);
+}
+
+}  // namespace
+}  // namespace crashrank
