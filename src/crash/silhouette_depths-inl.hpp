@@ -19,8 +19,10 @@ namespace crashrank::detail::HWY_NAMESPACE {
 struct Depths {
   F8 front, rear, left, right;
   M8 known;  ///< the place lies within the nodes of all silhouettes
-  I8 column;     ///< node of the heights before the place
-  F8 share;      ///< of the way to the next one
+  I8 row;              ///< node over y before the place
+  F8 row_share;        ///< share of the way to the next one
+  I8 column;           ///< node over x
+  F8 column_share;
 
   HWY_INLINE F8 least() const {
     return select(known, minimum(minimum(front, rear), minimum(left, right)), all(-1.0F));
@@ -80,19 +82,23 @@ HWY_INLINE Depths depths_at(const Silhouettes& s, std::size_t band, F8 x, F8 y) 
   const Edges ends = edges_at(s, s.along_x[band], row, x);
   const Edges flanks = edges_at(s, s.along_y[band], column, y);
   return {ends.greatest - x, x - ends.least, flanks.greatest - y, y - flanks.least,
-          both(row.known, column.known), column.node, column.share};
+          both(row.known, column.known), row.node, row.share, column.node, column.share};
 }
 
 /// Heights that the body takes up at places whose depths are known, m over its ground.
 HWY_INLINE Edges heights_at(const Silhouettes& s, std::size_t band, const Depths& place) {
   static_assert(sizeof(HeightRange) == 2 * sizeof(float));
-  alignas(32) std::int32_t at[8];
-  store(place.column + place.column, at);
-  // Values of a node and the next one: low, high, low, high.
-  F8 node[4];
-  gather_rows(&s.heights[s.first_height[band]].low_m, at, node);
-  return {node[1] + place.share * (node[3] - node[1]),
-          node[0] + place.share * (node[2] - node[0])};
+  const auto along = [&](std::uint32_t first, I8 node_before, F8 share) {
+    alignas(32) std::int32_t at[8];
+    store(node_before + node_before, at);
+    // Values of a node and the next one: low, high, low, high.
+    F8 node[4];
+    gather_rows(&s.heights[first].low_m, at, node);
+    return Edges{node[1] + share * (node[3] - node[1]), node[0] + share * (node[2] - node[0])};
+  };
+  const Edges row = along(s.first_height_x[band], place.row, place.row_share);
+  const Edges column = along(s.first_height_y[band], place.column, place.column_share);
+  return {minimum(row.greatest, column.greatest), maximum(row.least, column.least)};
 }
 
 }  // namespace crashrank::detail::HWY_NAMESPACE

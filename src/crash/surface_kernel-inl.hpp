@@ -161,12 +161,12 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   if (bits(where) == 0) return;
   // Heights that both bodies take up: the piece at the surface and behind it, the pressed body
   // there.
-  const Edges column = heights_at(target_, p.target, d);
+  const Edges there = heights_at(target_, p.target, d);
   const F8 rise = all(q_.rise_m);
   const auto common_m = [&](const std::array<float, block_pieces>& low,
                             const std::array<float, block_pieces>& high) {
-    return positive(minimum(load(high.data() + p.first) + rise, column.greatest) -
-                    maximum(load(low.data() + p.first) + rise, column.least));
+    return positive(minimum(load(high.data() + p.first) + rise, there.greatest) -
+                    maximum(load(low.data() + p.first) + rise, there.least));
   };
   const F8 common_at_edge = common_m(p.rows->edge_low_m, p.rows->edge_high_m);
   const F8 common_behind = common_m(p.rows->behind_low_m, p.rows->behind_high_m);
@@ -178,7 +178,7 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   const auto or_filler = [&](F8 a) { return select(where, a, all(0.01F)); };
   least = or_filler(least);
   d = {or_filler(d.front), or_filler(d.rear), or_filler(d.left), or_filler(d.right), d.known,
-       d.column,           d.share};
+       d.row,              d.row_share,       d.column,          d.column_share};
   const F8 advance = or_filler(p.at.advance);
 
   const F8 nx = p.at.normal_x;

@@ -49,9 +49,15 @@ struct Crossing {
   float out = 0.0F;
 };
 
+/// Narrower bays fold up with the structure beside them, m; so do those below the floor of a
+/// vehicle, in bands below `lowest_bay_band`.
+constexpr float least_bay_m = 0.8F;
+constexpr std::size_t lowest_bay_band = 3;
+static_assert(profile_edges_m[lowest_bay_band] == 0.4);
+
 /// Intervals of a line that belong to the body. What lies between two crossings is free where the
-/// body ends at the first and begins at the second.
-std::vector<SilhouetteNode> intervals_of(std::vector<Crossing>& crossings) {
+/// body ends at the first and begins at the second, at least `least_gap_m` further on.
+std::vector<SilhouetteNode> intervals_of(std::vector<Crossing>& crossings, float least_gap_m) {
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
     return a.value != b.value ? a.value < b.value : a.out < b.out;
   });
@@ -60,8 +66,7 @@ std::vector<SilhouetteNode> intervals_of(std::vector<Crossing>& crossings) {
   for (const Crossing& c : crossings) {
     const bool begins = intervals.empty() ||
                         (out > 0.0F && c.out < 0.0F &&
-                         c.value - intervals.back().greatest_m >=
-                             static_cast<float>(least_free_width_m));
+                         c.value - intervals.back().greatest_m >= least_gap_m);
     if (begins) intervals.push_back({c.value, c.value});
     intervals.back().greatest_m = std::max(intervals.back().greatest_m, c.value);
     if (c.out != 0.0F) out = c.out;
@@ -117,7 +122,11 @@ Silhouette sample(const Profile& profile, std::size_t band, bool over_x, float l
   }
   std::vector<std::vector<SilhouetteNode>> intervals;
   intervals.reserve(crossings.size());
-  for (std::vector<Crossing>& of_node : crossings) intervals.push_back(intervals_of(of_node));
+  const float least_gap_m =
+      band < lowest_bay_band ? std::numeric_limits<float>::infinity() : least_bay_m;
+  for (std::vector<Crossing>& of_node : crossings) {
+    intervals.push_back(intervals_of(of_node, least_gap_m));
+  }
   repeat_edges(intervals, [](const auto& of_node) { return !of_node.empty(); });
   s.layers = 1;
   for (const auto& of_node : intervals) {
@@ -132,17 +141,18 @@ Silhouette sample(const Profile& profile, std::size_t band, bool over_x, float l
   return s;
 }
 
-/// Heights that the body takes up in a band over each node of a silhouette over x. Where they reach
-/// an edge of the band beyond which the body goes on, so do they.
-void sample_heights(const Profile& profile, std::size_t band, Silhouettes& s) {
+/// Heights that the body takes up in a band along the line of each node of a silhouette. Where they
+/// reach an edge of the band beyond which the body goes on, so do they. Returns the first of them.
+std::uint32_t sample_heights(const Profile& profile, std::size_t band, bool over_x,
+                             Silhouettes& s) {
   constexpr float at_edge_m = 0.01F;
   constexpr float far_m = 1e3F;
-  const Silhouette& over = s.along_y[band];
-  s.first_height[band] = static_cast<std::uint32_t>(s.heights.size());
+  const Silhouette& over = over_x ? s.along_y[band] : s.along_x[band];
+  const auto first = static_cast<std::uint32_t>(s.heights.size());
   std::vector<HeightRange> heights(over.count);
   for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
     const OutlinePiece& piece = profile.pieces[i];
-    visit_nodes(piece, true, over, [&](std::size_t k, float) { heights[k].grow(piece.behind); });
+    visit_nodes(piece, over_x, over, [&](std::size_t k, float) { heights[k].grow(piece.behind); });
     s.all_heights.grow(piece.behind);
   }
   repeat_edges(heights, [](const HeightRange& range) { return !range.empty(); });
@@ -160,6 +170,7 @@ void sample_heights(const Profile& profile, std::size_t band, Silhouettes& s) {
     }
   }
   s.heights.insert(s.heights.end(), heights.begin(), heights.end());
+  return first;
 }
 
 /// Puts a block into a place of its group.
@@ -288,7 +299,8 @@ Silhouettes make_silhouettes(const Profile& profile) {
     s.along_x[band] = sample(profile, band, false, s.min_y, s.max_y, step, s.nodes);
     s.along_y[band] = sample(profile, band, true, s.min_x, s.max_x, step, s.nodes);
     s.bands[band] = bounds_of(s, band);
-    sample_heights(profile, band, s);
+    s.first_height_x[band] = sample_heights(profile, band, false, s);
+    s.first_height_y[band] = sample_heights(profile, band, true, s);
     constexpr auto most = static_cast<std::uint32_t>(block_pieces);
     const std::size_t first_block = s.blocks.size();
     for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += most) {

@@ -12,7 +12,7 @@
 namespace crashrank {
 
 /// Intervals in which the body lies along one body axis, sampled on nodes along the other: one where
-/// it is convex, several where free space at least `least_free_width_m` wide parts them. They are
+/// it is convex, several where a bay at least 0.8 m wide and 0.4 m over the ground parts them. They are
 /// stored in layers by falling length: layer k of a node is its interval number k. Nodes with fewer
 /// intervals than layers hold -1e9 and 1e9 in the others.
 struct Silhouette {
@@ -86,10 +86,11 @@ struct BandBounds {
 struct Silhouettes {
   std::array<Silhouette, profile_bands> along_x{};  ///< x of front and rear over y
   std::array<Silhouette, profile_bands> along_y{};  ///< y of left and right over x
-  /// First of the heights of each band in `heights`, one for every node of `along_y`.
-  std::array<std::uint32_t, profile_bands> first_height{};
-  /// Heights that the body takes up across its width, m over its ground; they go on beyond the edge
-  /// of a band where the body does.
+  /// First of the heights of each band in `heights`, one for every node of `along_x` and `along_y`.
+  std::array<std::uint32_t, profile_bands> first_height_x{};
+  std::array<std::uint32_t, profile_bands> first_height_y{};
+  /// Heights that the body takes up along the line of a node, m over its ground; they go on beyond
+  /// the edge of a band where the body does.
   std::vector<HeightRange> heights;
   HeightRange all_heights;  ///< of all bands that press, m over the ground
   std::array<BandBounds, profile_bands> bands{};    ///< around both
