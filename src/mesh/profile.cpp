@@ -134,12 +134,10 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
     profile.area_m2[band] = static_cast<float>(area);
   }
   profile.first[profile_bands] = static_cast<std::uint32_t>(profile.pieces.size());
-  if (!(profile.volume_m3() > 0.0)) {
-    return make_error(ErrorCode::bad_input,
-                      "has no outline between 0 and 4 m over the ground that encloses anything",
-                      "check its scale, its up axis and its origin on the ground");
-  }
-  return profile;
+  if (profile.volume_m3() > 0.0) return profile;
+  Profile without_outline;
+  without_outline.ground_m = profile.ground_m;
+  return without_outline;
 }
 
 }  // namespace

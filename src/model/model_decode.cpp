@@ -145,8 +145,10 @@ Status check_missing_profile(const ModelHeader& header, const TriangleMesh& mesh
     return refused("profile", "it has no piece");
   }
   const Result<Profile> made = make_profile(mesh);
-  if (made) return refused("profile", "there is none, though the mesh has outlines");
-  if (means_no_profile(made.error())) return Success{};
+  if (made && !made->pieces.empty()) {
+    return refused("profile", "there is none, though the mesh has outlines");
+  }
+  if (made || means_no_profile(made.error())) return Success{};
   return made.error();
 }
 

@@ -251,7 +251,7 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
         return status.error();
       }
     }
-    v.density_kgm3 = v.mass_kg / v.profile->volume_m3();
+    if (v.has_outline()) v.density_kgm3 = v.mass_kg / v.profile->volume_m3();
   }
   v.strength = facts.honeycomb ? honeycomb_strength(*facts.honeycomb)
                : v.movable()   ? strength_of(v, box)

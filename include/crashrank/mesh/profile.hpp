@@ -52,9 +52,9 @@ struct Profile {
 /// Takes the outlines of a mesh at the middle of each band: the same bits on every machine. Of the
 /// vertices only those that triangles use count. O(triangles + cells that the section passes +
 /// cells of a raster of at most 4 million) a band. Errors: bad_input for vertices that are not
-/// finite, too far out or not there, and when no band has an outline that encloses anything (a
-/// single sheet, a flat plate on the ground, a body higher than 4 m over the ground throughout);
-/// limit_exceeded above `max_profile_pieces`.
+/// finite, too far out or not there; limit_exceeded above `max_profile_pieces`. Without pieces if
+/// no band has an outline that encloses anything: a single sheet, a flat plate on the ground, a
+/// body higher than 4 m over the ground throughout.
 CRASHRANK_API Result<Profile> make_profile(const TriangleMesh& mesh);
 
 }  // namespace crashrank
