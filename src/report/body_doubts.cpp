@@ -139,20 +139,23 @@ void doubt_masses(const Scenario& scenario, const RankResult& result,
 struct Standing {
   Eigen::Vector3d at_m;
   Eigen::Vector2d slope;
+  bool on_wheels;  ///< poles and persons stand upright on a slope
 };
 
 Standing standing(const Placed& body) {
   constexpr double least_upright = 0.8;
   const Eigen::Vector3d up = body.pose.rotation.col(2);
   if (!(up.z() >= least_upright)) {
-    return {{body.pose.translation.x(), body.pose.translation.y(), body.min_m.z()}, {0.0, 0.0}};
+    return {{body.pose.translation.x(), body.pose.translation.y(), body.min_m.z()},
+            {0.0, 0.0},
+            drives(body.kind)};
   }
   const auto lowest_m = static_cast<double>(body.model->mesh.bounds().min.z());
-  return {body.pose.translation + lowest_m * up, -up.head<2>() / up.z()};
+  return {body.pose.translation + lowest_m * up, -up.head<2>() / up.z(), drives(body.kind)};
 }
 
 /// How far the ground rises from the ego to an actor, at least and at most: on planes through the
-/// ego, the actor, and other actors near it.
+/// ego and vehicles near the actor, itself included.
 std::pair<double, double> ground_rise_m(const Standing& ego, const std::vector<Standing>& actors,
                                         std::size_t actor) {
   constexpr double near_m = 30.0;
@@ -160,7 +163,7 @@ std::pair<double, double> ground_rise_m(const Standing& ego, const std::vector<S
   double lowest = ego.slope.dot(way);
   double highest = lowest;
   for (const Standing& other : actors) {
-    if (!((other.at_m - actors[actor].at_m).norm() <= near_m)) continue;
+    if (!other.on_wheels || !((other.at_m - actors[actor].at_m).norm() <= near_m)) continue;
     lowest = std::min(lowest, other.slope.dot(way));
     highest = std::max(highest, other.slope.dot(way));
   }

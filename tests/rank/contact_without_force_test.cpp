@@ -207,6 +207,7 @@ TEST(ContactWithoutForceCampaign, CountsThoseOfShippedScenarios) {
   EXPECT_GT(count.candidates, 0U);
 }
 
+// In full: CRASHRANK_SCENE_COUNT=10000.
 TEST(ContactWithoutForceCampaign, CountsThoseOfRandomScenes) {
   const auto [seed, scenes] = test::scene_campaign(1, 12);
   ContactCount count;
