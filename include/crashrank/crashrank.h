@@ -534,6 +534,10 @@ typedef struct crashrank_choice {
   uint64_t damaged_triangles;  ///< of the ego, from all contacts
   uint64_t contacts;           ///< of the ego; for those between others see
                                ///< crashrank_ranking_further_count
+  /// 1: in a future, meshes of the ego and another body touch at more than 0.5 m/s and the crash
+  /// model finds no force in time. The score may be too low; `highest_score` is what the energy
+  /// allows.
+  int32_t contact_without_force;
 } crashrank_choice;
 
 /// Number of candidates, 0 for NULL.
@@ -657,10 +661,11 @@ typedef struct crashrank_ranked {
   double highest_score;      ///< and its upper end
   double time_of_impact_s;   ///< from now
   double closing_speed_mps;  ///< of the points that touch; see CRASHRANK_FASTEST_CRASH_MPS
-  double collision_probability;  ///< over all futures, as far as it is known
-  double estimated_score;        ///< estimate of the score; the score where it is known
-  int32_t in_race;               ///< can still be first
-  int32_t collides;              ///< in the likeliest future, as far as it is known
+  double collision_probability;   ///< over all futures, as far as it is known
+  double estimated_score;         ///< estimate of the score; the score where it is known
+  int32_t in_race;                ///< can still be first
+  int32_t collides;               ///< in the likeliest future, as far as it is known
+  int32_t contact_without_force;  ///< as in crashrank_choice; 0 where the score is not known
 } crashrank_ranked;
 
 /// What was known in time. `ranking`, most promising first, is the ranker's until its next call.

@@ -139,10 +139,11 @@ void bind_answers(nb::module_& module) {
           [](const Answered& self) {
             return indices_of(self, [](const One& c) {
               return std::int64_t{c.known ? 1 : 0} | (c.in_race ? 2 : 0) | (c.collides ? 4 : 0) |
-                     (c.feasible ? 8 : 0) | (c.leaves_road ? 16 : 0);
+                     (c.feasible ? 8 : 0) | (c.leaves_road ? 16 : 0) |
+                     (c.contact_without_force ? 32 : 0);
             });
           },
-          "Bits: known, in race, collides, feasible, leaves road.")
+          "Bits: known, in race, collides, feasible, leaves road, contact without force.")
       .def_prop_ro("complete", [](const Answered& self) { return self.answer.complete; })
       .def_prop_ro("proved", [](const Answered& self) { return self.answer.proved; })
       .def_prop_ro("in_race", [](const Answered& self) { return self.answer.in_race; })

@@ -40,6 +40,8 @@ class AnsweredCandidate(NamedTuple):
     """The vehicle can follow it, as far as that is known."""
     leaves_road: bool
     """A wheel leaves the road before the first contact, in any future."""
+    contact_without_force: bool
+    """In a future, meshes touch and the crash model finds no force: the score may be too low."""
 
 
 class Answer(Sequence[AnsweredCandidate]):
@@ -136,6 +138,7 @@ class Answer(Sequence[AnsweredCandidate]):
             collision_probability=_known(self._chances[place]),
             feasible=bool(flags & 8),
             leaves_road=bool(flags & 16),
+            contact_without_force=bool(flags & 32),
         )
 
     @property

@@ -23,6 +23,9 @@ def test_without_a_deadline_it_is_rank():
     assert [c.candidate for c in answer] == [c.candidate for c in want]
     assert [c.score for c in answer] == [c.score for c in want]
     assert [c.other for c in answer] == [c.other for c in want]
+    assert [c.contact_without_force for c in answer] == [
+        any(f.contact_without_force for f in c.futures) for c in want
+    ]
     assert answer.best.time_of_impact_s == want.best.time_of_impact_s
     np.testing.assert_array_equal(answer.score, [c.score for c in want])
     assert answer[1:3] == (answer[1], answer[2])

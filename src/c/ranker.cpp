@@ -231,6 +231,7 @@ crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank
       entry.collision_probability = one.collision_probability;
       entry.in_race = one.in_race ? 1 : 0;
       entry.collides = one.collides ? 1 : 0;
+      entry.contact_without_force = one.contact_without_force ? 1 : 0;
       ranker->answer.push_back(entry);
     }
     crashrank_answer made{};

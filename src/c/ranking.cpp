@@ -4,6 +4,7 @@
 
 #include "crashrank/report/ranking.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -46,6 +47,11 @@ crashrank_choice to_choice(const crashrank_ranking& ranking, std::size_t place) 
   choice.other_delta_v_mps = choice.pdof_deg = unknown;
   choice.damaged_triangles = ranked.ego.triangles.size();
   choice.contacts = ranked.contacts.size();
+  choice.contact_without_force =
+      std::any_of(ranked.futures.begin(), ranked.futures.end(),
+                  [](const FutureOutcome& future) { return future.contact_without_force; })
+          ? 1
+          : 0;
   if (!ranked.contacts.empty()) {
     const Contact& first = ranked.contacts.front();
     choice.other = ranking.actors[first.actor].c_str();

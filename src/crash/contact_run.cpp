@@ -30,8 +30,8 @@ double outline_radius(const Vehicle& v) {
 }  // namespace
 
 bool can_press(const Vehicle& a, const Vehicle& b) {
-  return (a.movable() || b.movable()) && (!a.strength.rigid || !b.strength.rigid) &&
-         a.profile->presses() && b.profile->presses();
+  return a.has_outline() && b.has_outline() && (a.movable() || b.movable()) &&
+         (!a.strength.rigid || !b.strength.rigid);
 }
 
 void CountedShare::pass(double time_s) {

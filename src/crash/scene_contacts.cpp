@@ -141,6 +141,7 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
   contact.a = a;
   contact.b = b;
   contact.begin_s = begin_s;
+  contact.first_force_s = forced_s_[static_cast<std::size_t>(&run - runs_.data())];
   contact.mean_force_s = begin_s + run.mean_force_s();
   contact.is_first =
       &run == first_run_ && (members_[partner_].state != State::fixed || second == partner_ ||

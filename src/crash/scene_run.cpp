@@ -28,6 +28,7 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   near_.reserve(bodies * most_near);
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
+  forced_s_.resize(most_at_once);
   active_.reserve(most_at_once);
   free_runs_.reserve(most_at_once);
   contacts_.reserve(most_contacts);
@@ -52,6 +53,7 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   near_.resize(bodies.size() * most_near);
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
+  forced_s_.resize(most_at_once);
   chain_.clear();
   active_.clear();
   free_runs_.clear();
@@ -341,6 +343,7 @@ void SceneRun::step() {
     ContactRun& run = runs_[k];
     if (!run.presses()) continue;
     last_force_s_ = now_s_;
+    if (!run.acts()) forced_s_[k] = now_s_;
     if (!run.acts() && &run != first_run_) {
       run.begin_at_first_force(contact_body(run.first()), contact_body(run.second()));
       run.set_counted_share(share_at_first_force(run));

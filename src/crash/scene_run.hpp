@@ -61,7 +61,9 @@ struct SceneContact {
   std::uint32_t a = 0;  ///< index of the movable body; of two movable bodies the lower index
   /// Index of the other body; of several adjoining fixed bodies the one with the largest impulse.
   std::uint32_t b = 0;
-  double begin_s = 0.0;  ///< time of its first force on the plans' clock
+  double begin_s = 0.0;  ///< on the plans' clock: of its first force, of the scene's first contact
+                         ///< that of the touch
+  double first_force_s = 0.0;  ///< time of its first force on that clock
   /// Contact with the partner: the body that the chain's first body contacts first. If the partner
   /// is fixed and another fixed body of the contact receives more impulse, the contact is reported
   /// for that body and this is false.
@@ -239,6 +241,7 @@ private:
   std::vector<std::uint32_t> near_;  ///< `most_near` entries for each body
   std::vector<ContactRun> runs_;
   std::vector<double> begun_s_;           ///< by run: time of its beginning
+  std::vector<double> forced_s_;          ///< by run: time of its first force
   std::vector<std::uint32_t> active_;     ///< runs in progress
   std::vector<std::uint32_t> free_runs_;  ///< unused runs
   std::vector<SceneContact> contacts_;

@@ -203,8 +203,10 @@ template <class T> std::array<T, 3> three(const Eigen::Matrix<T, 3, 1>& v) {
 Result<std::shared_ptr<const Profile>> profile_of(const Model& model) {
   if (model.profile != nullptr) return model.profile;
   Result<Profile> made = make_profile(model.mesh);
-  if (made) return std::shared_ptr<const Profile>(std::make_shared<Profile>(std::move(*made)));
-  if (means_no_profile(made.error())) return std::shared_ptr<const Profile>();
+  if (made && !made->pieces.empty()) {
+    return std::shared_ptr<const Profile>(std::make_shared<Profile>(std::move(*made)));
+  }
+  if (made || means_no_profile(made.error())) return std::shared_ptr<const Profile>();
   return made.error();
 }
 

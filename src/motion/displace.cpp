@@ -31,10 +31,7 @@ private:
   double sine_;
 };
 
-Vector2d heading_of(const Matrix3d& rotation) {
-  const Vector2d ahead = rotation.col(0).head<2>();
-  return ahead.norm() > 0.0 ? Vector2d(ahead.normalized()) : Vector2d(1.0, 0.0);
-}
+Vector3d forward_axis(const Matrix3d& rotation) { return rotation.col(0).normalized(); }
 
 /// What the error adds to a speed along the body's forward axis: neither reverses it.
 double gained(double speed, double error) {
@@ -55,7 +52,7 @@ void Motion::displace(const StateError& error) {
     planar->start.translation.head<2>() += shift;
     if (is_turned) {
       yaw.turn(planar->start.rotation);
-      planar->heading = heading_of(planar->start.rotation);
+      set_start(*planar, Pose(planar->start));
     }
     const Profile& p = planar->profile;
     const double speed = p.speed + gained(p.speed, error.speed_mps);
@@ -71,13 +68,13 @@ void Motion::displace(const StateError& error) {
       yaw.turn(free->start.rotation);
       yaw.turn(free->velocity.linear_mps);
     }
-    const Vector2d heading = heading_of(free->start.rotation);
-    const double speed = heading.dot(free->velocity.linear_mps.head<2>());
-    free->velocity.linear_mps.head<2>() += gained(speed, error.speed_mps) * heading;
+    const Vector3d forward = forward_axis(free->start.rotation);
+    const double speed = forward.dot(free->velocity.linear_mps);
+    free->velocity.linear_mps += gained(speed, error.speed_mps) * forward;
   } else {
     Timed& segments = *std::get_if<Timed>(&kind_);
     const Vector2d pivot = segments.front().pose.translation.head<2>();
-    Vector2d gone = shift;
+    Vector3d gone(error.x_m, error.y_m, 0.0);
     for (std::size_t i = 0; i < segments.size(); ++i) {
       Segment& segment = segments[i];
       Vector3d& place = segment.pose.translation;
@@ -87,12 +84,12 @@ void Motion::displace(const StateError& error) {
         yaw.turn(segment.velocity.linear_mps);
         yaw.turn(segment.velocity.angular_radps);
       }
-      place.head<2>() += gone;
+      place += gone;
       if (i + 1 == segments.size()) break;
-      const Vector2d heading = heading_of(segment.pose.rotation);
-      const double speed = heading.dot(segment.velocity.linear_mps.head<2>());
-      const Vector2d faster = gained(speed, error.speed_mps) * heading;
-      segment.velocity.linear_mps.head<2>() += faster;
+      const Vector3d forward = forward_axis(segment.pose.rotation);
+      const double speed = forward.dot(segment.velocity.linear_mps);
+      const Vector3d faster = gained(speed, error.speed_mps) * forward;
+      segment.velocity.linear_mps += faster;
       gone += (segments[i + 1].time - segment.time) * faster;
     }
   }

@@ -96,11 +96,20 @@ Motion::Profile Motion::make_profile(double speed, double acceleration, double t
   return p;
 }
 
+void Motion::set_start(Planar& planar, const Pose& start) {
+  planar.start = start;
+  const Eigen::Vector3d forward = start.rotation.col(0);
+  const Eigen::Vector2d ahead = forward.head<2>();
+  planar.heading = ahead.norm() > 0.0 ? Eigen::Vector2d(ahead.normalized()) : Eigen::Vector2d(1, 0);
+  planar.tilt.setZero();
+  if (forward.z() == 0.0) return;
+  planar.tilt = forward.normalized();
+  planar.tilt.head<2>() -= planar.heading;
+}
+
 Motion::Motion(const TurnMotion& turn) {
   Planar p;
-  p.start = rigid(turn.start);
-  const Eigen::Vector2d ahead = p.start.rotation.col(0).head<2>();
-  if (ahead.norm() > 0.0) p.heading = ahead.normalized();
+  set_start(p, rigid(turn.start));
   p.profile = make_profile(turn.speed_mps, turn.acceleration_mps2, turn.top_speed_mps);
   p.yaw_rate = turn.yaw_rate_radps;
   kind_ = p;
@@ -108,9 +117,7 @@ Motion::Motion(const TurnMotion& turn) {
 
 Motion::Motion(const ArcMotion& arc) {
   Planar p;
-  p.start = rigid(arc.start);
-  const Eigen::Vector2d ahead = p.start.rotation.col(0).head<2>();
-  if (ahead.norm() > 0.0) p.heading = ahead.normalized();
+  set_start(p, rigid(arc.start));
   p.profile = make_profile(arc.speed_mps, arc.acceleration_mps2, arc.top_speed_mps);
   p.curvature = arc.curvature_per_m;
   p.arc = true;
@@ -224,11 +231,22 @@ void Motion::planar_state(const Planar& planar, double t, Pose& pose, Velocity& 
       moved += p.end_speed * after * sinc(v) * turned(planar.heading, 2.0 * u + v);
     }
   }
-  pose.rotation = yawed(planar.start.rotation, yaw);
   pose.translation = planar.start.translation;
   pose.translation.head<2>() += moved;
   velocity.linear_mps << speed * turned(planar.heading, yaw), 0.0;
-  velocity.angular_radps << 0.0, 0.0, yaw_rate;
+  if (planar.tilt.z() == 0.0) {
+    pose.rotation = yawed(planar.start.rotation, yaw);
+    velocity.angular_radps << 0.0, 0.0, yaw_rate;
+    return;
+  }
+  // Turns the level road about the horizontal line across the heading.
+  pose.translation += moved.dot(planar.heading) * planar.tilt;
+  velocity.linear_mps += velocity.linear_mps.head<2>().dot(planar.heading) * planar.tilt;
+  Eigen::Vector3d normal;
+  normal << -planar.tilt.z() * planar.heading, 1.0 + planar.tilt.head<2>().dot(planar.heading);
+  velocity.angular_radps = yaw_rate * normal;
+  pose.rotation =
+      detail::multiply(Eigen::AngleAxisd(yaw, normal).toRotationMatrix(), planar.start.rotation);
 }
 
 void Motion::state_at(double t_s, Pose& pose, Velocity& velocity) const {

@@ -250,7 +250,9 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
     if (stop()) return least;
     if (!scene.futures.is_followed(p)) continue;
     const Body& actor = scene.actors[plans[p].actor];
-    if (passes_over(scene.ego, ego, actor, plans[p].motion)) continue;
+    if (!actor.vehicle.has_outline() || passes_over(scene.ego, ego, actor, plans[p].motion)) {
+      continue;
+    }
     const MovingBody other{*actor.outline, plans[p].motion, trajectories.of(p),
                            trajectories.fastest_mps[p]};
     MinimumDistance distance(own, other, trajectories.step_s, stop);

@@ -66,19 +66,20 @@ double risk_of_futures(const Scene& scene, View<const double> scores,
 }
 
 CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>&& results,
-                                const std::vector<SimulatedOutcome>& outcomes, Scratch& scratch) {
+                                const std::vector<SimulatedOutcome>& outcomes, double upper_bound,
+                                Scratch& scratch) {
   const FutureSummary& summary = scene.futures.summary;
   std::vector<double> scores(scene.futures.size());
   const auto risk_over = [&](const auto& score_of) {
     for (std::size_t k = 0; k < results.size(); ++k) {
-      for (const std::uint32_t f : outcomes[k].futures) scores[f] = score_of(results[k]);
+      for (const std::uint32_t f : outcomes[k].futures) scores[f] = score_of(k);
     }
     return risk_of_futures(scene, {scores.data(), scores.size()}, scratch.weighted);
   };
   std::vector<double> samples;
   for (std::size_t i = 0; i < scene.samples.size(); ++i) {
     samples.push_back(
-        risk_over([i](const CandidateResult& result) { return result.sample_scores[i]; }));
+        risk_over([&results, i](std::size_t k) { return results[k].sample_scores[i]; }));
   }
   std::vector<FutureOutcome> summaries;
   for (std::size_t k = 0; k < results.size(); ++k) {
@@ -88,7 +89,10 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
   std::stable_sort(
       summaries.begin() + 1, summaries.end(),
       [](const FutureOutcome& p, const FutureOutcome& q) { return p.probability > q.probability; });
-  const double score = risk_over([](const CandidateResult& result) { return *result.score; });
+  const double highest = risk_over([&](std::size_t k) {
+    return outcomes[k].summary.contact_without_force ? upper_bound : *results[k].score;
+  });
+  const double score = risk_over([&](std::size_t k) { return *results[k].score; });
   std::vector<PersonRisk> people = mean_risks(results, outcomes);
   CandidateResult combined = std::move(results.front());
   combined.people = std::move(people);
@@ -106,6 +110,7 @@ CandidateResult combine_futures(const Scene& scene, std::vector<CandidateResult>
     combined.crowded = combined.crowded || results[k].crowded;
   }
   add_intervals(scene, combined);
+  combined.score_interval.highest = std::max(combined.score_interval.highest, highest);
   return combined;
 }
 

@@ -178,6 +178,15 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
   if (!result.collides) result.at_horizon = facts.at_horizon;
 }
 
+/// Upper bound on the score of a candidate in any future.
+double max_score(const Scene& scene, const Candidate& candidate,
+                 const std::optional<RoadLeaving>& leaving, Motion& displaced) {
+  ScoreBounds bounds;
+  bounds.prepare(scene);
+  return bounds.upper_bound_displaced(scene, candidate.motion, displaced) +
+         max_leaving_score(scene, leaving);
+}
+
 /// Evaluates the damage and the score of one outcome.
 CandidateResult finish_outcome(const Scene& scene, SimulatedOutcome& outcome,
                                PrecomputedPairs& found, Scratch& scratch, RankWork& work) {
@@ -215,8 +224,15 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
     results.push_back(finish_outcome(scene, each, found, scratch, work));
   }
   if (simulated.decided) {
+    const bool has_contact_without_force = std::any_of(
+        simulated.outcomes.begin(), simulated.outcomes.end(),
+        [](const SimulatedOutcome& each) { return each.summary.contact_without_force; });
+    const std::optional<RoadLeaving> may_leave =
+        scene.road.ends() ? std::optional<RoadLeaving>(RoadLeaving{}) : std::nullopt;
+    const double upper_bound =
+        has_contact_without_force ? max_score(scene, candidate, may_leave, scratch.ego) : 0.0;
     CandidateResult result =
-        combine_futures(scene, std::move(results), simulated.outcomes, scratch);
+        combine_futures(scene, std::move(results), simulated.outcomes, upper_bound, scratch);
     add_manoeuvre(scene, candidate, leaving, scratch, result);
     result.leaves_road = leaving_in_futures(simulated.outcomes);
     result.searched = true;
@@ -226,10 +242,7 @@ CandidateResult finish_unstopped(const Scene& scene, const Candidate& candidate,
   if (!results.empty()) result = std::move(results.front());
   result.score.reset();
   result.sample_scores.clear();
-  ScoreBounds bounds;
-  bounds.prepare(scene);
-  result.score_interval = {0.0, bounds.upper_bound_displaced(scene, candidate.motion, scratch.ego) +
-                                    max_leaving_score(scene, leaving)};
+  result.score_interval = {0.0, max_score(scene, candidate, leaving, scratch.ego)};
   result.numerical_interval = result.score_interval;
   // For a candidate that was not simulated only the demand at time 0 is known.
   result.demand = demand_until(scene, candidate, 0.0, leaving);

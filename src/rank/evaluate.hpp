@@ -8,6 +8,7 @@
 #include "rank/stop_check.hpp"
 #include "rank/tally.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -58,6 +59,10 @@ struct Scratch {
   StopCheck stop;
 
   bool stopped() const { return stop(); }
+  bool has_contact_without_force() const {
+    return std::any_of(touches.begin(), touches.end(),
+                       [](const Touch& touch) { return touch.contact.contact_without_force; });
+  }
   View<const Touch> touches_view() const { return {touches.data(), touches.size()}; }
 
   /// Allocates for a scene; afterwards only the damage search allocates.

@@ -191,6 +191,13 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     return Success{};
   };
   if (Status own = describe(ego->model, scene.ego); !own) return own.error();
+  if (!scene.ego.vehicle.has_outline()) {
+    return error_of_model(
+        make_error(ErrorCode::bad_input,
+                   "has no material between 0.1 and 4 m over its ground, but the ego needs it",
+                   "check its scale, its up axis and its origin on the ground"),
+        scenario.models[ego->model]);
+  }
   scene.ego.footing = footing_of(scene.ego.vehicle);
   scene.limits =
       ego_limits(scenario, static_cast<double>(models[ego->model].mesh.bounds().extent().x()),
@@ -209,7 +216,10 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.actors.push_back(make_body(models[body->model], body->mass_kg));
     Body& added = scene.actors.back();
     if (Status own = describe(body->model, added); !own) return own.error();
-    if (added.vehicle.movable()) added.footing = footing_of(added.vehicle);
+    result.actors.back().has_outline = added.vehicle.has_outline();
+    if (added.vehicle.movable() && added.vehicle.has_outline()) {
+      added.footing = footing_of(added.vehicle);
+    }
     added.occupants = actor.occupants;
   }
 

@@ -73,6 +73,7 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
     }
     result.crowded = scratch.chain.run().crowded();
     found.summary.contacts = scratch.chain.contacts().size();
+    found.summary.contact_without_force = scratch.has_contact_without_force();
     found.reported = report_contacts(scene, scratch.chain, scratch.touches_view(), scratch.order,
                                      result, found.plans);
     for (const Contact& contact : result.contacts) note_speed(contact, found.summary);

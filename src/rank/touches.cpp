@@ -28,6 +28,33 @@ double first_press_s(const Scene& scene, const CrashChain& chain, std::size_t ac
   return first_s;
 }
 
+/// First time from which the ego presses on an actor or, in the same contact, on a body that
+/// adjoins it; infinity: never.
+double first_force_s(const Scene& scene, const CrashChain& chain, std::size_t actor) {
+  double first_s = std::numeric_limits<double>::infinity();
+  for (const SceneContact& contact : chain.contacts()) {
+    if (chain.body(contact.a) != ego_body) continue;
+    bool presses = are_one(scene, chain.body(contact.b), actor);
+    for (std::size_t k = 0; k < contact.pressed_count; ++k) {
+      presses = presses || are_one(scene, chain.body(contact.pressed[k]), actor);
+    }
+    if (presses) first_s = std::min(first_s, contact.first_force_s);
+  }
+  return first_s;
+}
+
+void mark_contacts_without_force(const Scene& scene, Scratch& scratch) {
+  for (Touch& touch : scratch.touches) {
+    Contact& contact = touch.contact;
+    const double speed_mps =
+        contact.normal.isZero(0.0) ? contact.closing_speed_mps : contact.normal_speed_mps;
+    const double within_s = std::min(force_within_s, force_within_m / speed_mps);
+    contact.contact_without_force =
+        speed_mps > least_forced_speed_mps &&
+        first_force_s(scene, scratch.chain, contact.actor) > contact.time_of_impact_s + within_s;
+  }
+}
+
 void add_touch(const Scene& scene, const Motion& ego, const Scratch::Hit& hit, Scratch& scratch) {
   const Motion& plan = scene.futures.plans[hit.plan].motion;
   Touch touch;
@@ -64,7 +91,10 @@ bool find_touches(const Scene& scene, const Motion& ego, std::size_t future, Scr
   const CrashChain& chain = scratch.chain;
   scratch.touches.resize(1);
   scratch.touched_until_s = never_s;
-  if (chain.first_acts()) return true;
+  if (chain.first_acts()) {
+    mark_contacts_without_force(scene, scratch);
+    return true;
+  }
   if (!scratch.later_hits_known) {
     const std::size_t except = scratch.touches.front().contact.actor;
     if (!find_all_hits(scene, ego, scene.futures.group(future), except, scratch, work) ||
@@ -87,6 +117,7 @@ bool find_touches(const Scene& scene, const Motion& ego, std::size_t future, Scr
     add_touch(scene, ego, hit, scratch);
     scratch.touches.back().presses_later = std::isfinite(press_s);
   }
+  mark_contacts_without_force(scene, scratch);
   return true;
 }
 

@@ -15,7 +15,7 @@ void begin_touches(const Scene& scene, const Motion& ego, const Scratch::Hit& fi
 /// has no force, all bodies follow their plans until the first force: the ego then also touches
 /// every actor that it reaches on its plan in this future until then. In order of time; of joined
 /// bodies only the first, and none whose touch goes over into that first force. Returns false if
-/// the search stayed undecided or was stopped.
+/// the search stayed undecided or was stopped. Sets Contact::contact_without_force of each touch.
 bool find_touches(const Scene& scene, const Motion& ego, std::size_t future, Scratch& scratch,
                   RankWork& work);
 

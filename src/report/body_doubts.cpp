@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
@@ -134,27 +135,69 @@ void doubt_masses(const Scenario& scenario, const RankResult& result,
   for (const RankedBody& actor : result.actors) doubt(actor);
 }
 
+/// Where a body stands, and the rise of its ground per metre. Level for bodies that lie.
+struct Standing {
+  Eigen::Vector3d at_m;
+  Eigen::Vector2d slope;
+  bool on_wheels;  ///< poles and persons stand upright on a slope
+};
+
+Standing standing(const Placed& body) {
+  constexpr double least_upright = 0.8;
+  const Eigen::Vector3d up = body.pose.rotation.col(2);
+  if (!(up.z() >= least_upright)) {
+    return {{body.pose.translation.x(), body.pose.translation.y(), body.min_m.z()},
+            {0.0, 0.0},
+            drives(body.kind)};
+  }
+  const auto lowest_m = static_cast<double>(body.model->mesh.bounds().min.z());
+  return {body.pose.translation + lowest_m * up, -up.head<2>() / up.z(), drives(body.kind)};
+}
+
+/// How far the ground rises from the ego to an actor, at least and at most: on planes through the
+/// ego and vehicles near the actor, itself included.
+std::pair<double, double> ground_rise_m(const Standing& ego, const std::vector<Standing>& actors,
+                                        std::size_t actor) {
+  constexpr double near_m = 30.0;
+  const Eigen::Vector2d way = (actors[actor].at_m - ego.at_m).head<2>();
+  double lowest = ego.slope.dot(way);
+  double highest = lowest;
+  for (const Standing& other : actors) {
+    if (!other.on_wheels || !((other.at_m - actors[actor].at_m).norm() <= near_m)) continue;
+    lowest = std::min(lowest, other.slope.dot(way));
+    highest = std::max(highest, other.slope.dot(way));
+  }
+  return {lowest, highest};
+}
+
 /// Heights are compared with the ego's: the world's ground may lie at any height and slope.
-void doubt_heights(const Scenario& scenario, const Placed& ego, const std::vector<Placed>& actors,
-                   std::vector<std::string>& doubts) {
+void doubt_heights(const Scenario& scenario, const RankResult& result, const Placed& ego,
+                   const std::vector<Placed>& actors, std::vector<std::string>& doubts) {
   constexpr double least_m = 0.5;
   constexpr double steepest = 0.1;
+  const Standing own = standing(ego);
+  std::vector<Standing> stand;
+  for (const Placed& actor : actors) stand.push_back(standing(actor));
   Counted above;
   Counted below;
   std::size_t movable = 0;
   double least_drop_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < actors.size(); ++i) {
     const Placed& actor = actors[i];
+    if (i < result.actors.size() && !result.actors[i].has_outline) continue;
     const double distance_m = (actor.pose.translation - ego.pose.translation).head<2>().norm();
     const double allowed_m = least_m + steepest * distance_m;
-    const double rise_m = actor.min_m.z() - ego.min_m.z();
+    const double rise_m = stand[i].at_m.z() - own.at_m.z();
+    const auto [lowest_m, highest_m] = ground_rise_m(own, stand, i);
+    const double above_m = rise_m - highest_m;
+    const double below_m = lowest_m - rise_m;
     const bool fixed = plausible(actor.kind) == nullptr;
     movable += fixed ? 0 : 1;
-    if (rise_m > allowed_m) {
-      above.add(fmt::format("'{}' by {:.2g} m", scenario.actors[i].name, rise_m));
-    } else if (-rise_m > allowed_m && !fixed) {
-      least_drop_m = std::min(least_drop_m, -rise_m);
-      below.add(fmt::format("'{}' by {:.2g} m", scenario.actors[i].name, -rise_m));
+    if (above_m > allowed_m) {
+      above.add(fmt::format("'{}' by {:.2g} m", scenario.actors[i].name, above_m));
+    } else if (below_m > allowed_m && !fixed) {
+      least_drop_m = std::min(least_drop_m, below_m);
+      below.add(fmt::format("'{}' by {:.2g} m", scenario.actors[i].name, below_m));
     }
   }
   if (below.count > 0 && below.count == movable) {
@@ -224,7 +267,7 @@ void doubt_bodies(const Scenario& scenario, View<const Model> models, const Rank
     const Pose& pose = actor.poses.empty() ? actor.pose : actor.poses.front().pose;
     actors.push_back(place(models[actor.model], scenario.models[actor.model].kind, pose));
   }
-  doubt_heights(scenario, ego, actors, doubts);
+  doubt_heights(scenario, result, ego, actors, doubts);
   doubt_overlaps(scenario, actors, doubts);
 }
 

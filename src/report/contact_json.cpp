@@ -105,6 +105,7 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
              {"closing_speed_mps", contact.closing_speed_mps},
              {"beyond_crash_model", contact.closing_speed_mps > fastest_contact_mps},
              {"normal_speed_mps", contact.normal_speed_mps},
+             {"contact_without_force", contact.contact_without_force},
              {"closing_energy_j", contact.closing_energy_j},
              {"gap_m", contact.gap_m},
              {"point_m", vector_json(contact.point_m)},

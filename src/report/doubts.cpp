@@ -111,6 +111,52 @@ void doubt_starts(const Scenario& scenario, const RankResult& result,
       detail::overlap_meaning));
 }
 
+/// Body, speed and highest score of a candidate with a contact without force.
+std::string unforced_words(const Scenario& scenario, const RankResult& result,
+                           const CandidateResult& ranked) {
+  std::string text =
+      fmt::format("'{}', in place {}, ", result.candidates[ranked.candidate].name, ranked.place);
+  const auto contact = std::find_if(ranked.contacts.begin(), ranked.contacts.end(),
+                                    [](const Contact& each) { return each.contact_without_force; });
+  text += contact == ranked.contacts.end()
+              ? std::string("in a future that is not the likeliest")
+              : fmt::format("with '{}' at {:.1f} m/s", scenario.actors[contact->actor].name,
+                            contact->closing_speed_mps);
+  return text + fmt::format(" (up to {:.2g} {})", ranked.score_interval.highest,
+                            measure_unit(result.measure));
+}
+
+void doubt_forces(const Scenario& scenario, const RankResult& result,
+                  std::vector<std::string>& doubts) {
+  Counted unforced;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (!detail::has_contact_without_force(ranked)) continue;
+    const std::string words = unforced_words(scenario, result, ranked);
+    unforced.add(words);
+    if (ranked.place > 1) continue;
+    doubts.push_back(fmt::format("the first place rests on a contact without force: {}", words));
+  }
+  if (unforced.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} that touch at more than {:g} m/s, but the crash model finds no force in time, so that "
+      "scores may be too low: {}",
+      unforced.many("candidate has bodies", "candidates have bodies"), least_forced_speed_mps,
+      unforced.examples()));
+}
+
+void doubt_outlines(const Scenario& scenario, const RankResult& result,
+                    std::vector<std::string>& doubts) {
+  Counted without;
+  for (std::size_t i = 0; i < result.actors.size(); ++i) {
+    if (!result.actors[i].has_outline) without.add("'" + scenario.actors[i].name + "'");
+  }
+  if (without.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} no material between 0.1 and 4 m over the ground of its model, so that nothing presses on "
+      "it and it adds no harm: {}; if that is wrong, check scale, up axis and origin of the mesh",
+      without.many("body has", "bodies have"), without.examples()));
+}
+
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
                       std::vector<std::string>& doubts) {
   const double speed = std::abs(scenario.ego.speed_mps);
@@ -271,6 +317,8 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_speeds(result, doubts);
   doubt_crowds(result, doubts);
   doubt_starts(scenario, result, doubts);
+  doubt_forces(scenario, result, doubts);
+  doubt_outlines(scenario, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_horizon(scenario, result, doubts);
   if (result.futures.undrawn > 0) {

@@ -95,6 +95,7 @@ Json futures_json(const Scenario& scenario, const CandidateResult& ranked) {
                {"time_of_impact_s", nullptr},
                {"closing_speed_mps", nullptr},
                {"contacts", outcome.contacts},
+               {"contact_without_force", outcome.contact_without_force},
                {"leaves_road", outcome.leaves_road}};
     if (outcome.collides) {
       entry["state"] = detail::impact_state_name(outcome.state);
@@ -237,7 +238,8 @@ Json body_json(const Scenario& scenario, const std::string& name, const RankedBo
           {"model", scenario.models[body.model].name},
           {"kind", body_kind_name(scenario.models[body.model].kind)},
           {"mass_kg", body.mass_kg},
-          {"mass_guessed", body.mass_guessed}};
+          {"mass_guessed", body.mass_guessed},
+          {"has_outline", body.has_outline}};
 }
 
 Json effort_json(const RankerEffort& effort) {

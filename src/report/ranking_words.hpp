@@ -20,12 +20,15 @@ inline bool begins_in_contact(const Contact& contact) { return begins_in_contact
 /// The actors that the ego hits, each once, in the order of its contacts.
 std::vector<std::size_t> hit_actors(const CandidateResult& ranked);
 
-/// The name of the body that is hit, marked where the contact `begins_in_contact`: "sedan (overlaps
-/// at start)".
+/// The name of the body that is hit, marked where the contact `begins_in_contact` and where it is a
+/// `contact_without_force`: "sedan (overlaps at start) (no force)".
 std::string contact_name(const Scenario& scenario, const Contact& contact);
 
-/// What the mark of `contact_name` means, one sentence without a full stop.
+/// What the first mark of `contact_name` means, one sentence without a full stop.
 extern const char* const overlap_meaning;
+
+/// Returns true if a contact of the likeliest future, or of another, is without force.
+bool has_contact_without_force(const CandidateResult& ranked);
 
 /// The names of both bodies: "saloon / pedestrian".
 std::string pair_name(const Scenario& scenario, const FurtherContact& contact);

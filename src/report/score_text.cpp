@@ -181,6 +181,8 @@ std::string interval_text(const CandidateResult& ranked) {
   if (!ranked.score || !is_open(ranked)) return {};
   const int place = open_place(width_of(ranked));
   const double step = std::pow(10.0, place);
+  // Bounds from energies are rounded up by a few parts in 1e9.
+  constexpr double bound_slack = 1.0 - 1e-8;
   // An end that is a multiple of the step but for rounding stays there.
   constexpr double slack = 1e-9;
   const double lowest = ranked.score_interval.lowest;
@@ -194,7 +196,8 @@ std::string interval_text(const CandidateResult& ranked) {
     low_place = static_cast<int>(std::floor(std::log10(lowest)));
   }
   return at_place(low_end(low_place), low_place) + " to " +
-         at_place(std::ceil(ranked.score_interval.highest / step - slack) * step, place);
+         at_place(std::ceil(bound_slack * ranked.score_interval.highest / step - slack) * step,
+                  place);
 }
 
 std::string places_text(const CandidateResult& ranked) {

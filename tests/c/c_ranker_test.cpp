@@ -44,6 +44,7 @@ TEST(CApi, ARankerAnswersAsRankDoesAndWithinABudgetSoundly) {
     const crashrank_ranked& ranked = full.ranking[place];
     EXPECT_STREQ(crashrank_ranker_candidate_name(ranker.get(), ranked.candidate), choice.candidate);
     EXPECT_EQ(ranked.score, choice.score);
+    EXPECT_EQ(ranked.contact_without_force, choice.contact_without_force);
     scores.at(ranked.candidate) = ranked.score;
   }
 

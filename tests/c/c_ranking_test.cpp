@@ -5,8 +5,10 @@
 #include "crashrank/model/model.hpp"
 
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -96,6 +98,10 @@ TEST(CApi, AScenarioFileIsRankedAsTheLibraryRanksIt) {
     EXPECT_EQ(choice.candidate, expected->candidates[wanted.candidate].name);
     EXPECT_EQ(choice.score, *wanted.score);
     EXPECT_EQ(choice.contacts, wanted.contacts.size());
+    const auto lacks_force = [](const FutureOutcome& each) { return each.contact_without_force; };
+    EXPECT_EQ(choice.contact_without_force != 0,
+              std::any_of(wanted.futures.begin(), wanted.futures.end(), lacks_force));
+    EXPECT_EQ(choice.highest_score, wanted.score_interval.highest);
     size_t shared = 0;
     size_t sharing = 0;
     ASSERT_EQ(crashrank_ranking_place(ranking.get(), place, &shared, &sharing, &error),

@@ -76,6 +76,22 @@ TEST(Displace, TimedPosesGainTheSpeedWhileTheyMove) {
   EXPECT_NEAR(stopped.pose_at(3).translation.norm(), 0.5, 1e-12);
 }
 
+TEST(Displace, TheErrorOfTheSpeedActsAlongTheSlope) {
+  // 20 m/s uphill by 10 degrees for 3 s, 1.5 m/s more, turned by 0.2 rad about the vertical.
+  const double pitch = -std::numbers::pi / 18.0;
+  const Pose start = pose_from_angles({1, 2, 3}, 0.4, pitch, 0);
+  const Eigen::Vector3d forward(std::cos(pitch) * std::cos(0.6), std::cos(pitch) * std::sin(0.6),
+                                -std::sin(pitch));
+  const Motion arc = ArcMotion{start, 20.0, 0.0, 0.0};
+  const Motion free = FreeMotion{start, arc.velocity_at(0.0)};
+  const Motion timed = *Motion::timed(
+      std::vector<TimedPose>{{0, start}, {1, arc.pose_at(1.0)}, {4, arc.pose_at(4.0)}});
+  for (const Motion& motion : {arc, free, timed}) {
+    const Pose moved = displaced(motion, {0, 0, 0.2, 1.5}).pose_at(3.0);
+    EXPECT_LT((moved.translation - Eigen::Vector3d(1, 2, 3) - 64.5 * forward).norm(), 1e-12);
+  }
+}
+
 TEST(Displace, NothingReversesAndWhatStandsStays) {
   const StateError slower{0.0, 0.0, 0.0, -20.0};
   for (const double acceleration : {-4.0, 0.0}) {

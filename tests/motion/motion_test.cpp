@@ -30,6 +30,50 @@ TEST(Motion, StraightDriveCoversSpeedTimesTime) {
   EXPECT_EQ(motion.rest_time(), infinity);
 }
 
+TEST(Motion, OnASlopeABodyMovesAlongItsForwardAxis) {
+  // 8 degrees downhill, leaning: 10 m/s for 2 s and a stop within 10 m after 1 s.
+  const double pitch = 8.0 * pi / 180.0;
+  for (const double yaw : {0.0, 0.5 * pi, -2.5}) {
+    const Pose start = pose_from_angles({1, 2, 3}, yaw, pitch, 0.3);
+    const Vector3d forward(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw),
+                           -std::sin(pitch));
+    const Motion drives = TurnMotion{start, 10.0, 0.0, 0.0};
+    EXPECT_LT((drives.pose_at(2.0).translation - start.translation - 20.0 * forward).norm(), 1e-13);
+    EXPECT_LT((drives.velocity_at(2.0).linear_mps - 10.0 * forward).norm(), 1e-13);
+    const Motion brakes = ArcMotion{start, 10.0, 0.0, -5.0};
+    EXPECT_LT((brakes.pose_at(9.0).translation - start.translation - 10.0 * forward).norm(), 1e-13);
+  }
+}
+
+TEST(MotionProperty, TurnsOnASlopeAreThoseOfTheLevelRoadTilted) {
+  Random random(14);
+  for (int i = 0; i < 500; ++i) {
+    const double yaw = random.uniform(-pi, pi);
+    const double lean = random.uniform(-0.6, 0.6);
+    const Pose road = pose_from_angles(random.vector(50), yaw, random.uniform(-0.4, 0.4), 0);
+    const Pose level = pose_from_angles({0, 0, 0}, 0, 0, lean);
+    const Pose tilted{road.rotation * level.rotation, road.translation};
+    const double speed = random.uniform(-15, 40);
+    const double turns = random.uniform(-1.5, 1.5);
+    const double acceleration = random.uniform(-12, 6);
+    const double t = random.uniform(0, 5);
+    const auto expect_tilted = [&](const Motion& on_road, const Motion& on_level) {
+      const Pose pose = on_road.pose_at(t);
+      const Pose flat = on_level.pose_at(t);
+      ASSERT_LT((pose.translation - road.translation - road.rotation * flat.translation).norm(),
+                1e-10)
+          << i;
+      ASSERT_LT((pose.rotation - road.rotation * flat.rotation).norm(), 1e-12) << i;
+      const Vector3d angular = road.rotation * on_level.velocity_at(t).angular_radps;
+      ASSERT_LT((on_road.velocity_at(t).angular_radps - angular).norm(), 1e-12) << i;
+    };
+    expect_tilted(TurnMotion{tilted, speed, turns, acceleration},
+                  TurnMotion{level, speed, turns, acceleration});
+    expect_tilted(ArcMotion{tilted, speed, 0.1 * turns, acceleration},
+                  ArcMotion{level, speed, 0.1 * turns, acceleration});
+  }
+}
+
 TEST(Motion, PositiveYawTurnsLeftOnACircle) {
   const Motion motion = TurnMotion{{}, 10.0, 0.5, 0.0};
   // Radius 20 m, centre at (0, 20): after half a turn the vehicle is at (0, 40), heading back.

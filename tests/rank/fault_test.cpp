@@ -118,7 +118,7 @@ TEST(Fault, AnEgoAtRestCanBeHit) {
   }
 }
 
-TEST(Fault, ABodyWithoutAnOutlineIsRefusedByName) {
+TEST(Fault, AnEgoWithoutAnOutlineIsRefusedByNameAndAnActorIsNoCrashPartner) {
   TriangleMesh point;
   point.vertices = {{0, 0, 0}};
   point.triangles = {{0, 0, 0}};
@@ -129,11 +129,16 @@ TEST(Fault, ABodyWithoutAnOutlineIsRefusedByName) {
     Scene scene = car_and_wall(10.0);
     scene.models[1] = *make_model(mesh);
     scene.add_candidate("keep going", 0.0);
-    const Result<RankResult> result = rank(scene.scenario, scene.models);
+    Result<RankResult> result = rank(scene.scenario, scene.models);
+    ASSERT_TRUE(result.ok());
+    EXPECT_FALSE(result->actors[0].has_outline);
+    EXPECT_EQ(*result->ranking.front().score, 0.0);
+    std::swap(scene.models[0], scene.models[1]);
+    result = rank(scene.scenario, scene.models);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::bad_input);
-    EXPECT_EQ(result.error().place, "models.wall");
-    EXPECT_NE(result.error().reason.find("outline"), std::string::npos);
+    EXPECT_EQ(result.error().place, "models.car");
+    EXPECT_NE(result.error().reason.find("no material"), std::string::npos);
     EXPECT_FALSE(result.error().remedy.empty());
   }
 }

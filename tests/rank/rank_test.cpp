@@ -64,6 +64,43 @@ TEST(Rank, ABoxHitsAWallAfterDistanceOverSpeed) {
   EXPECT_EQ(&stop, &result.ranking.front());
 }
 
+/// Turns everything about the line across the road through the origin.
+void tilt(Scenario& scenario, double pitch_rad) {
+  const Pose slope = pose_from_angles({0.0, 0.0, 0.0}, 0.0, pitch_rad, 0.0);
+  const auto turn = [&slope](Pose& pose) {
+    pose = {slope.rotation * pose.rotation, slope.rotation * pose.translation};
+  };
+  turn(scenario.ego.pose);
+  for (ScenarioActor& actor : scenario.actors) turn(actor.pose);
+}
+
+TEST(Rank, ASceneOnASlopeHasTheContactsOfTheLevelOne) {
+  Scene level = car_and_wall(1800.0);
+  level.scenario.measure = Measure::closing_energy;
+  level.scenario.actors[0].pose = pose_from_angles({50.0, 0.5, 0.0}, M_PI, 0.0, 0.0);
+  level.scenario.actors[0].speed_mps = 5.0;
+  level.add_candidate("keep going", 0.0);
+  level.add_candidate("brake", -3.0);
+  level.add_candidate("steer", -1.0, 0.02);
+  const RankResult expected = level.ranked();
+  for (const double pitch_rad : {0.14, -0.1}) {
+    Scene slope = level;
+    tilt(slope.scenario, pitch_rad);
+    const RankResult result = slope.ranked();
+    for (const char* name : {"keep going", "brake", "steer"}) {
+      const CandidateResult& on_level = of(expected, name);
+      const CandidateResult& on_slope = of(result, name);
+      ASSERT_FALSE(on_level.contacts.empty());
+      ASSERT_FALSE(on_slope.contacts.empty()) << name;
+      const Contact& contact = on_slope.contacts.front();
+      EXPECT_NEAR(contact.time_of_impact_s, on_level.contacts.front().time_of_impact_s, 1e-4);
+      EXPECT_NEAR(contact.closing_speed_mps, on_level.contacts.front().closing_speed_mps, 1e-3);
+      EXPECT_NEAR(contact.normal_speed_mps, on_level.contacts.front().normal_speed_mps, 1e-3);
+      EXPECT_NEAR(*on_slope.score, *on_level.score, 1e-3 * *on_level.score) << name;
+    }
+  }
+}
+
 TEST(Rank, ClosingEnergyUsesTheReducedMass) {
   for (const double other_kg : {75.0, 1500.0, 40000.0}) {
     Scene scene = car_and_wall(other_kg);

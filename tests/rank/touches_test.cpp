@@ -16,6 +16,7 @@
 namespace crashrank {
 namespace {
 
+using scenes::of;
 using scenes::Scene;
 using test::Random;
 

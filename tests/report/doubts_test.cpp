@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -282,6 +283,76 @@ TEST(Doubts, BodiesThatFloatAreTold) {
   told.expect_one("1 body floats above the ground that the ego stands on: 'second' by 1.2 m");
   told.scenario.actors[1].pose.translation.z() = -1.3;
   told.expect_one("the ego floats: it stands 1.3 m or more above the other");
+}
+
+TEST(Doubts, BodiesOnOneSlopeDoNotFloat) {
+  constexpr double rad_per_deg = 0.017453292519943295;
+  for (const double pitch : {-8.0 * rad_per_deg, 8.0 * rad_per_deg}) {
+    Sound told;
+    const auto on_slope = [pitch](double along_m, double above_m) {
+      return pose_from_angles({along_m * std::cos(pitch), 0.0, above_m - along_m * std::sin(pitch)},
+                              0.0, pitch, 0.0);
+    };
+    told.set_car(box_body(4.5, 1.8, 1.4), 1500.0, {50.0, 0.0, 0.0});
+    Pose& second = told.scenario.actors[1].pose;
+    // A level wall among the others.
+    told.scenario.actors[0].pose.translation = on_slope(30.0, 0.0).translation;
+    for (const double turned : {0.0, 3.141592653589793}) {
+      told.scenario.ego.pose = on_slope(0.0, 0.0);
+      second = on_slope(50.0, 0.0);
+      second.rotation = second.rotation * pose_from_angles({0, 0, 0}, turned, 0.0, 0.0).rotation;
+      EXPECT_TRUE(told.doubts().empty()) << testing::PrintToString(told.doubts());
+      // The slope begins before a level ego.
+      told.scenario.ego.pose = {};
+      EXPECT_TRUE(told.doubts().empty()) << testing::PrintToString(told.doubts());
+    }
+    told.scenario.ego.pose = on_slope(0.0, 0.0);
+    second = on_slope(20.0, 3.0);
+    told.expect_one("1 body floats above the ground that the ego stands on: 'second' by 3 m");
+  }
+}
+
+TEST(Doubts, ContactsWithoutForceAreNamedAndTheFirstPlaceThatRestsOnOne) {
+  Sound told;
+  told.result.ranking[1].contacts[1].contact_without_force = true;
+  told.expect_one(
+      "1 candidate has bodies that touch at more than 0.5 m/s, but the crash model finds no force "
+      "in time, so that scores may be too low: 'hit', in place 2, with 'second' at 10.0 m/s (up to "
+      "3 persons)");
+  told.result.ranking[1].place = 1;
+  ASSERT_EQ(told.doubts().size(), 2U);
+  EXPECT_EQ(told.doubts()[0],
+            "the first place rests on a contact without force: 'hit', in place 1, with 'second' at "
+            "10.0 m/s (up to 3 persons)");
+  told.result.ranking[1].contacts[0].contact_without_force = true;
+  const std::string text = ranking_text(told.scenario, told.models, told.result);
+  EXPECT_NE(text.find("wall (no force)"), std::string::npos) << text;
+  const std::string page = html_report(told.scenario, told.models, told.result);
+  EXPECT_NE(page.find("wall (no force)"), std::string::npos);
+  EXPECT_NE(page.find("Doubtful: the first place rests on"), std::string::npos);
+  EXPECT_NE(page.find("second (no force)"), std::string::npos);
+  EXPECT_NE(ranking_json(told.scenario, told.models, told.result, {})
+                .find(R"("contact_without_force": true)"),
+            std::string::npos);
+}
+
+TEST(Doubts, ContactsWithoutForceInAnotherFutureCount) {
+  Sound told = with_unlikely_contact(0.25, ImpactState::contact, 30.0);
+  told.result.ranking[0].futures[1].contact_without_force = true;
+  told.result.ranking[0].score_interval.highest = 1.5;
+  ASSERT_EQ(told.doubts().size(), 2U);
+  EXPECT_EQ(told.doubts()[0],
+            "the first place rests on a contact without force: 'miss', in place 1, in a future "
+            "that is not the likeliest (up to 1.5 persons)");
+}
+
+TEST(Doubts, BodiesWithoutOutlineAreNamedAndMayHangOverTheRoad) {
+  Sound told;
+  told.set_car(box_body(4.5, 1.8, 1.4), 1500.0, {6.0, 0.0, 5.0});
+  told.result.actors[1].has_outline = false;
+  told.expect_one(
+      "1 body has no material between 0.1 and 4 m over the ground of its model, so that nothing "
+      "presses on it and it adds no harm: 'second'");
 }
 
 TEST(Doubts, TwoOthersThatOverlapAtTimeZeroAreTold) {

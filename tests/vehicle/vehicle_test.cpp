@@ -142,6 +142,26 @@ TEST(Vehicle, BicyclesAreTheBenchmarkBicycle) {
   EXPECT_NEAR(v->yaw_inertia_kgm2, inertia, 0.03 * inertia);
 }
 
+TEST(Vehicle, WithoutOutlineIsDescribedAndNothingPressesOnIt) {
+  VehicleFacts facts;
+  facts.kind = BodyKind::truck;
+  for (const bool fixed : {false, true}) {
+    if (fixed) facts.kind = BodyKind::building;
+    const Result<Vehicle> sheet =
+        describe_vehicle(test::box_mesh({2.0, 1.0, 0.04}, {0.0, 0.0, 0.04}), facts);
+    ASSERT_TRUE(sheet.ok());
+    EXPECT_FALSE(sheet->has_outline());
+    EXPECT_EQ(sheet->movable(), !fixed);
+    EXPECT_EQ(sheet->density_kgm3, 0.0);
+    EXPECT_TRUE(sheet->silhouettes.blocks.empty());
+  }
+  // Wholly above the highest band.
+  const Result<Vehicle> high = describe_vehicle(test::box_mesh({1, 1, 1}, {0, 0, 9}), {});
+  ASSERT_TRUE(high.ok());
+  EXPECT_FALSE(high->has_outline());
+  EXPECT_TRUE(describe_vehicle(shipped("truck"), facts)->has_outline());
+}
+
 // Axles decide nothing of a lorry's strength: with its wheels and on the same outlines without
 // them it is the same.
 TEST(Vehicle, AxlesLeaveTheStrengthOfLorriesAlone) {

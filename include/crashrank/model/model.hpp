@@ -118,9 +118,9 @@ CRASHRANK_API Result<LoadedModel> load_model(View<const unsigned char> bytes,
                                              std::shared_ptr<const void> keeper);
 
 /// The bytes of a model file: the same for the same model on every machine. Checks first what
-/// `load_model` would refuse. Makes the profile if the model has none; a mesh that has no profile
-/// (see `make_profile`) is stored without one: queries work on it, `rank` reports why it cannot
-/// rank it. Errors: bad_input, limit_exceeded, out_of_memory.
+/// `load_model` would refuse. Makes the profile if the model has none; a mesh without outline
+/// (see `make_profile`) is stored without one: queries work on it, in `rank` it is no crash
+/// partner. Errors: bad_input, limit_exceeded, out_of_memory.
 CRASHRANK_API Result<std::vector<unsigned char>> encode_model(const StoredModel& stored);
 
 /// Writes a model file, as a whole or not at all: it is written beside its place under another

@@ -26,12 +26,14 @@ inline Eigen::Vector3d velocity_of_point(const Velocity& v, const Eigen::Vector3
   return v.linear_mps + v.angular_radps.cross(point_m - origin_m);
 }
 
-/// A vehicle that drives in the horizontal plane along its own x axis while its heading turns at a
-/// constant rate. Positive yaw is to the left. Braking ends in standstill, and with it the yaw: the
-/// vehicle never reverses by braking (a negative start speed is reverse gear, and braked by a
-/// positive acceleration). Without speed and acceleration a yaw rate spins it on the spot.
+/// A vehicle that drives along its own x axis while its heading turns at a constant rate, on a
+/// plane road that climbs or falls as its x axis does and is level across: pitch at the start is
+/// the slope, roll is a lean. Positive yaw is to the left, about the road's normal. Braking ends in
+/// standstill, and with it the yaw: the vehicle never reverses by braking (a negative start speed
+/// is reverse gear, and braked by a positive acceleration). Without speed and acceleration a yaw
+/// rate spins it on the spot.
 struct TurnMotion {
-  Pose start;                      ///< pose at time 0, body to world; pitch and roll are kept
+  Pose start;                      ///< pose at time 0, body to world
   double speed_mps = 0.0;          ///< at time 0, along the body's x axis
   double yaw_rate_radps = 0.0;     ///< constant while the vehicle moves
   double acceleration_mps2 = 0.0;  ///< along the body's x axis, constant until standstill
@@ -40,7 +42,7 @@ struct TurnMotion {
 
 /// A vehicle whose origin follows a circle or a straight line: the kinematic bicycle with fixed
 /// steering, its origin at the rear axle (the default origin of a vehicle). The yaw rate is
-/// curvature x speed, so braking slows the turn as well. Standstill as in TurnMotion.
+/// curvature x speed, so braking slows the turn as well. Standstill and slope as in TurnMotion.
 struct ArcMotion {
   Pose start;                      ///< pose at time 0, body to world
   double speed_mps = 0.0;          ///< m/s
@@ -84,10 +86,10 @@ struct MotionBound {
 };
 
 /// How a body moves: its pose and velocity at every time t >= 0 (s). Before 0 it is where it is at
-/// 0. A value; reading from many threads is safe. Planar kinds move in the world's x-y plane
-/// whatever the pitch and roll of the start; their heading is the body's x axis seen from above.
-/// Start poses are rigid within `max_rigidity_error`; any other makes a motion that is not finite.
-/// Rotations off by more than rounding are orthonormalised.
+/// 0. A value; reading from many threads is safe. Turns and arcs move in the plane that contains
+/// the body's x axis at the start and the horizontal line across it. Start poses are rigid within
+/// `max_rigidity_error`; any other makes a motion that is not finite. Rotations off by more than
+/// rounding are orthonormalised.
 class CRASHRANK_API Motion {
 public:
   /// Rests at the world's origin.
@@ -162,6 +164,8 @@ private:
   struct Planar {
     Pose start;  ///< pose at time 0, body to world
     Eigen::Vector2d heading{1.0, 0.0};
+    /// The forward axis at the start minus the heading; 0 on a level road.
+    Eigen::Vector3d tilt = Eigen::Vector3d::Zero();
     Profile profile;
     double yaw_rate = 0.0;   ///< used by turns
     double curvature = 0.0;  ///< used by arcs
@@ -175,6 +179,7 @@ private:
   using Timed = std::vector<Segment>;
 
   static Profile make_profile(double speed, double acceleration, double top_speed);
+  static void set_start(Planar& planar, const Pose& start);
   static void planar_state(const Planar& planar, double t, Pose& pose, Velocity& velocity);
 
   std::variant<FreeMotion, Planar, Timed> kind_ = FreeMotion{};

@@ -62,6 +62,12 @@ struct ContactSeverity {
   double harm = 0.0;          ///< persons, as weighted
 };
 
+/// A force is expected of contacts above this speed, m/s, before the bodies have closed by this
+/// distance, m, and this time has passed, s: see Contact::contact_without_force. Design choices.
+inline constexpr double least_forced_speed_mps = 0.5;
+inline constexpr double force_within_m = 0.1;  ///< at constant speed along the normal
+inline constexpr double force_within_s = 0.1;  ///< s
+
 /// A contact of the ego with another body. Points and directions in world coordinates. Of contacts
 /// after the first, which the simulation finds, `gap_m` is 0, `point_m` the mean point of the force
 /// and `normal` the direction of `closing`.
@@ -80,6 +86,12 @@ struct Contact {
   double closing_speed_mps = 0.0;
   /// Component of `closing` along the normal, m/s. Depends on the facet that is touched first.
   double normal_speed_mps = 0.0;
+  /// The exact meshes meet, found by the search for first contacts, with more than
+  /// `least_forced_speed_mps` along the normal (without a normal: of `closing_speed_mps`), but no
+  /// force between the two bodies begins within `force_within_m` along it and `force_within_s`. The
+  /// crash model then says nothing of this contact, and the score interval of the candidate extends
+  /// to what the energy of the scene allows.
+  bool contact_without_force = false;
   /// ½·m₁m₂/(m₁+m₂)·closing_speed²: the energy that would be dissipated if the bodies stuck
   /// together and their relative velocity passed through the common centre of mass.
   double closing_energy_j = 0.0;

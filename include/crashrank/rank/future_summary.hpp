@@ -69,7 +69,8 @@ struct FutureOutcome {
   double closing_speed_mps = 0.0;         ///< of the points that touch first, m/s
   /// Largest closing speed of all contacts, including those between other bodies, m/s.
   double fastest_contact_mps = 0.0;
-  bool leaves_road = false;  ///< a wheel leaves the road before the first contact
+  bool leaves_road = false;            ///< a wheel leaves the road before the first contact
+  bool contact_without_force = false;  ///< of one of the ego's contacts, see Contact
   /// number of contacts with a force, including those between other bodies
   std::size_t contacts = 0;
 };

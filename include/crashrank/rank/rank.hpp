@@ -66,7 +66,9 @@ struct RankOptions {
 };
 
 /// Bounds on a score. If the score is known: its range over the ranges of HarmOptions under the
-/// chosen risk model (harm, delta-v, energy); both ends equal for the other measures.
+/// chosen risk model (harm, delta-v, energy); both ends equal for the other measures. With a
+/// contact without force (Contact::contact_without_force) in a future, `highest` is what the energy
+/// of the scene allows there.
 struct ScoreInterval {
   double lowest = 0.0;   ///< the score is not below
   double highest = 0.0;  ///< nor above
@@ -243,6 +245,9 @@ struct RankedBody {
   std::size_t model = 0;      ///< index into Scenario::models
   double mass_kg = 0.0;       ///< infinity: the body is fixed
   bool mass_guessed = false;  ///< the mass was derived from kind and size
+  /// False: it has no material between 0.1 and 4 m over its ground, so nothing presses on it. First
+  /// contacts with it are reported, forces are not simulated.
+  bool has_outline = true;
 };
 
 /// Work of a ranking. It is the same for every number of workers, except `damage`, which includes

@@ -87,6 +87,8 @@ struct Vehicle {
   /// and presses on nothing; empty: none does.
   std::vector<std::uint8_t> in_joint;
 
+  /// False: nothing presses on it, see `make_profile`.
+  bool has_outline() const noexcept { return profile != nullptr && profile->presses(); }
   /// False for a fixed body.
   bool movable() const noexcept { return mass_kg < std::numeric_limits<double>::infinity(); }
 };
@@ -111,8 +113,9 @@ struct Vehicle {
 /// - poles, of an even cylinder; all others, of an even block over the box without mirrors, which a
 ///   laden lorry is about.
 ///
-/// `profile` null: made of the mesh. O(triangles). Errors: bad_input where no outline can be made,
-/// or as `check_yaw_inertia` and `check_stated_mass` for a stated inertia and centre of mass.
+/// `profile` null: made of the mesh. O(triangles). Errors: bad_input for a mesh that
+/// `make_profile` refuses, or as `check_yaw_inertia` and `check_stated_mass` for a stated inertia
+/// and centre of mass.
 CRASHRANK_API Result<Vehicle> describe_vehicle(const TriangleMesh& mesh, const VehicleFacts& facts,
                                                std::shared_ptr<const Profile> profile = nullptr);
 

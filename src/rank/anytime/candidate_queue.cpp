@@ -81,7 +81,7 @@ void CandidateQueue::insert(std::uint32_t candidate, const std::vector<Candidate
   tiers_[candidate] = tier(states[candidate]);
   ++counts_[tiers_[candidate]];
   double& limit = limits_[tiers_[candidate]];
-  limit = std::min(limit, result.interval.highest);
+  limit = std::min(limit, result.known ? result.score : result.interval.highest);
   if (result.known &&
       (best_known_ == none || ranks_before(result, states[best_known_].result, false))) {
     best_known_ = candidate;

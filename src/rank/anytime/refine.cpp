@@ -38,26 +38,41 @@ void combine(const RefineQuery& q, CandidateState& state, Scratch& scratch) {
   for (std::size_t f = 0; f < futures.size(); ++f) {
     known = known && (state.futures[f].known() || !(futures.probability(f) > 0.0));
   }
-  const auto risk_with = [&](auto of_unknown) {
+  const auto risk_of_scores = [&](auto score_of) {
     std::vector<double>& scores = scratch.first_s;  // not used between searches
     scores.clear();
-    for (const FutureScore& each : state.futures) {
-      scores.push_back(each.known() ? each.score : of_unknown(each));
-    }
+    for (const FutureScore& each : state.futures) scores.push_back(score_of(each));
     return risk_of_futures(q.scene, {scores.data(), scores.size()}, scratch.weighted);
+  };
+  const auto risk_with = [&](auto of_unknown) {
+    return risk_of_scores(
+        [&](const FutureScore& each) { return each.known() ? each.score : of_unknown(each); });
   };
   const auto lower_bound_of = [](const FutureScore& future) { return future.lower_bound; };
   const double estimate = risk_with(
       [](const FutureScore& future) { return std::max(future.lower_bound, future.estimate); });
   if (known) {
     settle(state, risk_with(lower_bound_of));
+    state.result.contact_without_force =
+        std::any_of(state.futures.begin(), state.futures.end(),
+                    [](const FutureScore& future) { return future.contact_without_force; });
+    if (state.result.contact_without_force) {
+      state.result.interval.highest =
+          std::max(state.result.score, risk_of_scores([&](const FutureScore& each) {
+                     if (!each.known()) return each.lower_bound;
+                     return each.contact_without_force ? state.upper_bound : each.score;
+                   }));
+    }
   } else if (futures.size() == 1) {
     narrow(state, state.futures.front().lower_bound, state.result.interval.highest);
   } else {
     // Covers the rounding of sums.
     constexpr double rounding = 1e-12;
     narrow(state, (1.0 - rounding) * risk_with(lower_bound_of),
-           (1.0 + rounding) * risk_with([&](const FutureScore&) { return state.upper_bound; }));
+           (1.0 + rounding) * risk_of_scores([&](const FutureScore& each) {
+             const bool is_final = each.known() && !each.contact_without_force;
+             return is_final ? each.score : state.upper_bound;
+           }));
   }
   const ScoreInterval& interval = state.result.interval;
   state.result.estimate = std::clamp(estimate, interval.lowest, interval.highest);
@@ -120,6 +135,10 @@ StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch)
           copy_needed(scratch, state);
           if (result.score && state.needed_count == 0) {
             settle(state, *result.score);
+            state.result.interval.highest = result.score_interval.highest;
+            state.result.contact_without_force = std::any_of(
+                result.futures.begin(), result.futures.end(),
+                [](const FutureOutcome& future) { return future.contact_without_force; });
           } else {
             state.unresolved = true;
           }

@@ -25,7 +25,8 @@ struct FutureScore {
   double estimate = 0.0;     ///< estimate while the score is not known, see estimate_score
   /// Work of the longest simulation of its crash so far, in outline pieces moved.
   std::uint64_t simulated = 0;
-  std::uint32_t first = no_contact;  ///< index of its first contact in CandidateState::first_hits
+  std::uint32_t first = no_contact;    ///< index of its first contact in CandidateState::first_hits
+  bool contact_without_force = false;  ///< see Contact; valid if the score is known
 
   bool known() const noexcept { return score >= 0.0; }
 };

@@ -55,6 +55,7 @@ bool share_score(const Scene& scene, std::size_t future, CandidateState& state, 
     same.score = found.score;
     same.lower_bound = std::max(same.lower_bound, found.lower_bound);
     same.simulated = std::max(same.simulated, found.simulated);
+    same.contact_without_force = found.contact_without_force;
   }
   return true;
 }
@@ -114,6 +115,7 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
     scratch.tally.begin();
     for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, nominal);
     future.score = left + scratch.tally.score(q.scene);
+    future.contact_without_force = scratch.has_contact_without_force();
   }
   if (!share_score(q.scene, index, state, scratch)) {
     future = before;

@@ -95,6 +95,9 @@ struct RankedCandidate {
   /// Of the points that touch. Measures that simulate the crash are not valid above
   /// `fastest_contact_mps`.
   double closing_speed_mps = 0.0;
+  /// In a future, once the score is known: see Contact::contact_without_force. The interval then
+  /// extends from the score to what the energy of the scene allows.
+  bool contact_without_force = false;
 };
 
 /// An answer, most promising first; refers to the Ranker's memory, valid until its next call.
