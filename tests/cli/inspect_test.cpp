@@ -45,6 +45,33 @@ TEST(Inspect, JsonHasTheContractsShape) {
   EXPECT_TRUE(file.at("warnings").is_array());
 }
 
+/// Number of times that a text holds another.
+std::size_t times(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(Inspect, DrawsOutlinesByHeightOfAMeshAndOfItsModel) {
+  const Workplace place;
+  // Between 0.2 and 1.5 m: six bands, of which the last is taken up to 1.5 m.
+  place.write("box.obj", cli_test::box_obj("body", -1, -0.9, 0.2, 3, 0.9, 1.5));
+  ASSERT_EQ(place.crashrank({"inspect", "box.obj", "--profile", "mesh.svg"}).code, 0);
+  const std::string picture = place.read("mesh.svg");
+  EXPECT_EQ(picture.rfind("<svg ", 0), 0U);
+  EXPECT_EQ(times(picture, "<g "), 6U);
+  EXPECT_EQ(times(picture, "1.2 to 1.6 m: body from 1.20 to 1.50 m, 2.16 m"), 1U);
+  ASSERT_EQ(place.crashrank({"compile", "box.obj", "-o", "box.crm"}).code, 0);
+  ASSERT_EQ(place.crashrank({"inspect", "box.crm", "--profile", "model.svg"}).code, 0);
+  const std::string of_model = place.read("model.svg");
+  EXPECT_EQ(of_model.substr(of_model.find("<g ")), picture.substr(picture.find("<g ")));
+  place.write("high.obj", cli_test::box_obj("sign", -1, -1, 5, 1, 1, 6));
+  ASSERT_EQ(place.crashrank({"inspect", "high.obj", "--profile", "high.svg"}).code, 0);
+  EXPECT_NE(place.read("high.svg").find("nothing between 0 and 4 m"), std::string::npos);
+}
+
 TEST(Inspect, TheMeshOptionsTurnAndScale) {
   const Workplace place;
   // y up, -z forward, millimetres: 4 m long, 1.8 m wide, 1.3 m high.

@@ -323,6 +323,8 @@ TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
             "private"},
            {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--json", "--csv"},
            {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--plot", "-"},
+           {"inspect", "a.obj", "--profile", "-"},
+           {"inspect", "a.obj", "a.obj", "--profile", "p.svg"},
            {"sweep", "-", "a.obj", "--poses", "-", "--format", "obj"},
        }) {
     SCOPED_TRACE(testing::PrintToString(arguments));
