@@ -35,8 +35,9 @@ Result<Crash> rank_crash(const CrashBody& ego, const CrashBody& other, double ho
   const std::vector<Contact>& contacts = ranked->ranking.front().contacts;
   if (contacts.empty()) return crash;
   crash.state = contacts.front().state;
-  const auto acting = std::find_if(contacts.begin(), contacts.end(),
-                                   [](const Contact& contact) { return contact.event > 0; });
+  const auto acting = std::find_if(contacts.begin(), contacts.end(), [](const Contact& contact) {
+    return contact.severity.duration_s > 0.0;
+  });
   crash.acts = acting != contacts.end();
   if (crash.acts) crash.severity = acting->severity;
   return crash;

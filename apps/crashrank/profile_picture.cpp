@@ -56,13 +56,17 @@ std::string path_of(const Profile& profile, std::uint32_t first, std::uint32_t l
     };
     constexpr double joined_m = 1e-3;
     if (std::abs(x - dx - end_x) + std::abs(y - dy - end_y) > joined_m) {
-      path += (path.empty() ? "M" : "ZM") + point(x - dx, y - dy);
+      if (!path.empty()) path += 'Z';
+      path += 'M';
+      path += point(x - dx, y - dy);
     }
-    path += "L" + point(x + dx, y + dy);
+    path += 'L';
+    path += point(x + dx, y + dy);
     end_x = x + dx;
     end_y = y + dy;
   }
-  return path.empty() ? path : path + "Z";
+  if (!path.empty()) path += 'Z';
+  return path;
 }
 
 std::string panel(const Profile& profile, std::size_t band, const Bounds& bounds,

@@ -22,11 +22,15 @@ void ContactRun::EnergyChange::add(const PlanarBody& body, const PlanarForce& f)
 
 namespace {
 
-void apply_impulse(PlanarBody& body, const PlanarForce& f, double share, PlanarForce& sum) {
-  body.apply_impulse(share * f.x, share * f.y, share * f.moment);
+void add_share(const PlanarForce& f, double share, PlanarForce& sum) {
   sum.x += share * f.x;
   sum.y += share * f.y;
   sum.moment += share * f.moment;
+}
+
+void apply_impulse(PlanarBody& body, const PlanarForce& f, double share, PlanarForce& sum) {
+  body.apply_impulse(share * f.x, share * f.y, share * f.moment);
+  add_share(f, share, sum);
 }
 
 /// Converts a moment about the body's centre of mass to one about the origin (sign 1), or back
@@ -71,6 +75,8 @@ void ContactRun::apply_impulses() {
     BodyPair& pair = state_->pairs[k];
     apply_one(motion_of(pair.second), pair.on_second, pair.impulse_on_second, pair.since_rebound);
   }
+  add_share(on_first_, seconds, step_first_.whole);
+  add_share(state_->pairs[pairs_[0]].on_second, seconds, step_second_.whole);
   const double lost = before - kinetic_energy_j();
   lost_since_rebound_j_ += lost;
   dissipated_j_ += lost;
@@ -128,8 +134,15 @@ void ContactRun::rebound(double speed_mps) {
   if (slope * share + 0.5 * curvature * share * share > max_restored_j) {
     share = (-slope + std::sqrt(slope * slope + 2.0 * curvature * max_restored_j)) / curvature;
   }
-  share = remaining + std::clamp(share, 0.0, e) * (1.0 + remaining);
+  const double restored = std::clamp(share, 0.0, e) * (1.0 + remaining);
+  share = remaining + restored;
   const double before = kinetic_energy_j();
+  const auto add_to_step = [&](const PlanarForce& since, StepImpulse& step) {
+    add_share(since, share, step.whole);
+    add_share(since, restored, step.rebound);
+  };
+  add_to_step(since_rebound_, step_first_);
+  add_to_step(state_->pairs[pairs_[0]].since_rebound, step_second_);
   apply_impulse(motion_of(first_), since_rebound_, share, impulse_on_first_);
   since_rebound_ = {};
   for (const std::uint32_t k : pairs()) {

@@ -1,6 +1,5 @@
 #include "crash/contact_run.hpp"
 
-#include "crash/event_times.hpp"
 #include "crash/pair_order.hpp"
 
 #include <algorithm>
@@ -34,38 +33,11 @@ bool can_press(const Vehicle& a, const Vehicle& b) {
          (!a.strength.rigid || !b.strength.rigid);
 }
 
-void CountedShare::pass(double time_s) {
-  constexpr double decay_s = 0.3;
-  share = std::max(0.0, share - std::max(0.0, time_s - hold_s) / decay_s);
-  hold_s = std::max(0.0, hold_s - time_s);
-}
-
-void CountedShare::take(double acceleration_mps2) {
-  // 0.8 km/h in 20 ms.
-  constexpr double end_of_event_mps2 = 0.8 / 3.6 / 0.02;
-  const double strength = std::clamp(acceleration_mps2 / end_of_event_mps2 - 1.0, 0.0, 1.0);
-  if (strength < share) return;
-  share = strength;
-  constexpr double strong_hold_s = 0.15;
-  hold_s = std::max(hold_s, strong_hold_s);
-}
-
-CountedShare CountedShare::of_further_contact(double gap_s) const {
-  CountedShare further = *this;
-  further.pass(gap_s);
-  const CountedShare fresh;
-  const double weight = shared_weight(gap_s);
-  further.share += (1.0 - weight) * (fresh.share - further.share);
-  further.hold_s += (1.0 - weight) * (fresh.hold_s - further.hold_s);
-  return further;
-}
-
 void BodyPair::begin(std::size_t a, std::size_t b) {
   first = static_cast<std::uint32_t>(a);
   second = static_cast<std::uint32_t>(b);
   of_first.begin();
   of_second.begin();
-  last_force_s = -1e9;
   in_first = {};
   in_second = {};
   earlier_first_m = earlier_second_m = 0.0;
@@ -133,7 +105,6 @@ void ContactRun::begin_at_first_force(const ContactBody& given_first,
   start_first_ = end_first_ = motion_of(first_);
   start_second_ = end_second_ = motion_of(second());
   record_.begin(start_first_, start_second_);
-  change_first_ = change_second_ = {};
   time_s_ = -0.5 * step_s_;
 }
 
@@ -162,6 +133,12 @@ void ContactRun::add_sums(const PassSums& sums, bool own_is_first) {
   const double other_j = sums.power_other * step_s_;
   crush_first_j_ += own_is_first ? own_j : other_j;
   crush_second_j_ += own_is_first ? other_j : own_j;
+  totals.crush_first_w += own_is_first ? sums.power_own : sums.power_other;
+  totals.crush_second_w += own_is_first ? sums.power_other : sums.power_own;
+  totals.intruded_first_m3 +=
+      step_s_ * (own_is_first ? sums.intruding_own_m3ps : sums.intruding_other_m3ps);
+  totals.intruded_second_m3 +=
+      step_s_ * (own_is_first ? sums.intruding_other_m3ps : sums.intruding_own_m3ps);
   friction_j_ += sums.power_friction * step_s_;
   depth_first_m_ = std::max(depth_first_m_, own_is_first ? sums.depth_own : sums.depth_other);
   depth_second_m_ = std::max(depth_second_m_, own_is_first ? sums.depth_other : sums.depth_own);
@@ -251,6 +228,7 @@ void ContactRun::compute_forces(double step_s) {
   step_s_ = step_s;
   totals_ = {};
   on_first_ = {};
+  step_first_ = step_second_ = {};
   PassSettings settings;
   settings.step_s = step_s_;
   settings.pass_interval_s = pass_interval_s_;
@@ -286,6 +264,8 @@ void ContactRun::apply_forces() {
     point_x_ += step_s_ * totals_.point_x;
     point_y_ += step_s_ * totals_.point_y;
     point_weight_ += step_s_ * totals_.weight;
+    intruded_first_m3_ += totals_.intruded_first_m3;
+    intruded_second_m3_ += totals_.intruded_second_m3;
     apply_impulses();
     const ForceVelocity now = velocity_at_force();
     last_speed_mps_ = now.speed_mps;
@@ -304,42 +284,33 @@ Eigen::Vector2d ContactRun::step_change_mps(bool of_first) const {
   return Eigen::Vector2d(share * f.x, share * f.y);
 }
 
-/// Both bodies use the same share, so that the counted impulses stay equal and opposite.
-void ContactRun::compute_counted_share() {
-  counted_.pass(std::max(0.0, time_s_ - counted_s_));
-  counted_s_ = time_s_;
-  const double change_mps = std::max(step_change_mps(true).norm(), step_change_mps(false).norm());
-  counted_.take(change_mps / step_s_);
-  const double counted_mps = counted_.share * change_mps;
-  counted_mps_ += counted_mps;
-  counted_moment_m_ += counted_mps * (time_s_ + 0.5 * step_s_);
-  add_excluded(true, 1.0 - counted_.share);
-  add_excluded(false, 1.0 - counted_.share);
+ContactAction ContactRun::step_action(bool of_first) const {
+  ContactAction action;
+  const PlanarBody& body = motion_of(of_first ? first_ : second());
+  const PlanarBody& other = motion_of(of_first ? second() : first_);
+  const StepImpulse& impulse = of_first ? step_first_ : step_second_;
+  action.dvx_mps = body.inverse_mass * impulse.whole.x;
+  action.dvy_mps = body.inverse_mass * impulse.whole.y;
+  action.rebound_x_mps = body.inverse_mass * impulse.rebound.x;
+  action.rebound_y_mps = body.inverse_mass * impulse.rebound.y;
+  action.path_mps = plane_length(action.dvx_mps, action.dvy_mps);
+  const double of_other = std::min(other.inverse_mass, 1.0 / striking_car_kg);
+  action.light_mps = action.path_mps * of_other / body.inverse_mass;
+  const ContactBody& striker = of_first ? given_second_ : given_first_;
+  action.edge_m2ps = action.path_mps * striker.vehicle->leading_edge_m;
+  action.crush_j = applied_s_ * (of_first ? totals_.crush_first_w : totals_.crush_second_w);
+  action.intruded_m3 = of_first ? totals_.intruded_first_m3 : totals_.intruded_second_m3;
+  return action;
 }
 
-void ContactRun::exclude(bool from_first, double share) {
-  add_excluded(from_first, share * counted_.share);
-}
-
-void ContactRun::add_excluded(bool from_first, double share) {
-  const PlanarForce& f = from_first ? on_first_ : state_->pairs[pairs_[0]].on_second;
-  PlanarForce& excluded = from_first ? excluded_first_ : excluded_second_;
-  excluded.x += share * applied_s_ * f.x;
-  excluded.y += share * applied_s_ * f.y;
-  excluded.moment += share * applied_s_ * f.moment;
-}
-
-void ContactRun::add_velocity_change(bool first, const Eigen::Vector2d& change_mps, bool shared) {
-  VelocityChange& body = first ? change_first_ : change_second_;
-  body.now_mps += change_mps;
-  body.partial = body.partial || shared || counted_.share < 1.0;
-  if (!presses()) return;
-  body.most_mps = std::max(body.most_mps, body.now_mps.norm());
-  const PlanarForce& own = first ? impulse_on_first_ : state_->pairs[pairs_[0]].impulse_on_second;
-  const PlanarForce& excluded = first ? excluded_first_ : excluded_second_;
-  const Eigen::Vector2d counted(own.x - excluded.x, own.y - excluded.y);
-  const double size = counted.norm();
-  if (size > 0.0) body.along_mps = std::max(body.along_mps, body.now_mps.dot(counted) / size);
+double ContactRun::deepest_m(bool of_first) const {
+  double deepest = 0.0;
+  for (const std::uint32_t k : pairs()) {
+    const BodyPair& pair = state_->pairs[k];
+    deepest = std::max({deepest, pair.intrusion_m(of_first),
+                        of_first ? pair.earlier_first_m : pair.earlier_second_m});
+  }
+  return deepest;
 }
 
 void ContactRun::end_step() {

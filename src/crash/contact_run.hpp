@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crash/exposure.hpp"
 #include "crash/motion_record.hpp"
 #include "crash/surface_pass.hpp"
 
@@ -14,26 +15,6 @@
 
 namespace crashrank {
 namespace detail {
-
-/// Share of a contact's force that counts towards delta-v. Injury risk curves describe impacts of
-/// about 0.1 s; a push or scrape that accelerates both bodies no more than hard braking is not an
-/// impact, whatever velocity change it adds up to. The share is 0 up to 11.1 m/s² (1.13 g), the 0.8
-/// km/h in 20 ms at which event data recorders end an event (49 CFR 563.5), 1 from twice that, in
-/// proportion between. It begins at 1 and stays for 0.3 s, the time for which they record the
-/// greatest delta-v, so that slow impacts, whose forces are as small, count entirely; after a
-/// strong force it stays for 0.15 s. Then it falls by 1 in 0.3 s.
-struct CountedShare {
-  double share = 1.0;
-  double hold_s = 0.3;  ///< the share does not fall for this time
-
-  /// Lets time pass.
-  void pass(double time_s);
-  /// Takes a force that accelerates the body that it moves more by `acceleration_mps2`.
-  void take(double acceleration_mps2);
-  /// The share at the begin of a further contact of the same bodies, `gap_s` after this force. A
-  /// scrape that loses touch for a moment goes on as it was; see `shared_weight`.
-  CountedShare of_further_contact(double gap_s) const;
-};
 
 /// Two bodies of a contact: the pieces of each outline near the other body, what they have crushed
 /// so far, and the forces between the bodies. It outlives single contacts, because crushed
@@ -53,8 +34,6 @@ struct BodyPair {
   double earlier_first_m = 0.0;     ///< greatest intrusion into the first in earlier contacts
   double earlier_second_m = 0.0;    ///< greatest intrusion into the second in earlier contacts
   std::uint64_t last_end_step = 0;  ///< scene step in which their last contact ended
-  double last_force_s = -1e9;       ///< scene time of their last force
-  CountedShare last_share;          ///< of that force
 
   /// Clears the pair; keeps allocated memory.
   void begin(std::size_t a, std::size_t b);
@@ -121,25 +100,12 @@ public:
   void apply_forces();
   /// Velocity change of the first or the second body by the force of this step, m/s.
   Eigen::Vector2d step_change_mps(bool of_first) const;
-  /// Begins with the share that an earlier contact of the same bodies left.
-  void set_counted_share(const CountedShare& share) noexcept { counted_ = share; }
-  /// Share of the last force that counts.
-  const CountedShare& counted_share() const noexcept { return counted_; }
-  /// Mean time of the force that counts, weighted by the velocity change, since the beginning, s.
-  double mean_force_s() const {
-    return counted_mps_ > 0.0 ? counted_moment_m_ / counted_mps_ : 0.0;
-  }
-  /// Time since that force, s.
-  double forceless_s() const noexcept { return time_s_ - counted_s_; }
-  /// Computes, after `apply_forces`, the share of the force of this step that counts towards
-  /// delta-v: less than 1 in long pushes and scrapes.
-  void compute_counted_share();
-  /// Excludes a share in [0, 1] of the counted impulse of this step from the delta-v of a body,
-  /// because another force cancelled it in the same step.
-  void exclude(bool from_first, double share);
-  /// Records the velocity change of the first or the second body by all contacts in this step, m/s;
-  /// `shared`: other contacts act on it as well.
-  void add_velocity_change(bool first, const Eigen::Vector2d& change_mps, bool shared);
+  /// Action of the step on the first or the second body, without what several
+  /// contacts of the body cancel and how its deepest intrusion grows.
+  ContactAction step_action(bool of_first) const;
+  /// Greatest intrusion into the body by the other so far, m.
+  double deepest_m(bool of_first) const;
+
   /// Completes the step, after the bodies have moved to its end, and decides whether the contact is
   /// over.
   void end_step();
@@ -161,11 +127,6 @@ public:
   /// The outcome up to now; `swapped`: the first body is B.
   ContactOutcome outcome(bool swapped) const;
 
-  /// Part of the delta-v of a body in the outcome by which its velocity did not change, m/s: while
-  /// several contacts press on it their impulses cancel, and what is left of the delta-v expresses
-  /// its crush.
-  Eigen::Vector3d squeeze_mps(bool of_first, const BodyContact& contact) const;
-
   /// Kinetic energy lost so far, J.
   double dissipated_j() const { return std::max(0.0, dissipated_j_); }
   /// Number of outline pieces moved so far: the amount of work done.
@@ -182,6 +143,15 @@ private:
     double weight = 0.0;
     double point_x = 0.0;
     double point_y = 0.0;
+    double crush_first_w = 0.0;
+    double crush_second_w = 0.0;
+    double intruded_first_m3 = 0.0;
+    double intruded_second_m3 = 0.0;
+  };
+  /// Impulses of a step on one body, N s.
+  struct StepImpulse {
+    PlanarForce whole;
+    PlanarForce rebound;  ///< part of it by restitution
   };
   /// Change of kinetic energy when a share k of a set of forces (or impulses) is applied: slope·k +
   /// curvature·k²/2.
@@ -189,15 +159,6 @@ private:
     double slope = 0.0;
     double curvature = 0.0;
     void add(const PlanarBody& body, const PlanarForce& f);
-  };
-  /// Velocity change of a body by all contacts that act on it, m/s.
-  struct VelocityChange {
-    Eigen::Vector2d now_mps = Eigen::Vector2d::Zero();
-    double most_mps = 0.0;   ///< greatest length after a step with a force
-    double along_mps = 0.0;  ///< greatest component along the delta-v of this contact so far
-    /// The delta-v of this contact alone may overstate the change: other contacts act on the body
-    /// at the same time, or some steps are excluded.
-    bool partial = false;
   };
   /// Relative velocity of both bodies at the point where the force of the step acts.
   struct ForceVelocity {
@@ -211,13 +172,10 @@ private:
   void apply_impulses();
   ForceVelocity velocity_at_force() const;
   void rebound(double speed_mps);
-  void add_excluded(bool from_first, double share);
   double kinetic_energy_j() const;
   double relative_speed_bound() const;
   double relative_speed() const;
   BodyContact body_result(bool is_first) const;
-  static void limit_delta_v(const VelocityChange& change, double inverse_mass,
-                            BodyContact& contact);
 
   ContactWorkspace::State* state_ = nullptr;
   ContactOptions options_;
@@ -244,14 +202,8 @@ private:
   PlanarForce since_rebound_;
   PlanarForce impulse_on_first_;   ///< impulse of the contact, moment about its centre of mass
   double applied_s_ = 0.0;         ///< time for which the force of this step was applied
-  CountedShare counted_;           ///< share of the force that counts
-  double counted_s_ = 0.0;         ///< its time, s
-  double counted_mps_ = 0.0;       ///< sum of the velocity changes that counted
-  double counted_moment_m_ = 0.0;  ///< that sum weighted by their times
-  PlanarForce excluded_first_;     ///< impulses that do not count, see `exclude`
-  PlanarForce excluded_second_;
-  VelocityChange change_first_;
-  VelocityChange change_second_;
+  StepImpulse step_first_;         ///< of this step
+  StepImpulse step_second_;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;
@@ -277,6 +229,8 @@ private:
   double friction_j_ = 0.0;
   double crush_first_j_ = 0.0;
   double crush_second_j_ = 0.0;
+  double intruded_first_m3_ = 0.0;
+  double intruded_second_m3_ = 0.0;
   float depth_first_m_ = 0.0F;
   float depth_second_m_ = 0.0F;
   double point_x_ = 0.0;

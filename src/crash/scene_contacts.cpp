@@ -31,9 +31,6 @@ void SceneRun::close_contact(ContactRun& run) {
   ended_work_ += run.work();
   for (const std::uint32_t k : run.pairs()) {
     memory_.pairs[k].last_end_step = steps_;
-    if (!run.acts()) continue;
-    memory_.pairs[k].last_force_s = now_s_ - run.forceless_s();
-    memory_.pairs[k].last_share = run.counted_share();
   }
   if (run.acts()) {
     const std::size_t first = run.first();
@@ -53,30 +50,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Share of the velocity change of a later contact (which begins with the state `contact_body`)
-/// that remains as net change. A change that only compensates a deceleration since the earlier
-/// contact, or one during the later contact, does not count.
-double net_change_share(const BodyContact& later, const ContactBody& contact_body,
-                        const BodyContact& whole) {
-  const double change = later.delta_v_mps.norm();
-  if (!(change > 0.0)) return 1.0;
-  const Vector3d arm = contact_body.pose.rotation * contact_body.vehicle->center_m;
-  const Vector3d begin =
-      contact_body.velocity.linear_mps + contact_body.velocity.angular_radps.cross(arm);
-  const Vector3d along = later.delta_v_mps / (change * change);
-  const double slowed = std::clamp((whole.after.linear_mps - begin).dot(along), 0.0, 1.0);
-  return std::clamp((later.after.linear_mps - begin).dot(along) - slowed, 0.0, 1.0);
-}
-
 /// Time at which the recorded motion of a contact ends, since its beginning, s.
 double motion_end_s(const SceneContact& contact) {
   const ContactMotion& motion = contact.outcome.motion;
   return motion.poses[motion.count - 1].time_s;
 }
 
-/// Merges the later contact of a body into the earlier one: damage and energy accumulate, delta-v
-/// stays that of the earlier contact.
+/// Merges the later contact of a body into the earlier one. The direction of force stays that of
+/// the earlier one.
 void merge_body(const BodyContact& later, BodyContact& whole) {
+  whole.impulse_ns += later.impulse_ns;
+  whole.delta_v_mps += later.delta_v_mps;
+  whole.delta_yaw_rate_radps += later.delta_yaw_rate_radps;
   whole.after = later.after;
   whole.crush_depth_m = std::max(whole.crush_depth_m, later.crush_depth_m);
   whole.crush_energy_j += later.crush_energy_j;
@@ -122,12 +107,6 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
     if (earlier.a != a || earlier.b != b) continue;
     const double later_s = begin_s - earlier.begin_s;
     if (later_s - motion_end_s(earlier) > SceneContact::merge_window_s) break;
-    const ContactBody& given_a = swapped ? run.given_second() : run.given_first();
-    const ContactBody& given_b = swapped ? run.given_first() : run.given_second();
-    const double change = std::max(
-        net_change_share(outcome.a, given_a, earlier.outcome.a) * outcome.a.delta_v_mps.norm(),
-        net_change_share(outcome.b, given_b, earlier.outcome.b) * outcome.b.delta_v_mps.norm());
-    if (change > SceneContact::max_merged_mps) break;
     merge_outcome(outcome, later_s, earlier.outcome);
     if (second_is_fixed) record_pressed(run, earlier);
     return;
@@ -142,13 +121,10 @@ void SceneRun::record_contact(const ContactRun& run, const ContactOutcome& outco
   contact.b = b;
   contact.begin_s = begin_s;
   contact.first_force_s = forced_s_[static_cast<std::size_t>(&run - runs_.data())];
-  contact.mean_force_s = begin_s + run.mean_force_s();
   contact.is_first =
       &run == first_run_ && (members_[partner_].state != State::fixed || second == partner_ ||
                              members_[second].state != State::fixed);
   contact.outcome = outcome;
-  contact.squeeze_a_mps = run.squeeze_mps(!swapped, outcome.a);
-  contact.squeeze_b_mps = run.squeeze_mps(swapped, outcome.b);
   const ContactBody given_second = second_is_fixed ? contact_body(second) : run.given_second();
   contact.given_a = swapped ? given_second : run.given_first();
   contact.given_b = swapped ? run.given_first() : given_second;

@@ -34,6 +34,8 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   contacts_.reserve(most_contacts);
   track_steps_.reserve(most_tracked_steps);
   track_.reserve(most_tracked);
+  records_.resize(most_recorded);
+  for (ExposureRecord& record : records_) record.prepare();
   memory_.pairs.resize(most_pairs);
   for (BodyPair& pair : memory_.pairs) {
     pair.of_first.resize(pieces);
@@ -60,6 +62,8 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   for (std::size_t k = most_at_once; k > 0; --k)
     free_runs_.push_back(static_cast<std::uint32_t>(k - 1));
   contacts_.clear();
+  records_.resize(most_recorded);
+  recorded_ = 0;
   first_run_ = nullptr;
   start_s_ = now_s_ = placed_s_ = last_force_s_ = start_s;
   fastest_plan_mps_ = options.fastest_plan_mps;
@@ -248,23 +252,6 @@ void SceneRun::open_contact(std::size_t i, std::size_t j) {
                  options_.variant, options_.contact);
 }
 
-/// Share that counts of the first force of a contact: what the last contact of the same bodies, or
-/// with a body that adjoins the other, has left of it.
-CountedShare SceneRun::share_at_first_force(const ContactRun& run) const {
-  double last_force_s = -1e9;
-  CountedShare share;
-  const View<const std::uint32_t> own = run.pairs();
-  for (std::size_t k = 0; k < memory_.pairs_in_use; ++k) {
-    const BodyPair& pair = memory_.pairs[k];
-    if (pair.first != run.first() || !(pair.last_force_s > last_force_s)) continue;
-    const bool same = std::find(own.begin(), own.end(), k) != own.end();
-    if (!same && !adjoins_any(pair.second, run)) continue;
-    last_force_s = pair.last_force_s;
-    share = pair.last_share.of_further_contact(now_s_ - last_force_s);
-  }
-  return share;
-}
-
 void SceneRun::open_contacts() {
   for_each_near_pair([&](std::size_t i, std::size_t j) {
     if (gap_lower_bound_m(i, j) > live_m || live_with(i, j) != nullptr) return;
@@ -293,33 +280,58 @@ void SceneRun::stop_resting_bodies() {
   active_.clear();
 }
 
-void SceneRun::apply_contact_forces() {
+std::int32_t SceneRun::current_cell() const noexcept {
+  return static_cast<std::int32_t>(std::floor((now_s_ - start_s_) / exposure_cell_s));
+}
+
+void SceneRun::apply_contact_forces(double step_s) {
   for (const std::uint32_t i : chain_) {
     const PlanarBody& b = motion_of(i);
-    members_[i].pressing = 0;
-    members_[i].before_mps = Eigen::Vector2d(b.vx, b.vy);
+    Member& m = members_[i];
+    m.action = {};
+    m.state_before = {};
+    m.state_before.forward_x = static_cast<float>(b.cosine);
+    m.state_before.forward_y = static_cast<float>(b.sine);
+    m.state_before.road_mps = static_cast<float>(plane_length(b.vx, b.vy));
   }
-  const auto for_each_side = [&](auto&& function) {
-    for (const std::uint32_t k : active_) {
-      ContactRun& run = runs_[k];
-      function(run, true, run.first());
-      function(run, false, run.second());
-    }
-  };
-  for_each_side([&](const ContactRun& run, bool /*first*/, std::size_t i) {
-    if (run.presses()) ++members_[i].pressing;
-  });
   for (const std::uint32_t k : active_) {
-    runs_[k].apply_forces();
-    if (runs_[k].presses()) runs_[k].compute_counted_share();
+    ContactRun& run = runs_[k];
+    run.apply_forces();
+    if (!run.presses()) continue;
+    for (const bool first : {true, false}) {
+      Member& m = members_[first ? run.first() : run.second()];
+      if (m.state != State::free) continue;
+      m.action.add(run.step_action(first), 1.0);
+      const double deepest_m = std::max(m.deepest_m, run.deepest_m(first));
+      m.action.deepest_m += deepest_m - m.deepest_m;
+      m.deepest_m = deepest_m;
+    }
   }
-  for_each_side([&](ContactRun& run, bool first, std::size_t i) {
-    const Member& m = members_[i];
-    if (m.state != State::free) return;
-    const PlanarBody& b = motion_of(i);
-    run.add_velocity_change(first, Eigen::Vector2d(b.vx, b.vy) - m.before_mps,
-                            m.pressing > (run.presses() ? 1 : 0));
-  });
+  record_actions(step_s);
+}
+
+/// Adds the actions of the step to the records of the bodies.
+void SceneRun::record_actions(double step_s) {
+  for (const std::uint32_t i : chain_) {
+    Member& m = members_[i];
+    if (!(m.action.path_mps > 0.0)) continue;
+    if (m.record == no_record) {
+      if (recorded_ == records_.size()) {
+        limit_exceeded_ = true;
+        continue;
+      }
+      m.record = recorded_++;
+      records_[m.record].begin();
+    }
+    const double change_mps = plane_length(m.action.dvx_mps, m.action.dvy_mps);
+    m.action.cancelled_mps = 0.5 * std::max(0.0, m.action.path_mps - change_mps);
+    m.changed_mps += change_mps;
+    const double middle_s = now_s_ - start_s_;
+    if (!records_[m.record].add(middle_s - 0.5 * step_s, middle_s + 0.5 * step_s, m.state_before,
+                                m.action)) {
+      limit_exceeded_ = true;
+    }
+  }
 }
 
 void SceneRun::step() {
@@ -346,13 +358,12 @@ void SceneRun::step() {
     if (!run.acts()) forced_s_[k] = now_s_;
     if (!run.acts() && &run != first_run_) {
       run.begin_at_first_force(contact_body(run.first()), contact_body(run.second()));
-      run.set_counted_share(share_at_first_force(run));
       begun_s_[k] = now_s_;
     }
     mark_touched(run.first());
     for (const std::uint32_t pair : run.pairs()) mark_touched(memory_.pairs[pair].second);
   }
-  apply_contact_forces();
+  apply_contact_forces(step_s);
   for (const std::uint32_t i : chain_) {
     Member& m = members_[i];
     if (m.state != State::free) continue;

@@ -51,12 +51,10 @@ struct SceneOptions {
 };
 
 /// A contact between two bodies of a scene. Its velocities are those at the end of the contact law.
-/// Later forces between the same bodies are merged into it (damage, energy and motion) if they
-/// begin within `merge_window_s` and change neither velocity by more than `max_merged_mps`: the
-/// bodies scrape along or push each other.
+/// Later forces between the same bodies are merged into it if they begin within `merge_window_s`:
+/// the bodies scrape along or push each other. No score depends on that.
 struct SceneContact {
   static constexpr double merge_window_s = 0.1;
-  static constexpr double max_merged_mps = 0.5;
 
   std::uint32_t a = 0;  ///< index of the movable body; of two movable bodies the lower index
   /// Index of the other body; of several adjoining fixed bodies the one with the largest impulse.
@@ -68,14 +66,9 @@ struct SceneContact {
   /// is fixed and another fixed body of the contact receives more impulse, the contact is reported
   /// for that body and this is false.
   bool is_first = false;
-  double mean_force_s = 0.0;  ///< mean time of its counted force on that clock
-  ContactBody given_a;        ///< state at the beginning of the contact
+  ContactBody given_a;  ///< state at the beginning of the contact
   ContactBody given_b;
   ContactOutcome outcome;
-  /// Parts of the delta-v of `a` and of `b` that changed no velocity, see
-  /// `ContactRun::squeeze_mps`.
-  Eigen::Vector3d squeeze_a_mps = Eigen::Vector3d::Zero();
-  Eigen::Vector3d squeeze_b_mps = Eigen::Vector3d::Zero();
   /// Adjoining fixed bodies that pressed on the other body, up to `most_pressed`.
   static constexpr std::size_t most_pressed = 8;
   std::array<std::uint32_t, most_pressed> pressed{};
@@ -98,6 +91,7 @@ public:
   static constexpr std::size_t most_pairs = 64;     ///< pairs in contact; further ones do not act
   static constexpr std::size_t most_at_once = 40;   ///< open contacts; further ones open later
   static constexpr std::size_t most_near = 32;      ///< near bodies listed for each body
+  static constexpr std::size_t most_recorded = most_pairs + 1;  ///< bodies whose exposure is recorded
 
   /// Allocates room for scenes with up to `bodies` bodies of up to `pieces` outline pieces each.
   void prepare(std::size_t bodies, std::size_t pieces);
@@ -109,11 +103,18 @@ public:
              const Eigen::Vector3d& origin_m, const SceneOptions& options);
   /// Takes up to `steps` steps; returns false once the scene is over.
   bool advance(int steps);
+  bool over() const noexcept { return over_; }
 
   /// Contacts with a force that have ended, in the order of their ends.
   View<const SceneContact> contacts() const noexcept {
     return {contacts_.data(), contacts_.size()};
   }
+  /// What contact forces did to a body so far. Only the cells before `current_cell` are complete.
+  View<const ExposureCell> exposure_cells(std::size_t i) const {
+    const std::size_t record = members_[i].record;
+    return record == no_record ? View<const ExposureCell>{} : records_[record].cells();
+  }
+  std::int32_t current_cell() const noexcept;
   /// Number of contacts in progress.
   std::size_t at_once() const noexcept { return active_.size(); }
   const ContactRun& live(std::size_t k) const { return runs_[active_[k]]; }
@@ -166,15 +167,19 @@ private:
   /// Bodies nearer than this have an open contact, because they may press within the next steps, m.
   static constexpr double live_m = 0.15;
 
+  static constexpr auto no_record = static_cast<std::size_t>(-1);
+
   /// fixed: not movable; planned: follows its plan; free: moved by forces; rests: free and at rest.
   enum class State : std::uint8_t { fixed, planned, free, rests };
   struct Member {
     State state = State::fixed;
     bool in_chain = false;
     bool pressed = false;       ///< a contact force acted in this step
-    std::uint8_t pressing = 0;  ///< number of contacts with a force in this step
-    /// Velocity before the contact forces of this step.
-    Eigen::Vector2d before_mps = Eigen::Vector2d::Zero();
+    std::size_t record = no_record;  ///< index in `records_`
+    ExposureCell state_before;       ///< before the contact forces of this step
+    ContactAction action;            ///< of all contacts in this step
+    double deepest_m = 0.0;          ///< deepest intrusion so far
+    double changed_mps = 0.0;        ///< sum of the changes of velocity by contacts so far
     std::uint8_t damaged = 0;  ///< damaged wheels, see `wheels_after`
     Pose pose;                 ///< pose at its first contact, or of a fixed body
     PlanarBody start;          ///< planar state at that time
@@ -220,13 +225,13 @@ private:
   void open_contact(std::size_t i, std::size_t j);
   ContactRun* live_with(std::size_t i, std::size_t j);
   bool adjoins_any(std::size_t i, const ContactRun& run) const;
-  CountedShare share_at_first_force(const ContactRun& run) const;
   std::uint32_t pair_of(std::size_t i, std::size_t j, bool& seen_before);
   void close_contact(ContactRun& run);
   void record_contact(const ContactRun& run, const ContactOutcome& outcome, bool swapped);
   void record_pressed(const ContactRun& run, SceneContact& contact) const;
   void lock_damaged_wheels(std::size_t i, const Box& damaged);
-  void apply_contact_forces();
+  void apply_contact_forces(double step_s);
+  void record_actions(double step_s);
   double grip_of(std::size_t i) const;
   void apply_road_forces(std::size_t i, double step_s);
   void stop_resting_bodies();
@@ -245,6 +250,8 @@ private:
   std::vector<std::uint32_t> active_;     ///< runs in progress
   std::vector<std::uint32_t> free_runs_;  ///< unused runs
   std::vector<SceneContact> contacts_;
+  std::vector<ExposureRecord> records_;  ///< of the bodies touched so far: the first `recorded_`
+  std::size_t recorded_ = 0;
   std::vector<TrackedStep> track_steps_;
   std::vector<TrackedBody> track_;
   bool track_ends_ = false;                ///< the track is full

@@ -62,6 +62,8 @@ struct LaneSums {
   F8 depth_other = all(0.0F);
   F8 intrusion_own = all(0.0F);
   F8 intrusion_other = all(0.0F);
+  F8 intruding_own = all(0.0F);
+  F8 intruding_other = all(0.0F);
 
   // Explicit: a generated constructor would not be compiled for the vector target.
   HWY_INLINE LaneSums() {}
@@ -290,11 +292,18 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   const auto intrusion = [&](F8 inside, F8 crush) {
     return select(where, closing * minimum(inside, crush), zero);
   };
+  // Volume per time that a piece sweeps with its share of the advance, where it is inside.
+  const F8 swept = closing * advance * length * common;
+  const auto intruding = [&](F8 depth_inside, F8 share) {
+    return select(less(zero, depth_inside), swept * share, zero);
+  };
   s.depth_own = maximum(s.depth_own, select(where, own_crush, zero));
   own_bounds_.grow(where, px, py);
   if (p.target >= own_.cabin_band) {
     const F8 inside = inside_compartment(own_, px, py, nx);
-    s.intrusion_own = maximum(s.intrusion_own, intrusion(inside, own_crush));
+    const F8 depth_inside = intrusion(inside, own_crush);
+    s.intrusion_own = maximum(s.intrusion_own, depth_inside);
+    s.intruding_own = s.intruding_own + intruding(depth_inside, own_share);
   }
   if constexpr (both_yield) {
     const F8 other_crush = other_depth / (own_nx * own_nx + flank * own_ny * own_ny);
@@ -304,7 +313,9 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
     if (p.band >= other_.cabin_band) {
       const F8 inside = inside_compartment(other_, own_x - pusher_shift * own_nx,
                                            own_y - pusher_shift * own_ny, -own_nx);
-      s.intrusion_other = maximum(s.intrusion_other, intrusion(inside, other_crush));
+      const F8 depth_inside = intrusion(inside, other_crush);
+      s.intrusion_other = maximum(s.intrusion_other, depth_inside);
+      s.intruding_other = s.intruding_other + intruding(depth_inside, one - own_share);
     }
   }
 }
@@ -334,6 +345,7 @@ inline void ForceAccumulator::store_sums(PressTotals& totals, PassSums& sums,
   sums.depth_other = greatest_lane(s.depth_other);
   const auto counted = static_cast<float>(std::min(1.0, sums.weight / least_intruding_n));
   record.intrusion_own = std::max(record.intrusion_own, counted * greatest_lane(s.intrusion_own));
+  sums.intruding_own_m3ps = static_cast<double>(counted) * sum_lanes(s.intruding_own);
   const auto grow = [&](const LaneBounds& lanes, std::size_t body, Box& box) {
     const auto low = static_cast<float>(profile_edges_m[lowest_band_[body]]);
     const auto high = static_cast<float>(profile_edges_m[highest_band_[body] + 1]);
@@ -344,6 +356,7 @@ inline void ForceAccumulator::store_sums(PressTotals& totals, PassSums& sums,
   if (other_.rigid) return;
   record.intrusion_other =
       std::max(record.intrusion_other, counted * greatest_lane(s.intrusion_other));
+  sums.intruding_other_m3ps = static_cast<double>(counted) * sum_lanes(s.intruding_other);
   grow(other_bounds_, 1, record.other);
 }
 

@@ -34,8 +34,11 @@ struct PassSums {
   double power_own = 0.0;     ///< W: crush power of the pressed body
   double power_other = 0.0;   ///< W: crush power of the pushing body
   double power_friction = 0.0;  ///< W
-  float depth_own = 0.0F;       ///< greatest crush depth, m
-  float depth_other = 0.0F;     ///< m
+  /// Volume of the compartment that the force crushes, m³/s, of the pressed and the pushing body.
+  double intruding_own_m3ps = 0.0;
+  double intruding_other_m3ps = 0.0;
+  float depth_own = 0.0F;    ///< greatest crush depth, m
+  float depth_other = 0.0F;  ///< m
 };
 
 /// Damage of both bodies that the passes of a contact record.

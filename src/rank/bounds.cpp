@@ -1,7 +1,7 @@
 #include "rank/bounds.hpp"
 
 #include "crash/scene_run.hpp"
-#include "rank/tally.hpp"
+#include "rank/crash_score.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,8 +50,8 @@ double max_people_weight(const Scene& scene, std::size_t index) {
 void ScoreBounds::prepare(const Scene& scene) {
   limits_ = {};
   limits_.ego_mass_kg = scene.ego.mass_kg;
-  // Those of the simulation and every actor that is touched without a force.
-  limits_.contacts = static_cast<double>(SceneRun::most_contacts + scene.actors.size());
+  // Those of the simulation and a first contact without force.
+  limits_.contacts = static_cast<double>(SceneRun::most_contacts + 1);
   max_energy_ratio_ = 1.0;
   add(scene, ego_body);
   for (std::size_t i = 0; i < scene.actors.size(); ++i) add(scene, i);

@@ -41,6 +41,8 @@ std::vector<PersonRisk> mean_risks(const std::vector<CandidateResult>& results,
         return each.body == risk.body;
       });
       if (same == people.end()) {
+        // The exposure is that of the likeliest future.
+        if (k > 0) risk.exposure_mps = risk.exposure_pdof_deg = risk.exposure_time_s = 0.0;
         people.push_back(risk);
       } else {
         same->probability = std::min(same->probability + risk.probability, 1.0);

@@ -15,19 +15,8 @@ using Eigen::Vector3d;
 /// Largest steering angle of the wheels, rad.
 constexpr double most_steering_rad = 0.7;
 
-SideEffect side_of(std::size_t body, const ContactBody& given, const BodyContact& contact,
-                   const Vector3d& squeeze_mps) {
-  SideEffect side;
-  side.body = body;
-  side.delta_v_mps = contact.delta_v_mps;
-  side.squeeze_mps = squeeze_mps;
-  side.impulse_ns = contact.impulse_ns;
-  side.forward = given.pose.rotation.col(0);
-  side.yaw_radps = contact.delta_yaw_rate_radps;
-  side.road_mps = given.velocity.linear_mps.norm();
-  side.intrusion_m = contact.intrusion_m;
-  side.crush_j = contact.crush_energy_j;
-  return side;
+SideEffect side_of(std::size_t body, const BodyContact& contact) {
+  return {body, contact.delta_v_mps.norm(), contact.crush_energy_j};
 }
 
 SceneOptions options_of(const Scene& scene, const HarmSample& sample) {
@@ -83,6 +72,8 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
                        const Contact& first, const HarmSample& sample) {
   first_actor_ = first.actor;
   first_closing_mps_ = first.closing_speed_mps;
+  first_closing_energy_j_ = first.closing_energy_j;
+  begin_s_ = first.time_of_impact_s;
   bodies_.clear();
   actors_.clear();
   const auto add = [&](std::size_t index, std::size_t number, const Vehicle& vehicle,
@@ -172,19 +163,15 @@ ContactEffect CrashChain::effect(std::size_t index) const {
     return before.a == contact.a && before.b == contact.b;
   });
   ContactEffect e;
-  e.begin_s = contact.begin_s;
-  e.end_s = contact.begin_s + contact.outcome.duration_s;
-  e.mean_force_s = contact.mean_force_s;
-  e.closing_mps = contact.is_first ? first_closing_mps_ : closing_of(contact).norm();
   if (!again) {
-    e.closing_energy_j = closing_energy_j(contact.given_a.vehicle->mass_kg,
-                                          contact.given_b.vehicle->mass_kg, e.closing_mps);
+    e.closing_energy_j = closing_energy_j(
+        contact.given_a.vehicle->mass_kg, contact.given_b.vehicle->mass_kg,
+        contact.is_first ? first_closing_mps_ : closing_of(contact).norm());
   }
   e.restitution = contact.outcome.restitution;
   e.dissipated_j = contact.outcome.dissipated_j;
-  e.sides[0] = side_of(body(contact.a), contact.given_a, contact.outcome.a, contact.squeeze_a_mps);
-  e.sides[1] = side_of(contact.is_first ? first_actor_ : body(contact.b), contact.given_b,
-                       contact.outcome.b, contact.squeeze_b_mps);
+  e.sides[0] = side_of(body(contact.a), contact.outcome.a);
+  e.sides[1] = side_of(contact.is_first ? first_actor_ : body(contact.b), contact.outcome.b);
   return e;
 }
 
@@ -203,43 +190,42 @@ bool CrashChain::first_acts() const {
   return std::any_of(all.begin(), all.end(), [](const SceneContact& c) { return c.is_first; });
 }
 
-double CrashChain::first_force_s() const {
-  double first_s = std::numeric_limits<double>::infinity();
-  for (const SceneContact& contact : contacts()) first_s = std::min(first_s, contact.begin_s);
-  return first_s;
-}
-
-void CrashChain::effects(View<const Touch> touches, std::vector<ContactEffect>& effects,
-                         std::vector<std::size_t>& order) const {
+void CrashChain::effects(CrashEffects& effects, std::vector<std::size_t>& order) const {
   const View<const SceneContact> all = contacts();
   effects.clear();
+  effects.begin_s = begin_s_;
   order.clear();
-  for (std::size_t k = 0; k < touches.size() && !first_acts(); ++k) {
-    const Contact& contact = touches[k].contact;
-    ContactEffect effect;
-    effect.begin_s = effect.end_s = effect.mean_force_s = contact.time_of_impact_s;
-    effect.closing_mps = contact.closing_speed_mps;
-    effect.sides[1].body = contact.actor;
-    effect.sides[0].forward = touches[k].ego.rotation.col(0);
-    effect.sides[1].forward = touches[k].other.rotation.col(0);
-    effect.sides[0].road_mps = touches[k].ego_mps;
-    effect.sides[1].road_mps = touches[k].other_mps;
-    // If the same bodies have a contact with force later, their closing energy is counted in that
-    // one.
-    if (!touches[k].presses_later) effect.closing_energy_j = contact.closing_energy_j;
-    effects.push_back(effect);
-    order.push_back(touch + k);
-  }
-  const auto forces = static_cast<std::ptrdiff_t>(order.size());
   for (std::size_t k = 0; k < all.size(); ++k) order.push_back(k);
-  std::sort(order.begin() + forces, order.end(), [&](std::size_t p, std::size_t q) {
+  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) {
     const SceneContact& c = all[p];
     const SceneContact& d = all[q];
     if (c.begin_s != d.begin_s) return c.begin_s < d.begin_s;
     if (c.a != d.a) return c.a < d.a;
     return c.b != d.b ? c.b < d.b : p < q;
   });
-  for (std::size_t k = effects.size(); k < order.size(); ++k) effects.push_back(effect(order[k]));
+  const bool is_over = run_.over();
+  if (is_over && !first_acts()) {
+    // If the same bodies have a contact with force later, their closing energy counts in that one.
+    const bool presses_later = std::any_of(all.begin(), all.end(), [&](const SceneContact& c) {
+      return body(c.a) == ego_body && body(c.b) == first_actor_;
+    });
+    ContactEffect effect;
+    effect.sides[1].body = first_actor_;
+    if (!presses_later) effect.closing_energy_j = first_closing_energy_j_;
+    effects.contacts.push_back(effect);
+    order.insert(order.begin(), touch);
+  }
+  for (std::size_t k = effects.contacts.size(); k < order.size(); ++k) {
+    effects.contacts.push_back(effect(order[k]));
+  }
+  const std::int32_t until = run_.current_cell();
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
+    View<const ExposureCell> cells = run_.exposure_cells(i);
+    std::size_t count = cells.size();
+    while (!is_over && count > 0 && cells[count - 1].index >= until) --count;
+    const bool is_in_first = actors_[i] == ego_body || actors_[i] == first_actor_;
+    if (count > 0 || is_in_first) effects.add(actors_[i], {cells.data(), count});
+  }
 }
 
 }  // namespace crashrank::detail

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "crash/scene_run.hpp"
+#include "rank/crash_score.hpp"
 #include "rank/scene.hpp"
-#include "rank/tally.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -15,18 +15,6 @@ namespace crashrank::detail {
 /// dry road, between coasting (0.1 g) and locked wheels (0.7 g). A manoeuvre that brakes harder
 /// keeps its braking. A design choice.
 inline constexpr double brake_after_contact = 0.45;
-
-/// A contact of the ego with an actor while both follow their plans.
-struct Touch {
-  Contact contact;
-  std::int32_t triangle_ego = -1;  ///< triangles that touch first; negative if there are none
-  std::int32_t triangle_other = -1;
-  Pose ego;  ///< poses and speeds at that time
-  Pose other;
-  double ego_mps = 0.0;
-  double other_mps = 0.0;
-  bool presses_later = false;  ///< the same bodies have a contact with a force, too
-};
 
 /// Simulation of the scene that follows from the first contact of a candidate, a limited number of
 /// steps at a time. One object serves any number of candidates in sequence; each thread needs its
@@ -49,19 +37,14 @@ public:
   /// Body of that index in a contact: an actor or the ego. Of joined bodies it is the actor of the
   /// first contact or, otherwise, their first member.
   std::size_t body(std::size_t index) const { return actors_[index]; }
-  /// Effect of the contact with that index in `contacts`, independent of later contacts.
-  ContactEffect effect(std::size_t index) const;
   /// Returns true if the outlines press on each other in the first contact.
   bool first_acts() const;
-  /// Time of the first force, until which all bodies follow their plans; infinity if there is none.
-  double first_force_s() const;
-  /// Indices from this one on stand for touches, which have an effect with zero forces.
-  static constexpr std::size_t touch = std::numeric_limits<std::size_t>::max() / 2;
-  /// Effects of all contacts in the order of their begin times, those of `touches` first if the
-  /// first contact has no force. `order` gets the index of each in `contacts`, or `touch` and its
-  /// index in `touches`.
-  void effects(View<const Touch> touches, std::vector<ContactEffect>& effects,
-               std::vector<std::size_t>& order) const;
+  /// Index that stands for a first contact without force.
+  static constexpr std::size_t touch = std::numeric_limits<std::size_t>::max();
+  /// Effects of all that was simulated so far; of an unfinished simulation those that remain when
+  /// it goes on. The contacts are in the order of their begin times, a first contact without force
+  /// before all others; `order` gets the index of each in `contacts`, or `touch`.
+  void effects(CrashEffects& effects, std::vector<std::size_t>& order) const;
   const SceneRun& run() const noexcept { return run_; }
   /// Marks in `relevant` the plans of uncertain actors that influenced the simulation, or would
   /// have: those that came near its bodies.
@@ -74,9 +57,12 @@ private:
     std::size_t actor = 0;
   };
   void sort_actors(double time_s);
+  ContactEffect effect(std::size_t index) const;
 
   std::size_t first_actor_ = 0;
   double first_closing_mps_ = 0.0;
+  double first_closing_energy_j_ = 0.0;
+  double begin_s_ = 0.0;
   SceneRun run_;
   std::vector<SceneBody> bodies_;
   std::vector<std::size_t> actors_;  ///< by body of the run: actor index or `ego_body`

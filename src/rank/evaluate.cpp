@@ -7,7 +7,6 @@
 #include "rank/road_leaving.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -51,79 +50,65 @@ double damage_score(const std::map<std::size_t, BodyDamage>& damage, const Measu
   return score;
 }
 
-/// The largest values of all events. Needed because a contact is tallied before later contacts
-/// extend its event.
-struct EventTotals {
-  /// by body and number of the event: as it was with its largest delta-v
-  std::map<std::pair<std::size_t, std::size_t>, BodyEvent> largest;
-
-  void note(std::size_t body, const BodyEvent& event) {
-    BodyEvent& noted = largest[{body, event.number}];
-    if (noted.number == 0 || event.size_mps() >= noted.size_mps()) noted = event;
-  }
-};
-
-/// Returns the score of the nominal sample and sets the event and the added harm of each contact.
-double score_nominal(const Scene& scene, const SimulatedOutcome& from, Tally& tally,
-                     CandidateResult& result) {
+/// Sets the people of the result in the nominal sample, the exposure of the bodies of its contacts,
+/// and the harm of each contact: of the harm to the people of a body the share that the delta-v of
+/// the contact has in the sum over all contacts of the body.
+void add_exposures(const Scene& scene, const SimulatedOutcome& from, CrashScore& score,
+                   CandidateResult& result) {
   const MeasureRow& row = measure_row(scene.measure);
-  tally.begin();
-  EventTotals events;
-  const std::vector<ContactEffect>& effects = from.effects.front();
-  std::vector<std::array<std::size_t, 2>> numbers;
-  for (std::size_t k = 0; k < effects.size(); ++k) {
-    const ContactEffect& effect = effects[k];
-    std::array<double, 2> harm{};
-    for (std::size_t side = 0; side < 2; ++side) {
-      harm[side] = -tally.people_score(scene, effect.sides[side].body);
+  const CrashEffects& effects = from.effects.front();
+  result.people = score.people(scene, effects);
+  std::vector<double> summed_mps(result.people.size(), 0.0);
+  const auto place_of = [&](std::size_t body) {
+    std::size_t k = 0;
+    while (k < result.people.size() && result.people[k].body != body) ++k;
+    return k;
+  };
+  for (const ContactEffect& effect : effects.contacts) {
+    for (const SideEffect& side : effect.sides) {
+      const std::size_t k = place_of(side.body);
+      if (k < summed_mps.size()) summed_mps[k] += side.delta_v_mps;
     }
-    tally.add(scene, effect, scene.nominal);
-    numbers.emplace_back();
-    for (std::size_t side = 0; side < 2; ++side) {
-      const SideEffect& own = effect.sides[side];
-      const BodyEvent event = tally.event(own.body);
-      events.note(own.body, event);
-      numbers.back()[side] = event.number;
-      harm[side] += tally.people_score(scene, own.body) + row.of_side(own, scene.harm.weights);
+  }
+  for (std::size_t n = 0; n < effects.contacts.size(); ++n) {
+    const OutcomePair outcomes = outcomes_of(result, from.reported[n]);
+    double harm = 0.0;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const SideEffect& side = effects.contacts[n].sides[s];
+      BodyOutcome& outcome = s == 0 ? outcomes.a : outcomes.b;
+      const std::size_t k = place_of(side.body);
+      if (k == summed_mps.size()) continue;
+      const PersonRisk& person = result.people[k];
+      outcome.exposure_mps = person.exposure_mps;
+      if (!row.counts_people) continue;
+      const double share = summed_mps[k] > 0.0 ? side.delta_v_mps / summed_mps[k] : 0.0;
+      outcome.harm = share * person.probability *
+                         people_weight(exposure_of(scene, side.body, nullptr), scene.harm.weights) +
+                     row.of_side(side, scene.harm.weights);
+      harm += outcome.harm;
     }
-    const ReportedContact& reported = from.reported[k];
-    if (!reported.is_further) result.contacts[reported.index].event = numbers.back()[0];
     if (!row.counts_people) continue;
-    const OutcomePair outcomes = outcomes_of(result, reported);
-    // A difference of two sums: rounding can make what adds nothing negative.
-    for (double& added : harm) added = std::max(added, 0.0);
-    outcomes.a.harm = harm[0];
-    outcomes.b.harm = harm[1];
-    (reported.is_further ? result.further[reported.index].harm
-                         : result.contacts[reported.index].severity.harm) = harm[0] + harm[1];
+    (from.reported[n].is_further ? result.further[from.reported[n].index].harm
+                                 : result.contacts[from.reported[n].index].severity.harm) = harm;
   }
-  for (std::size_t k = 0; k < effects.size(); ++k) {
-    const OutcomePair outcomes = outcomes_of(result, from.reported[k]);
-    const auto fill_event = [&](std::size_t side, BodyOutcome& outcome) {
-      const BodyEvent& event = events.largest[{effects[k].sides[side].body, numbers[k][side]}];
-      outcome.event_delta_v_mps = event.size_mps();
-      outcome.event_yaw_rate_change_radps = event.yaw_radps;
-    };
-    fill_event(0, outcomes.a);
-    fill_event(1, outcomes.b);
-  }
-  return tally.score(scene);
+  if (!row.counts_people) result.people.clear();
+  result.people.erase(std::remove_if(result.people.begin(), result.people.end(),
+                                     [](const PersonRisk& each) { return !(each.persons > 0.0); }),
+                      result.people.end());
 }
 
 /// Appends the score of the candidate in every sample, including the harm of leaving the road.
-void score_samples(const Scene& scene, const std::vector<std::vector<ContactEffect>>& effects,
-                   double leaving, Tally& tally, CandidateResult& result) {
+void score_samples(const Scene& scene, const std::vector<CrashEffects>& effects, double leaving,
+                   CrashScore& score, CandidateResult& result) {
   const std::vector<std::size_t> place = simulation_of_sample(scene);
-  for (std::size_t i = 0; i < scene.samples.size(); ++i) {
-    double score = leaving;
-    if (!effects.empty()) {
-      tally.begin();
-      for (const ContactEffect& effect : effects[place[i]]) {
-        tally.add(scene, effect, scene.samples[i]);
-      }
-      score += tally.score(scene);
-    }
-    result.sample_scores.push_back(score);
+  std::vector<double>& scores = result.sample_scores;
+  scores.assign(scene.samples.size(), leaving);
+  for (std::size_t i = 0; !effects.empty() && i < scores.size();) {
+    std::size_t end = i + 1;
+    while (end < scores.size() && place[end] == place[i]) ++end;
+    score.add_scores(scene, effects[place[i]], {scene.samples.data() + i, end - i},
+                     scores.data() + i);
+    i = end;
   }
 }
 
@@ -201,13 +186,15 @@ CandidateResult finish_outcome(const Scene& scene, SimulatedOutcome& outcome,
   }
   const std::map<std::size_t, BodyDamage> damage = total_damage(scene, result);
   if (result.collides) result.ego = damage.at(ego_body);
-  const double simulated =
-      outcome.effects.empty() ? 0.0 : score_nominal(scene, outcome, scratch.tally, result);
-  if (!outcome.effects.empty()) result.people = scratch.tally.people(scene);
+  double simulated = 0.0;
+  if (!outcome.effects.empty()) {
+    simulated = scratch.score.score(scene, outcome.effects.front(), scene.nominal);
+    add_exposures(scene, outcome, scratch.score, result);
+  }
   const double left = leaving_score(scene, outcome.leaving, first_contact_s(outcome.summary));
   result.score = scored_by_damage(scene.measure) ? damage_score(damage, measure_row(scene.measure))
                                                  : left + simulated;
-  score_samples(scene, outcome.effects, left, scratch.tally, result);
+  score_samples(scene, outcome.effects, left, scratch.score, result);
   return result;
 }
 

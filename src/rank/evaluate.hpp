@@ -1,14 +1,13 @@
 #pragma once
 
 #include "rank/crash_chain.hpp"
+#include "rank/crash_score.hpp"
 #include "rank/damage.hpp"
 #include "rank/report_contacts.hpp"
 #include "rank/risk.hpp"
 #include "rank/scene.hpp"
 #include "rank/stop_check.hpp"
-#include "rank/tally.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -44,26 +43,15 @@ struct Scratch {
   Motion ego;                            ///< motion of the ego in a future that displaces it
   ImpactWorkspace impact;
   CrashChain chain;
-  /// Contacts of the current crash before its first force, the first contact at the front; see
-  /// `find_touches`.
-  std::vector<Touch> touches;
-  std::vector<Hit> later_hits;  ///< contacts on all plans with other actors, in order of time
-  bool later_hits_known = false;
-  double touched_until_s = 0.0;       ///< time until which `later_hits` are touches
   std::vector<PlanarPose> ego_poses;  ///< sampled trajectory of the candidate
-  std::vector<ContactEffect> effects;
+  CrashEffects effects;
   std::vector<std::size_t> order;
-  Tally tally;
+  CrashScore score;
   DamageScratch damage;
   /// Checked by all searches and before each simulation.
   StopCheck stop;
 
   bool stopped() const { return stop(); }
-  bool has_contact_without_force() const {
-    return std::any_of(touches.begin(), touches.end(),
-                       [](const Touch& touch) { return touch.contact.contact_without_force; });
-  }
-  View<const Touch> touches_view() const { return {touches.data(), touches.size()}; }
 
   /// Allocates for a scene; afterwards only the damage search allocates.
   void prepare(const Scene& scene);
@@ -83,7 +71,7 @@ struct SimulatedOutcome {
   /// place of each effect of the nominal sample in the result
   std::vector<ReportedContact> reported;
   /// Effects of the nominal sample, followed by those of the other simulated samples.
-  std::vector<std::vector<ContactEffect>> effects;
+  std::vector<CrashEffects> effects;
   FutureOutcome summary;  ///< summary of the outcome, without its score
   /// first moment off the road on the motion of the ego until the horizon
   std::optional<RoadLeaving> leaving;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace crashrank {
 namespace {
@@ -12,6 +13,12 @@ double people_in(const HarmExposure& e, const HarmWeights& w) {
   if (e.kind == BodyKind::bus) return w.people_in_bus;
   if (e.kind == BodyKind::truck) return w.people_in_truck;
   return e.kind == BodyKind::car ? w.people_in_car : 1.0;
+}
+
+/// A share that rises smoothly from 0 to 1 around a value.
+double share_above(double x, double value) {
+  const double square = (x / value) * (x / value);
+  return x > 0.0 ? -std::expm1(-square * square) : 0.0;
 }
 
 double weight_of(Person person, bool ego, const HarmWeights& w) {
@@ -41,7 +48,8 @@ Exposure person_exposure(const HarmExposure& body, Person person, const HarmOpti
   e.person = person;
   e.delta_v_mps = body.delta_v_mps * sample.occupant_speed;
   e.pdof_deg = body.pdof_deg;
-  e.impact_speed_mps = std::max(body.closing_speed_mps, fall_mps) * sample.outside_speed;
+  e.impact_speed_mps =
+      std::max(hurting_speed_mps(body.closing_speed_mps), fall_mps) * sample.outside_speed;
   e.leading_edge_m = body.leading_edge_m;
   e.intrusion_m = body.intrusion_m;
   e.description = options.pedestrian;
@@ -88,23 +96,19 @@ bool has_cage(BodyKind kind) noexcept {
   return kind == BodyKind::car || kind == BodyKind::truck || kind == BodyKind::bus;
 }
 
-double struck_speed_mps(double closing_speed_mps, double delta_v_mps, double mass_kg,
-                        double reduced_kg, double largest_reduced_kg, double restitution) noexcept {
-  if (!(reduced_kg > 0.0) || !(largest_reduced_kg > 0.0)) return 0.0;
-  const double full_hit_mps = delta_v_mps * mass_kg / reduced_kg;
-  const double free_impact_mps = delta_v_mps * mass_kg / largest_reduced_kg / (1.0 + restitution);
-  return std::max(std::min(full_hit_mps, closing_speed_mps), free_impact_mps);
+double fall_speed_mps(double road_speed_mps, double exposure_mps) noexcept {
+  return fall_share * std::max(road_speed_mps, 0.0) * share_above(exposure_mps, fall_exposure_mps);
 }
 
-double fall_speed_mps(double road_speed_mps, double delta_v_mps) noexcept {
-  const double ramp = std::clamp(delta_v_mps / fall_delta_v_mps, 0.0, 1.0);
-  return fall_share * std::max(road_speed_mps, 0.0) * ramp;
-}
-
-double standing_fall_mps(double delta_v_mps) noexcept {
+double standing_fall_mps(double exposure_mps) noexcept {
   // Speed after a fall from 0.9 m, the height of the centre of mass: sqrt(2·9.81·0.9).
   constexpr double ground_mps = 4.2;
-  return ground_mps * std::clamp(delta_v_mps / topple_delta_v_mps, 0.0, 1.0);
+  return ground_mps * share_above(exposure_mps, topple_exposure_mps);
+}
+
+double hurting_speed_mps(double speed_mps) noexcept {
+  const double share = std::max(speed_mps, 0.0) / walking_mps;
+  return -speed_mps * std::expm1(-share * share);
 }
 
 double risk_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {

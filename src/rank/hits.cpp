@@ -114,26 +114,6 @@ bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, 
   return decided;
 }
 
-bool find_all_hits(const Scene& scene, const Motion& ego, const FutureGroup& group,
-                   std::size_t except, Scratch& scratch, RankWork& work) {
-  scratch.later_hits.clear();
-  find_nearby_actors(scene, ego, group, 0.0, scene.slice_s.back(), scratch, work);
-  const bool same_start = starts_at_ego_pose(scene, ego);
-  for (const Scratch::Near& near : scratch.near) {
-    const Plan& plan = scene.futures.plans[near.plan];
-    if (plan.actor == except) continue;
-    const Impact impact = find_impact(scene, ego, plan, scene.slice_s[near.first_slice],
-                                      scene.slice_s[near.last_slice + 1], scratch.impact,
-                                      options_for(scene, scratch, near, same_start));
-    ++work.body_pairs;
-    work.impact += impact.work;
-    if (impact.state == ImpactState::undecided) return false;
-    if (impact.hit()) scratch.later_hits.push_back({near.plan, plan.actor, impact});
-  }
-  sort_by_time(scratch.later_hits);
-  return true;
-}
-
 const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::size_t future) {
   const auto hit = std::find_if(scratch.hits.begin(), scratch.hits.end(), [&](const auto& each) {
     return each.impact.hit() && scene.futures.follows(future, each.plan);

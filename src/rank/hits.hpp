@@ -10,12 +10,6 @@ namespace crashrank::detail {
 bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, Scratch& scratch,
                RankWork& work);
 
-/// Finds the first contact of the ego with every actor but one, on all plans, that occurs in a
-/// group of futures by the horizon, and stores them in `scratch.later_hits` in order of time.
-/// Returns false if a search stayed undecided.
-bool find_all_hits(const Scene& scene, const Motion& ego, const FutureGroup& group,
-                   std::size_t except, Scratch& scratch, RankWork& work);
-
 /// First contact in a future of the searched group; null if there is none.
 const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::size_t future);
 

@@ -9,7 +9,6 @@ namespace {
 
 double no_contact(const ContactEffect& /*effect*/) { return 0.0; }
 double no_side(const SideEffect& /*side*/, const HarmWeights& /*weights*/) { return 0.0; }
-double no_body(double before, const BodyEvent& /*last*/, bool /*is_ego*/) { return before; }
 
 constexpr MeasureRow polygons{
     Measure::polygons,
@@ -18,14 +17,14 @@ constexpr MeasureRow polygons{
     [](const BodyDamage& whole) { return static_cast<double>(whole.triangles.size()); },
     no_contact,
     no_side,
-    no_body,
+    nullptr,
     [](const CrashLimits& u, const HarmWeights&) { return u.triangles; }};
 
 constexpr MeasureRow area{
     Measure::area, false,
     false,         [](const BodyDamage& whole) { return whole.area_m2; },
     no_contact,    no_side,
-    no_body,       [](const CrashLimits& u, const HarmWeights&) { return u.area_m2; }};
+    nullptr,       [](const CrashLimits& u, const HarmWeights&) { return u.area_m2; }};
 
 constexpr MeasureRow closing_energy{
     Measure::closing_energy,
@@ -34,12 +33,12 @@ constexpr MeasureRow closing_energy{
     nullptr,
     [](const ContactEffect& effect) { return effect.closing_energy_j; },
     no_side,
-    no_body,
+    nullptr,
     [](const CrashLimits& u, const HarmWeights&) { return u.contacts * u.closing_energy_j; }};
 
 constexpr MeasureRow delta_v{Measure::delta_v, true, false, nullptr, no_contact, no_side,
-                             [](double before, const BodyEvent& last, bool is_ego) {
-                               return is_ego ? before + last.size_mps() : before;
+                             [](const WindowReader& body) {
+                               return body.is_ego() ? body.summed_mps() : 0.0;
                              },
                              // The speed of the ego is at most that of a body with all the energy;
                              // reversing it doubles the delta-v.
@@ -54,7 +53,7 @@ constexpr MeasureRow energy{Measure::energy,
                             nullptr,
                             [](const ContactEffect& effect) { return effect.dissipated_j; },
                             no_side,
-                            no_body,
+                            nullptr,
                             [](const CrashLimits& u, const HarmWeights&) { return u.energy_j; }};
 
 constexpr MeasureRow intrusion{
@@ -63,8 +62,8 @@ constexpr MeasureRow intrusion{
     false,
     nullptr,
     no_contact,
-    [](const SideEffect& side, const HarmWeights&) { return side.intrusion_m; },
-    no_body,
+    no_side,
+    [](const WindowReader& body) { return body.intrusion_m(); },
     [](const CrashLimits& u, const HarmWeights&) { return u.contacts * 2.0 * u.intrusion_m; }};
 
 constexpr MeasureRow harm{
@@ -78,7 +77,7 @@ constexpr MeasureRow harm{
       crushed.crush_energy_j = side.crush_j;
       return property_harm(crushed, weights);
     },
-    [](double before, const BodyEvent& last, bool) { return combined_risk(before, last.risk); },
+    [](const WindowReader& body) { return body.risk(); },
     [](const CrashLimits& u, const HarmWeights& weights) {
       return u.people + weights.property_per_mj * 1e-6 * u.energy_j;
     }};

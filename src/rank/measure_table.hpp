@@ -2,7 +2,7 @@
 
 #include "crashrank/internal/rank/harm.hpp"
 #include "crashrank/scenario/harm_options.hpp"
-#include "rank/tally.hpp"
+#include "rank/crash_score.hpp"
 
 namespace crashrank::detail {
 
@@ -29,8 +29,8 @@ struct MeasureRow {
   double (*of_damage)(const BodyDamage& whole) = nullptr;
   double (*of_contact)(const ContactEffect& effect) = nullptr;
   double (*of_side)(const SideEffect& side, const HarmWeights& weights) = nullptr;
-  /// Term of a body after its last event, given the term of the events before.
-  double (*of_body)(double before, const BodyEvent& last, bool is_ego) = nullptr;
+  /// Term of a body; null if there is none.
+  double (*of_body)(const WindowReader& body) = nullptr;
   /// Upper bound on the score.
   double (*upper_bound)(const CrashLimits& limits, const HarmWeights& weights) = nullptr;
 };

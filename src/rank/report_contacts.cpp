@@ -19,8 +19,6 @@ void fill_outcome(const ContactBody& body, const Model& model, const BodyContact
   to.delta_v_x_mps = local.x();
   to.delta_v_y_mps = local.y();
   to.yaw_rate_change_radps = from.delta_yaw_rate_radps;
-  to.event_delta_v_mps = to.delta_v_mps;
-  to.event_yaw_rate_change_radps = to.yaw_rate_change_radps;
   to.pdof_deg = from.pdof_deg;
   to.clock = clock_of(to.pdof_deg);
   to.crush_energy_j = from.crush_energy_j;
@@ -163,6 +161,17 @@ Contact first_contact(const Scene& scene, const Motion& ego, std::size_t actor, 
   return contact;
 }
 
+Touch first_touch(const Scene& scene, const Motion& ego, std::size_t actor, const Motion& plan,
+                  const Impact& impact) {
+  Touch touch;
+  touch.contact = first_contact(scene, ego, actor, plan, impact);
+  touch.triangle_ego = impact.triangle_a;
+  touch.triangle_other = impact.triangle_b;
+  touch.ego = ego.pose_at(impact.time_s);
+  touch.other = plan.pose_at(impact.time_s);
+  return touch;
+}
+
 OutcomePair outcomes_of(CandidateResult& result, const ReportedContact& reported) {
   if (reported.is_further) {
     FurtherContact& contact = result.further[reported.index];
@@ -173,7 +182,7 @@ OutcomePair outcomes_of(CandidateResult& result, const ReportedContact& reported
 }
 
 std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChain& chain,
-                                             View<const Touch> touches,
+                                             const Touch& first,
                                              const std::vector<std::size_t>& order,
                                              CandidateResult& result,
                                              std::vector<DamagePlan>& plans) {
@@ -184,13 +193,11 @@ std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChai
     result.contacts.back().severity.simulated = needs_crash(scene.measure);
     plans.emplace_back();
   };
-  add(touches[0].contact);
+  add(first.contact);
   for (const std::size_t k : order) {
-    if (k >= CrashChain::touch) {
-      const std::size_t index = k - CrashChain::touch;
-      if (index > 0) add(touches[index].contact);
-      plans.back() = plan_touch(scene, touches[index]);
-      reported.push_back({false, index});
+    if (k == CrashChain::touch) {
+      plans.back() = plan_touch(scene, first);
+      reported.push_back({false, 0});
       continue;
     }
     const SceneContact& from = chain.contacts()[k];
@@ -213,8 +220,8 @@ std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChai
     reported.push_back({false, index});
     query = {ego_body, contact.actor, contact.state, contact.gap_m, -1, -1, contact.point_m};
     if (is_first) {
-      query.triangle_a = touches[0].triangle_ego;
-      query.triangle_b = touches[0].triangle_other;
+      query.triangle_a = first.triangle_ego;
+      query.triangle_b = first.triangle_other;
     }
     DamagePlan plan = plan_damage(scene, query, from.outcome.motion, pressed_view);
     contact.crush_s = plan.crush_s;

@@ -1,12 +1,12 @@
 #include "rank/evaluate.hpp"
 
 #include "rank/combine_futures.hpp"
+#include "rank/contact_force.hpp"
 #include "rank/ego_motion.hpp"
 #include "rank/hits.hpp"
 #include "rank/manoeuvre.hpp"
 #include "rank/measure_table.hpp"
 #include "rank/road_leaving.hpp"
-#include "rank/touches.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -30,29 +30,24 @@ void add_grazes(const Scene& scene, const Scratch& scratch, std::size_t future,
   });
 }
 
-/// Simulates the scene that follows from the first contact in `scratch.touches`, in one future and
-/// one sample. Returns false if a search stayed undecided or was stopped.
-bool simulate_chain(const Scene& scene, const Motion& ego, std::size_t future,
+/// Simulates the scene that follows from a first contact, in one future and one sample.
+void simulate_chain(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
                     const HarmSample& sample, Scratch& scratch, RankWork& work,
-                    std::vector<ContactEffect>& effects) {
-  scratch.chain.begin(scene, ego, future, scratch.touches.front().contact, sample);
+                    CrashEffects& effects) {
+  scratch.chain.begin(scene, ego, future, first, sample);
   scratch.chain.finish();
   work.crash_steps += scratch.chain.run().steps();
   work.crash_pieces += scratch.chain.run().work();
-  if (!find_touches(scene, ego, future, scratch, work)) return false;
   scratch.chain.mark_relevant_plans(scene, scratch.relevant);
-  mark_relevant_touches(scratch, scratch.relevant);
   scene.futures.mark_needed(scratch.relevant, scratch.needed);
-  scratch.chain.effects(scratch.touches_view(), effects, scratch.order);
-  return true;
+  scratch.chain.effects(effects, scratch.order);
 }
 
 template <typename AnyContact> void note_speed(const AnyContact& contact, FutureOutcome& outcome) {
   outcome.fastest_contact_mps = std::max(outcome.fastest_contact_mps, contact.closing_speed_mps);
 }
 
-/// Simulates a candidate in one future. Returns false if it was stopped or a search stayed
-/// undecided.
+/// Simulates a candidate in one future. Returns false if it was stopped.
 bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, Scratch& scratch,
                      RankWork& work, SimulatedOutcome& found) {
   std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
@@ -61,21 +56,21 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
   CandidateResult& result = found.result;
   result.collides = found.summary.collides = hit != nullptr;
   if (result.collides) {
-    begin_touches(scene, ego, *hit, scratch);
-    const Contact first = scratch.touches.front().contact;
+    Touch touch =
+        first_touch(scene, ego, hit->actor, scene.futures.plans[hit->plan].motion, hit->impact);
+    const Contact& first = touch.contact;
     found.summary.actor = first.actor;
     found.summary.time_of_impact_s = first.time_of_impact_s;
     found.summary.closing_speed_mps = first.closing_speed_mps;
     found.summary.state = first.state;
     found.effects.emplace_back();
-    if (!simulate_chain(scene, ego, future, scene.nominal, scratch, work, found.effects.back())) {
-      return false;
-    }
+    simulate_chain(scene, ego, future, first, scene.nominal, scratch, work, found.effects.back());
     result.crowded = scratch.chain.run().crowded();
     found.summary.contacts = scratch.chain.contacts().size();
-    found.summary.contact_without_force = scratch.has_contact_without_force();
-    found.reported = report_contacts(scene, scratch.chain, scratch.touches_view(), scratch.order,
-                                     result, found.plans);
+    touch.contact.contact_without_force = found.summary.contact_without_force =
+        lacks_force(scene, scratch.chain, first);
+    found.reported =
+        report_contacts(scene, scratch.chain, touch, scratch.order, result, found.plans);
     for (const Contact& contact : result.contacts) note_speed(contact, found.summary);
     for (const FurtherContact& contact : result.further) note_speed(contact, found.summary);
     std::size_t last = 0;
@@ -85,10 +80,8 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
       last = places[i];
       if (scratch.stopped()) return false;
       found.effects.emplace_back();
-      if (!simulate_chain(scene, ego, future, scene.samples[i], scratch, work,
-                          found.effects.back())) {
-        return false;
-      }
+      simulate_chain(scene, ego, future, first, scene.samples[i], scratch, work,
+                     found.effects.back());
     }
   }
   add_grazes(scene, scratch, future, result);
@@ -199,12 +192,11 @@ void Scratch::prepare(const Scene& scene) {
   for (auto* const each : {&same, &remaining, &others}) each->reserve(futures.max_future_count());
   ego_poses.reserve(scene.trajectories.steps + 1);
   chain.prepare(scene);
-  // Every actor may be touched without a force.
-  effects.reserve(SceneRun::most_contacts + scene.actors.size());
-  order.reserve(SceneRun::most_contacts + scene.actors.size());
-  touches.reserve(scene.actors.size());
-  later_hits.reserve(futures.plans.size());
-  tally.prepare(scene.actors.size() + 1);
+  effects.contacts.reserve(SceneRun::most_contacts + 1);
+  effects.bodies.reserve(scene.actors.size() + 1);
+  effects.cells.reserve(SceneRun::most_recorded * ExposureRecord::most_cells);
+  order.reserve(SceneRun::most_contacts + 1);
+  score.prepare();
 }
 
 SimulatedCandidate simulate_candidate(const Scene& scene, const Candidate& candidate,

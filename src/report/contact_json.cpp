@@ -18,8 +18,7 @@ Json outcome_json(const BodyOutcome& o, bool simulated) {
              {"delta_v_x_mps", o.delta_v_x_mps},
              {"delta_v_y_mps", o.delta_v_y_mps},
              {"yaw_rate_change_dps", o.yaw_rate_change_radps * degrees},
-             {"event_delta_v_mps", o.event_delta_v_mps},
-             {"event_yaw_rate_change_dps", o.event_yaw_rate_change_radps * degrees},
+             {"exposure_mps", o.exposure_mps},
              {"pdof_deg", o.pdof_deg},
              {"clock", o.clock}};
   if (!simulated) return entry;
@@ -99,7 +98,6 @@ void add_damage(Json& entry, const DamageSummary& first, const DamageSummary& se
 Json contact_json(const Scenario& scenario, View<const Model> models, const Contact& contact) {
   Json entry{{"bodies", {"ego", scenario.actors[contact.actor].name}},
              {"other", scenario.actors[contact.actor].name},
-             {"event", contact.event},
              {"state", impact_state_name(contact.state)},
              {"time_of_impact_s", contact.time_of_impact_s},
              {"closing_speed_mps", contact.closing_speed_mps},

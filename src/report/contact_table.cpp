@@ -15,8 +15,8 @@ std::string row_of(const std::string& names, double time_s, double closing_mps,
   return fmt::format(
       "<tr><td>{}</td><td class='n'>{:.3f}</td><td class='n'>{}</td><td class='n'>{}</td>"
       "<td class='n'>{}</td>",
-      escape_xml(names), time_s, fixed_text(closing_mps, 1), fixed_text(a.event_delta_v_mps, 1),
-      fixed_text(b.event_delta_v_mps, 1));
+      escape_xml(names), time_s, fixed_text(closing_mps, 1), fixed_text(a.exposure_mps, 1),
+      fixed_text(b.exposure_mps, 1));
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ std::string contact_table(const Scenario& scenario, Measure measure,
   const bool has_harm = measure == Measure::harm;
   std::string html =
       "<table class='parts contacts'><caption>contacts</caption><thead><tr><th>bodies</th>"
-      "<th>after s</th><th>closing m/s</th><th>event delta-v m/s, first</th><th>second</th>";
+      "<th>after s</th><th>closing m/s</th><th>exposure m/s, first</th><th>second</th>";
   if (has_harm) html += "<th>harm</th>";
   html += "</tr></thead><tbody>\n";
   for (const AnyContact& contact : contacts_in_order(ranked)) {

@@ -6,7 +6,7 @@ namespace crashrank::detail {
 namespace {
 
 void add(CrashSummary& sum, const BodyOutcome& outcome) {
-  sum.event_delta_v_mps = std::max(sum.event_delta_v_mps, outcome.event_delta_v_mps);
+  sum.exposure_mps = std::max(sum.exposure_mps, outcome.exposure_mps);
   sum.crush_m = std::max(sum.crush_m, outcome.crush_m);
   sum.harm += outcome.harm;
 }

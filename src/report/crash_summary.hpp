@@ -6,7 +6,7 @@ namespace crashrank::detail {
 
 /// What reports print of all contacts of a candidate, for one body or for several.
 struct CrashSummary {
-  double event_delta_v_mps = 0.0;  ///< the largest
+  double exposure_mps = 0.0;  ///< the largest
   double crush_m = 0.0;            ///< the deepest
   double harm = 0.0;               ///< the sum, persons as weighted
 };

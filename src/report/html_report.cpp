@@ -298,10 +298,10 @@ private:
     const detail::CrashSummary ego = detail::crash_of_ego(ranked);
     const detail::CrashSummary others = detail::crash_of_others(ranked);
     return fmt::format(
-        "<br>event delta-v m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
+        "<br>exposure m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
         "<br>harm: ego {}, others {}",
-        detail::fixed_text(ego.event_delta_v_mps, 1),
-        detail::fixed_text(others.event_delta_v_mps, 1), detail::fixed_text(ego.crush_m, 2),
+        detail::fixed_text(ego.exposure_mps, 1),
+        detail::fixed_text(others.exposure_mps, 1), detail::fixed_text(ego.crush_m, 2),
         detail::fixed_text(others.crush_m, 2), detail::harm_text(ego.harm),
         detail::harm_text(others.harm));
   }

@@ -114,7 +114,10 @@ Json people_json(const Scenario& scenario, const CandidateResult& ranked) {
   for (const PersonRisk& risk : ranked.people) {
     people.push_back({{"body", risk.body == ego_body ? "ego" : scenario.actors[risk.body].name},
                       {"persons", risk.persons},
-                      {"probability", risk.probability}});
+                      {"probability", risk.probability},
+                      {"exposure_mps", risk.exposure_mps},
+                      {"exposure_pdof_deg", risk.exposure_pdof_deg},
+                      {"exposure_time_s", risk.exposure_time_s}});
   }
   return people;
 }

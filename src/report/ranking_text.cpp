@@ -69,7 +69,7 @@ std::vector<std::string> cells(const Scenario& scenario, View<const Model> model
   row.push_back(detail::fixed_text(first.closing_speed_mps, 1));
   if (simulated) {
     const detail::CrashSummary crash = detail::crash_of_ego(ranked);
-    row.push_back(detail::fixed_text(crash.event_delta_v_mps, 1));
+    row.push_back(detail::fixed_text(crash.exposure_mps, 1));
     row.push_back(detail::fixed_text(crash.crush_m, 2));
   } else {
     row.push_back(fmt::format("{} + {}", ego.triangles, other.triangles));
@@ -121,7 +121,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   columns.push_back({result.futures.method == FutureMethod::certain ? "hits" : "likeliest hits"});
   columns.push_back({"after s", true});
   columns.push_back({"closing m/s", true});
-  columns.push_back({simulated ? "event delta-v m/s" : "triangles", true});
+  columns.push_back({simulated ? "exposure m/s" : "triangles", true});
   columns.push_back({simulated ? "crush m" : "area m2", true});
   columns.push_back({"ego's parts"});
   const std::vector<std::string> scores = detail::score_texts(result);
@@ -156,7 +156,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   }
   text += fmt::format("\n{} of {} {}touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
                       result.complete ? "" : "are known to ",
-                      simulated ? " Delta-v (the largest of an event) and crush are the ego's."
+                      simulated ? " Exposure (the greatest change of velocity within 0.3 s) and crush are the ego's."
                                 : " Damage is ego + others.",
                       result.elapsed_s * 1e3, result.complete ? "" : "; not every score is known");
   if (!result.complete) {

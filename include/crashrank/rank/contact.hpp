@@ -32,12 +32,8 @@ struct BodyOutcome {
   double delta_v_x_mps = 0.0;          ///< forward, m/s
   double delta_v_y_mps = 0.0;          ///< to the left, m/s
   double yaw_rate_change_radps = 0.0;  ///< to the left, rad/s
-  /// Of the event of the contact: contacts of one body that overlap in time or are less than 0.1 s
-  /// apart. An event that begins 0.1 to 0.2 s after another contains a share of it that falls to 0.
-  /// The largest value that the event reached, which harm uses: what is long past or led over by a
-  /// weak force alone no longer adds to what comes later.
-  double event_delta_v_mps = 0.0;
-  double event_yaw_rate_change_radps = 0.0;  ///< of the event then, to the left, rad/s
+  /// What the body lives through in the whole crash, see PersonRisk::exposure_mps; harm reads it.
+  double exposure_mps = 0.0;
   double pdof_deg = 0.0;        ///< where the force comes from, clockwise from ahead, [0, 360)
   int clock = 12;               ///< the PDOF as an hour, 12 ahead
   double crush_energy_j = 0.0;  ///< work done in deforming the body, J
@@ -108,8 +104,6 @@ struct Contact {
   BodyDamage ego;
   BodyDamage other;          ///< damage to `actor`
   ContactSeverity severity;  ///< mechanical result of the contact
-  /// number of the event of the ego that it belongs to, from 1; 0: no force
-  std::size_t event = 0;
 };
 
 /// Index of the ego, used where a body is identified by an index into Scenario::actors.

@@ -81,6 +81,12 @@ struct PersonRisk {
   /// Probability of the outcome of the risk model (`risk_outcome`) for one of them, without
   /// weights: the mean over all futures, whatever the risk measure.
   double probability = 0.0;
+  /// Exposure of the body: its greatest change of velocity by contact forces within 0.3 s, m/s. If
+  /// several contacts squeeze it, their forces that cancel count up to the speed that its crush
+  /// stands for. In the likeliest future.
+  double exposure_mps = 0.0;
+  double exposure_pdof_deg = 0.0;  ///< where that force comes from, clockwise from ahead
+  double exposure_time_s = 0.0;    ///< when the exposure is reached, from the decision
 };
 
 /// The first moment at which a wheel leaves the road.
@@ -339,10 +345,9 @@ struct RankResult {
 ///
 /// Scores are sums over all contacts of the scene. `polygons` counts the damaged triangles of all
 /// bodies and `area` adds their areas, a triangle that is hit twice once; `closing-energy` adds the
-/// energy of the first contact of every pair, `energy` that of all, `intrusion` that of both
-/// bodies, `delta-v` the delta-v of the events of the ego, and `harm` the weighted risks of all
-/// people. An event consists of contacts of a body that begin less than 0.1 s after the end of an
-/// earlier one; a risk is that of injury in at least one event.
+/// energy of the first contact of every pair, `energy` that of all, `intrusion` that of all bodies,
+/// `delta-v` the exposures of the ego in separate impacts, and `harm` the weighted risks of all
+/// people. A risk is that of injury in at least one impact of their body.
 ///
 /// If actors have predictions, may be absent, or joint futures are listed, every candidate is
 /// evaluated in each future, and the risk measure combines its scores. Futures that are equivalent

@@ -24,23 +24,27 @@ double share_of(double own_kg, double other_kg) {
 
 /// Weight of the people in or on a body.
 double people_weight_of(const Scene& scene, std::size_t body) {
-  return people_weight(exposure_of(scene, body, {}), scene.harm.weights);
+  return people_weight(exposure_of(scene, body, nullptr), scene.harm.weights);
 }
 
-SideEffect side_of(const Scene& scene, std::size_t body, const Motion& motion, double time_s,
-                   const Eigen::Vector3d& delta_v_mps) {
+/// Adds a body whose velocity changes at once.
+void add_change(const Scene& scene, std::size_t index, const Motion& motion, double time_s,
+                const Eigen::Vector3d& delta_v_mps, const Body& striker, CrashEffects& effects) {
   Pose pose;
   Velocity velocity;
   motion.state_at(time_s, pose, velocity);
-  SideEffect side;
-  side.body = body;
-  side.delta_v_mps = delta_v_mps;
-  if (const double mass_kg = body_of(scene, body).mass_kg; std::isfinite(mass_kg)) {
-    side.impulse_ns = mass_kg * delta_v_mps;
-  }
-  side.forward = pose.rotation.col(0);
-  side.road_mps = velocity.linear_mps.norm();
-  return side;
+  ExposureCell cell;
+  cell.forward_x = static_cast<float>(pose.rotation(0, 0));
+  cell.forward_y = static_cast<float>(pose.rotation(1, 0));
+  cell.road_mps = static_cast<float>(velocity.linear_mps.norm());
+  cell.action.dvx_mps = delta_v_mps.x();
+  cell.action.dvy_mps = delta_v_mps.y();
+  cell.action.path_mps = delta_v_mps.head<2>().norm();
+  cell.action.light_mps = cell.action.path_mps * body_of(scene, index).mass_kg /
+                          std::max(striker.mass_kg, striking_car_kg);
+  cell.action.edge_m2ps = cell.action.path_mps * striker.vehicle.leading_edge_m;
+  const bool moves = std::isfinite(body_of(scene, index).mass_kg) && cell.action.path_mps > 0.0;
+  effects.add(index, {&cell, moves ? std::size_t{1} : std::size_t{0}});
 }
 
 /// Part of the closing velocity that the two bodies lose: the component along the normal, and as
@@ -61,22 +65,20 @@ Eigen::Vector3d stopped_part(const Contact& first, double friction) {
 }  // namespace
 
 double estimate_score(const Scene& scene, const Motion& ego, const Motion& other,
-                      const Contact& first, Tally& tally) {
+                      const Contact& first, CrashEffects& effects, CrashScore& scorer) {
   const double own_kg = scene.ego.mass_kg;
   const double other_kg = scene.actors[first.actor].mass_kg;
   const Eigen::Vector3d stopped = stopped_part(first, scene.nominal.friction);
   ContactEffect effect;
-  effect.begin_s = effect.end_s = effect.mean_force_s = first.time_of_impact_s;
-  effect.closing_mps = stopped.norm();
-  effect.dissipated_j = closing_energy_j(own_kg, other_kg, effect.closing_mps);
+  effect.dissipated_j = closing_energy_j(own_kg, other_kg, stopped.norm());
   effect.closing_energy_j = first.closing_energy_j;
-  effect.sides[0] =
-      side_of(scene, ego_body, ego, first.time_of_impact_s, -share_of(own_kg, other_kg) * stopped);
-  effect.sides[1] = side_of(scene, first.actor, other, first.time_of_impact_s,
-                            share_of(other_kg, own_kg) * stopped);
-  tally.begin();
-  tally.add(scene, effect, scene.nominal);
-  const double score = tally.score(scene);
+  effects.clear();
+  effects.contacts.push_back(effect);
+  add_change(scene, ego_body, ego, first.time_of_impact_s, -share_of(own_kg, other_kg) * stopped,
+             scene.actors[first.actor], effects);
+  add_change(scene, first.actor, other, first.time_of_impact_s,
+             share_of(other_kg, own_kg) * stopped, scene.ego, effects);
+  const double score = scorer.score(scene, effects, scene.nominal);
   if (!measure_row(scene.measure).counts_people) return score;
   // Half of the stopped energy plus a quarter of all closing energy: a body that glances off can
   // collide again.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rank/scene.hpp"
-#include "rank/tally.hpp"
+#include "rank/crash_score.hpp"
 
 namespace crashrank::detail {
 
@@ -11,6 +11,6 @@ namespace crashrank::detail {
 /// velocity. Not a bound, since later contacts add to the score. 0 for intrusion, which point
 /// masses do not have.
 double estimate_score(const Scene& scene, const Motion& ego, const Motion& other,
-                      const Contact& first, Tally& tally);
+                      const Contact& first, CrashEffects& effects, CrashScore& score);
 
 }  // namespace crashrank::detail

@@ -66,7 +66,7 @@ double estimate_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& 
                    double upper_bound, Scratch& scratch) {
   if (scored_by_damage(q.scene.measure)) return upper_bound;
   const double estimate = estimate_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
-                                         first_contact_of(q, ego, hit), scratch.tally);
+                                         first_contact_of(q, ego, hit), scratch.effects, scratch.score);
   const bool says_nothing = !(estimate > 0.0) && !measure_row(q.scene.measure).counts_people;
   return says_nothing ? upper_bound : estimate;
 }

@@ -1,8 +1,8 @@
 #include "rank/anytime/refine_steps.hpp"
+#include "rank/contact_force.hpp"
 #include "rank/ego_motion.hpp"
 #include "rank/manoeuvre.hpp"
 #include "rank/road_leaving.hpp"
-#include "rank/touches.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -39,7 +39,6 @@ bool share_score(const Scene& scene, std::size_t future, CandidateState& state, 
   std::fill(scratch.relevant.begin(), scratch.relevant.end(), char{0});
   for (std::uint32_t k = 0; k <= found.first; ++k) scratch.relevant[state.first_hits[k].plan] = 1;
   scratch.chain.mark_relevant_plans(scene, scratch.relevant);
-  mark_relevant_touches(scratch, scratch.relevant);
   std::fill(scratch.needed.begin(), scratch.needed.end(), char{0});
   if (scene.futures.mark_needed(scratch.relevant, scratch.needed)) return false;
   scratch.same.clear();
@@ -74,11 +73,10 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   const HarmSample& nominal = q.scene.nominal;
   CrashChain& chain = scratch.chain;
   const Motion& ego = ego_motion(q.scene, q.candidate, index, scratch.ego);
-  begin_touches(q.scene, ego, state.first_hits[future.first], scratch);
-  const Contact first = scratch.touches.front().contact;
+  const Contact first = first_contact_of(q, ego, state.first_hits[future.first]);
   chain.begin(q.scene, ego, index, first, nominal);
-  std::size_t added = 0;
-  scratch.tally.begin();
+  std::size_t bounded_contacts = 0;
+  std::int32_t bounded_period = 0;
   bool going = true;
   bool in_time = true;
   const double left =
@@ -87,12 +85,14 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   while (going) {
     going = chain.advance(steps_at_a_time);
     if (!going) break;
-    const bool has_new_contacts = added < chain.contacts().size();
-    for (; added < chain.contacts().size(); ++added) {
-      scratch.tally.add(q.scene, chain.effect(added), nominal);
-    }
-    if (has_new_contacts) {
-      future.lower_bound = std::max(future.lower_bound, left + scratch.tally.lower_bound(q.scene));
+    // A bound from time to time, and after every contact.
+    const std::int32_t period = chain.run().current_cell() / cells_per_window;
+    if (bounded_contacts != chain.contacts().size() || bounded_period != period) {
+      bounded_contacts = chain.contacts().size();
+      bounded_period = period;
+      chain.effects(scratch.effects, scratch.order);
+      future.lower_bound = std::max(
+          future.lower_bound, left + scratch.score.lower_bound(q.scene, scratch.effects));
       combine(q, state, scratch);
     }
     in_time = !q.deadline.expired();
@@ -102,20 +102,10 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   future.simulated = std::max(future.simulated, chain.run().work());
   work.crash_steps += chain.run().steps();
   work.crash_pieces += chain.run().work();
-  const bool decided = going || find_touches(q.scene, ego, index, scratch, work);
-  if (!decided) {
-    future = before;
-    state.result = result_before;
-    if (scratch.stopped()) return false;
-    state.unresolved = true;
-    return true;
-  }
   if (!going) {
-    chain.effects(scratch.touches_view(), scratch.effects, scratch.order);
-    scratch.tally.begin();
-    for (const ContactEffect& effect : scratch.effects) scratch.tally.add(q.scene, effect, nominal);
-    future.score = left + scratch.tally.score(q.scene);
-    future.contact_without_force = scratch.has_contact_without_force();
+    chain.effects(scratch.effects, scratch.order);
+    future.score = left + scratch.score.score(q.scene, scratch.effects, nominal);
+    future.contact_without_force = lacks_force(q.scene, chain, first);
   }
   if (!share_score(q.scene, index, state, scratch)) {
     future = before;

@@ -1,0 +1,158 @@
+#include "crash/exposure.hpp"
+
+#include "crash/planar_body.hpp"
+
+namespace crashrank::detail {
+
+void ContactAction::add(const ContactAction& more, double share) {
+  dvx_mps += share * more.dvx_mps;
+  dvy_mps += share * more.dvy_mps;
+  rebound_x_mps += share * more.rebound_x_mps;
+  rebound_y_mps += share * more.rebound_y_mps;
+  path_mps += share * more.path_mps;
+  cancelled_mps += share * more.cancelled_mps;
+  crush_j += share * more.crush_j;
+  light_mps += share * more.light_mps;
+  edge_m2ps += share * more.edge_m2ps;
+  intruded_m3 += share * more.intruded_m3;
+  deepest_m += share * more.deepest_m;
+}
+
+bool ExposureRecord::add(double begin_s, double end_s, const ExposureCell& state,
+                         const ContactAction& action) {
+  const auto cell_at = [](double time_s) {
+    return static_cast<std::int32_t>(std::floor(time_s / exposure_cell_s));
+  };
+  const double duration_s = end_s - begin_s;
+  std::int32_t cell = cell_at(begin_s);
+  if (!cells_.empty()) cell = std::max(cell, cells_.back().index);
+  const std::int32_t last = std::max(cell, cell_at(end_s));
+  for (; cell <= last; ++cell) {
+    const double from_s = std::max(begin_s, cell * exposure_cell_s);
+    const double until_s = cell == last ? end_s : (cell + 1) * exposure_cell_s;
+    if (!(until_s > from_s)) continue;
+    if (cells_.empty() || cells_.back().index != cell) {
+      if (cells_.size() == most_cells) return false;
+      cells_.push_back(state);
+      cells_.back().index = cell;
+      cells_.back().action = {};
+    }
+    cells_.back().action.add(action, (until_s - from_s) / duration_s);
+  }
+  return true;
+}
+
+namespace {
+
+/// Windows with one begin, and the direction of each: forces from the side are at least as harmful
+/// as those from ahead, and these as those from behind.
+struct WindowSet {
+  struct Entry {
+    ExposureWindow window;
+    double along = 1.0;  ///< |cosine| of the angle between force and forward axis
+    bool from_behind = false;
+
+    bool exceeds(const Entry& e) const {
+      return window.exposure_mps >= e.window.exposure_mps &&
+             window.struck_mps >= e.window.struck_mps &&
+             window.intrusion_m >= e.window.intrusion_m && along <= e.along &&
+             (e.from_behind || !from_behind);
+    }
+  };
+  std::array<Entry, cells_per_window> entries;
+  std::size_t count = 0;
+
+  void add(const Entry& added) {
+    for (std::size_t k = 0; k < count; ++k) {
+      if (entries[k].exceeds(added)) return;
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!added.exceeds(entries[k])) entries[kept++] = entries[k];
+    }
+    entries[kept] = added;
+    count = kept + 1;
+  }
+};
+
+WindowSet::Entry window_entry(const ExposedBody& body, const ExposureCell& first, std::int32_t end,
+                              const ContactAction& sum) {
+  WindowSet::Entry e;
+  ExposureWindow& w = e.window;
+  const double more = body.restitution - 1.0;
+  w.end = end;
+  w.change_mps = Eigen::Vector2d(sum.dvx_mps + more * sum.rebound_x_mps,
+                                 sum.dvy_mps + more * sum.rebound_y_mps);
+  const double change_mps = plane_length(w.change_mps.x(), w.change_mps.y());
+  const double crush_mps = std::sqrt(std::max(0.0, sum.crush_j) / body.mass_kg);
+  w.exposure_mps = std::max(change_mps, std::min(change_mps + sum.cancelled_mps, crush_mps));
+  w.forward = Eigen::Vector2d(static_cast<double>(first.forward_x),
+                              static_cast<double>(first.forward_y));
+  w.road_mps = static_cast<double>(first.road_mps);
+  const double path_mps = std::max(sum.path_mps, 1e-12);
+  w.edge_m = sum.edge_m2ps / path_mps;
+  if (!body.is_vehicle) {
+    w.struck_mps = w.exposure_mps * (1.0 + sum.light_mps / path_mps);
+    return e;
+  }
+  w.intrusion_m = mean_intrusion_m(sum.intruded_m3, sum.deepest_m);
+  const double forward = w.change_mps.dot(w.forward);
+  e.along = change_mps > 0.0 ? std::abs(forward) / change_mps : 1.0;
+  e.from_behind = forward > 0.0;
+  return e;
+}
+
+}  // namespace
+
+void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
+                  std::vector<ExposureWindow>& windows) {
+  windows.clear();
+  // A window begins with a cell, or ends with one at its full length.
+  std::size_t to_begin = 0;
+  std::size_t to_end = 0;
+  std::size_t first = 0;
+  std::int32_t last_begin = 0;
+  while (to_begin < cells.size()) {
+    std::int32_t begin = cells[to_begin].index;
+    const bool ends = to_end < cells.size() && cells[to_end].index + 1 - cells_per_window < begin;
+    if (ends) {
+      begin = cells[to_end++].index + 1 - cells_per_window;
+    } else {
+      ++to_begin;
+    }
+    if (!windows.empty() && begin == last_begin) continue;
+    last_begin = begin;
+    while (cells[first].index < begin) ++first;
+    WindowSet set;
+    ContactAction sum;
+    for (std::size_t k = first; k < cells.size() && cells[k].index < begin + cells_per_window;
+         ++k) {
+      sum.add(cells[k].action, 1.0);
+      set.add(window_entry(body, cells[first], cells[k].index + 1, sum));
+    }
+    for (std::size_t k = 0; k < set.count; ++k) {
+      windows.push_back(set.entries[k].window);
+      windows.back().begin = begin;
+    }
+  }
+}
+
+void SpacedSum::add(std::int32_t begin, double value) {
+  const auto recent = [&](std::size_t k) -> Begin& { return recent_[(first_ + k) % kept]; };
+  while (count_ > 0 && recent(0).cell <= begin - 2 * cells_per_window) {
+    earlier_ = std::max(earlier_, recent(0).best);
+    first_ = (first_ + 1) % kept;
+    --count_;
+  }
+  double best = earlier_ + value;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const std::int32_t after = begin - recent(k).cell;
+    if (after <= cells_per_window) break;
+    const double share = static_cast<double>(after - cells_per_window) / cells_per_window;
+    best = std::max(best, recent(k).best + share * value);
+  }
+  recent_[(first_ + count_++) % kept] = {begin, best};
+  most_ = std::max(most_, best);
+}
+
+}  // namespace crashrank::detail
