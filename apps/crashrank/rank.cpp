@@ -51,6 +51,7 @@ struct RankArguments {
   std::string policy = "late-match";
   std::string depth = "auto";
   bool json = false;
+  bool motion = false;
   double deadline_ms = std::numeric_limits<double>::infinity();
   std::uint64_t work_budget = std::numeric_limits<std::uint64_t>::max();
   bool first_place = false;
@@ -210,6 +211,7 @@ int run(const RankArguments& options) {
   const Result<Infeasible> infeasible = infeasible_from_name(options.infeasible);
   if (!infeasible) return fail(infeasible.error());
   how.infeasible = *infeasible;
+  how.records_motion = options.motion;
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return fail(build.error());
   }
@@ -335,6 +337,10 @@ void add_rank(CLI::App& app, Action& action) {
            "Weights of harm and ranges of uncertain parameters: a file after "
            "data/profile.schema.json, which overrides the scenario");
   command->add_flag("--json", options->json, "Answer in JSON, every candidate");
+  command->add_flag(
+      "--motion", options->motion,
+      "With --json and without a deadline: the simulated motion of every body that is "
+      "hit, in the likeliest future");
   add_count(*command, "--top", options->top, "Candidates in the table, 0 for all", 0, 1'000'000);
   const CLI::Option* const workers =
       add_count(*command, "--workers", options->workers,

@@ -49,8 +49,8 @@ def test_a_row_has_what_rank_answers(scenes):
             assert [(c["first"], c["second"]) for c in found] == [
                 c.bodies for c in candidate.contacts
             ]
-            assert [c["event_delta_v_first_mps"] for c in found] == [
-                c.severity.a.event_delta_v_mps for c in candidate.contacts
+            assert [c["exposure_first_mps"] for c in found] == [
+                c.severity.a.exposure_mps for c in candidate.contacts
             ]
     assert len({row["result_hash"] for row in table.to_pylist()}) == 2
 

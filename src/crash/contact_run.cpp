@@ -277,13 +277,6 @@ void ContactRun::apply_forces() {
   speed_mps_ = relative_speed_bound();
 }
 
-Eigen::Vector2d ContactRun::step_change_mps(bool of_first) const {
-  if (!presses()) return Eigen::Vector2d(0, 0);
-  const PlanarForce& f = of_first ? on_first_ : state_->pairs[pairs_[0]].on_second;
-  const double share = applied_s_ * motion_of(of_first ? first_ : second()).inverse_mass;
-  return Eigen::Vector2d(share * f.x, share * f.y);
-}
-
 ContactAction ContactRun::step_action(bool of_first) const {
   ContactAction action;
   const PlanarBody& body = motion_of(of_first ? first_ : second());

@@ -98,8 +98,6 @@ public:
   bool presses() const noexcept { return totals_.pressing > 0.0; }
   /// Applies the forces of the step, and the rebound at greatest compression, to the velocities.
   void apply_forces();
-  /// Velocity change of the first or the second body by the force of this step, m/s.
-  Eigen::Vector2d step_change_mps(bool of_first) const;
   /// Action of the step on the first or the second body, without what several
   /// contacts of the body cancel and how its deepest intrusion grows.
   ContactAction step_action(bool of_first) const;
@@ -200,9 +198,9 @@ private:
   PlanarForce on_first_;  ///< force in this step, moment about its centre of mass
   /// Impulse on the first body since the last rebound, moment about the origin.
   PlanarForce since_rebound_;
-  PlanarForce impulse_on_first_;   ///< impulse of the contact, moment about its centre of mass
-  double applied_s_ = 0.0;         ///< time for which the force of this step was applied
-  StepImpulse step_first_;         ///< of this step
+  PlanarForce impulse_on_first_;  ///< impulse of the contact, moment about its centre of mass
+  double applied_s_ = 0.0;        ///< time for which the force of this step was applied
+  StepImpulse step_first_;        ///< of this step
   StepImpulse step_second_;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;

@@ -49,14 +49,14 @@ namespace {
 struct WindowSet {
   struct Entry {
     ExposureWindow window;
-    double along = 1.0;  ///< |cosine| of the angle between force and forward axis
-    bool from_behind = false;
+    double from_side = 0.0;  ///< weights of the coefficients of side and rear, see injury.hpp
+    double from_behind = 0.0;
 
     bool exceeds(const Entry& e) const {
       return window.exposure_mps >= e.window.exposure_mps &&
              window.struck_mps >= e.window.struck_mps &&
-             window.intrusion_m >= e.window.intrusion_m && along <= e.along &&
-             (e.from_behind || !from_behind);
+             window.intrusion_m >= e.window.intrusion_m && from_side >= e.from_side &&
+             from_behind <= e.from_behind;
     }
   };
   std::array<Entry, cells_per_window> entries;
@@ -86,8 +86,8 @@ WindowSet::Entry window_entry(const ExposedBody& body, const ExposureCell& first
   const double change_mps = plane_length(w.change_mps.x(), w.change_mps.y());
   const double crush_mps = std::sqrt(std::max(0.0, sum.crush_j) / body.mass_kg);
   w.exposure_mps = std::max(change_mps, std::min(change_mps + sum.cancelled_mps, crush_mps));
-  w.forward = Eigen::Vector2d(static_cast<double>(first.forward_x),
-                              static_cast<double>(first.forward_y));
+  w.forward =
+      Eigen::Vector2d(static_cast<double>(first.forward_x), static_cast<double>(first.forward_y));
   w.road_mps = static_cast<double>(first.road_mps);
   const double path_mps = std::max(sum.path_mps, 1e-12);
   w.edge_m = sum.edge_m2ps / path_mps;
@@ -96,9 +96,13 @@ WindowSet::Entry window_entry(const ExposedBody& body, const ExposureCell& first
     return e;
   }
   w.intrusion_m = mean_intrusion_m(sum.intruded_m3, sum.deepest_m);
-  const double forward = w.change_mps.dot(w.forward);
-  e.along = change_mps > 0.0 ? std::abs(forward) / change_mps : 1.0;
-  e.from_behind = forward > 0.0;
+  if (!(w.exposure_mps > 0.0)) return e;
+  const double directed = change_mps / w.exposure_mps;
+  w.squeezed = 1.0 - directed;
+  if (!(change_mps > 0.0)) return e;
+  const double along = w.change_mps.dot(w.forward) / change_mps;
+  e.from_side = directed * (1.0 - along * along);
+  e.from_behind = along > 0.0 ? directed * along * along : 0.0;
   return e;
 }
 

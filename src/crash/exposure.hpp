@@ -75,6 +75,7 @@ struct ExposureWindow {
   /// Speed at which a hit by a car gives that exposure to a person outside cars.
   double struck_mps = 0.0;
   double edge_m = 0.0;       ///< mean leading edge of what hits the body
+  double squeezed = 0.0;     ///< share of the exposure that exceeds the change of velocity
   double intrusion_m = 0.0;  ///< into its compartment, mean over a person's area
   double road_mps = 0.0;     ///< speed of the body before its first force
   Eigen::Vector2d change_mps = Eigen::Vector2d::Zero();  ///< change of its velocity
@@ -91,7 +92,7 @@ struct ExposedBody {
 /// Intrusion of a crushed volume that is nowhere deeper than `deepest_m`: the mean over the area of
 /// a seated person, m.
 inline double mean_intrusion_m(double intruded_m3, double deepest_m) {
-  constexpr double person_m2 = 0.45 * 0.5;
+  constexpr double person_m2 = 0.45 * 0.65;
   return std::min(intruded_m3 / person_m2, deepest_m);
 }
 
@@ -102,10 +103,11 @@ inline double mean_intrusion_m(double intruded_m3, double deepest_m) {
 ///   E = max(|dV|, min(|dV| + C, sqrt(W/m)))
 ///
 /// so a body that is squeezed between two others is exposed to the speed that its crush on each
-/// side stands for. Of windows with the same begin those are left out that another exceeds in every
-/// quantity that harm depends on, in the sense that the risk of injury cannot be higher. Every
-/// window of the first cells of a record remains one when cells are added, or is exceeded.
-/// Linear in the number of cells; allocates only beyond the capacity of `windows`.
+/// side stands for. A window begins with a force, or ends with one at its full length. Of windows
+/// with the same begin those are left out that another exceeds in every quantity that harm depends
+/// on, in the sense that the risk of injury cannot be higher. Every window of the first cells of a
+/// record remains one when cells are added, or is exceeded. Linear in the number of cells;
+/// allocates only beyond the capacity of `windows`.
 void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
                   std::vector<ExposureWindow>& windows);
 

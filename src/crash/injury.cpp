@@ -75,7 +75,8 @@ double direction_coefficient(const OccupantCurve& curve, double pdof_deg) {
 
 double occupant_risk(const OccupantCurve& curve, const Exposure& e) {
   Argument z;
-  z.at_zero = curve.intercept + direction_coefficient(curve, e.pdof_deg);
+  z.at_zero = curve.intercept +
+              (1.0 - std::clamp(e.squeezed, 0.0, 1.0)) * direction_coefficient(curve, e.pdof_deg);
   z.gain = curve.per_mps * std::max(e.delta_v_mps, 0.0) +
            intrusion_gain_per_m * std::max(e.intrusion_m, 0.0);
   return risk_over_zero(z);

@@ -57,11 +57,14 @@ double motion_end_s(const SceneContact& contact) {
 }
 
 /// Merges the later contact of a body into the earlier one. The direction of force stays that of
-/// the earlier one.
+/// the earlier one, and so does delta-v where the later contact reduces it: a tail that swings
+/// back.
 void merge_body(const BodyContact& later, BodyContact& whole) {
-  whole.impulse_ns += later.impulse_ns;
-  whole.delta_v_mps += later.delta_v_mps;
-  whole.delta_yaw_rate_radps += later.delta_yaw_rate_radps;
+  const Vector3d sum = whole.delta_v_mps + later.delta_v_mps;
+  if (sum.squaredNorm() > whole.delta_v_mps.squaredNorm()) {
+    whole.delta_v_mps = sum;
+    whole.delta_yaw_rate_radps += later.delta_yaw_rate_radps;
+  }
   whole.after = later.after;
   whole.crush_depth_m = std::max(whole.crush_depth_m, later.crush_depth_m);
   whole.crush_energy_j += later.crush_energy_j;
@@ -71,6 +74,8 @@ void merge_body(const BodyContact& later, BodyContact& whole) {
 
 /// Merges a later contact of the same bodies, which begins `later_s` after the earlier one.
 void merge_outcome(const ContactOutcome& later, double later_s, ContactOutcome& whole) {
+  whole.steps += later.steps;
+  whole.pieces += later.pieces;
   whole.dissipated_j += later.dissipated_j;
   whole.friction_j += later.friction_j;
   merge_body(later.a, whole.a);

@@ -39,9 +39,12 @@ struct SceneOptions {
   AfterContact after = AfterContact::brakes;  ///< wheels of all bodies after their first contact
   double grip = 0.7;                          ///< friction of tyres on the road
   View<const Area> drivable;                  ///< drivable areas; empty: everywhere
-  double off_road_grip = 0.7;    ///< friction of tyres while the centre of mass is off the road
-  double sliding_grip = 0.5;     ///< upper bound of the friction of bodies without turning wheels
-  double rolling_step_s = 0.02;  ///< longest step without contact
+  double off_road_grip = 0.7;  ///< friction of tyres while the centre of mass is off the road
+  double sliding_grip = 0.5;   ///< upper bound of the friction of bodies without turning wheels
+  /// Drivers follow their plans less and less until contacts have changed their velocity by this
+  /// sum, m/s; 0: not after the first force.
+  double plan_ends_mps = 1.0;
+  double rolling_step_s = 0.02;       ///< longest step without contact
   double after_last_contact_s = 3.0;  ///< the scene ends this long after the last force
   double until_s = 0.0;               ///< but not before this time while a body moves
   double longest_s = 30.0;            ///< and at the latest this long after its start
@@ -91,7 +94,8 @@ public:
   static constexpr std::size_t most_pairs = 64;     ///< pairs in contact; further ones do not act
   static constexpr std::size_t most_at_once = 40;   ///< open contacts; further ones open later
   static constexpr std::size_t most_near = 32;      ///< near bodies listed for each body
-  static constexpr std::size_t most_recorded = most_pairs + 1;  ///< bodies whose exposure is recorded
+  static constexpr std::size_t most_recorded =
+      most_pairs + 1;  ///< bodies whose exposure is recorded
 
   /// Allocates room for scenes with up to `bodies` bodies of up to `pieces` outline pieces each.
   void prepare(std::size_t bodies, std::size_t pieces);
@@ -120,6 +124,8 @@ public:
   const ContactRun& live(std::size_t k) const { return runs_[active_[k]]; }
   double now_s() const noexcept { return now_s_; }
   const PlanarBody& body(std::size_t i) const { return memory_.bodies[i].motion; }
+  /// Returns true if a contact force acted on it in the last step.
+  bool pressed(std::size_t i) const { return members_[i].action.path_mps > 0.0; }
   /// Returns true if a body of the chain has contacted it.
   bool touched(std::size_t i) const { return members_[i].state >= State::free; }
   /// Present pose of the body origin.
@@ -174,16 +180,16 @@ private:
   struct Member {
     State state = State::fixed;
     bool in_chain = false;
-    bool pressed = false;       ///< a contact force acted in this step
+    bool pressed = false;            ///< a contact force acted in this step
     std::size_t record = no_record;  ///< index in `records_`
     ExposureCell state_before;       ///< before the contact forces of this step
     ContactAction action;            ///< of all contacts in this step
     double deepest_m = 0.0;          ///< deepest intrusion so far
     double changed_mps = 0.0;        ///< sum of the changes of velocity by contacts so far
-    std::uint8_t damaged = 0;  ///< damaged wheels, see `wheels_after`
-    Pose pose;                 ///< pose at its first contact, or of a fixed body
-    PlanarBody start;          ///< planar state at that time
-    double radius_m = 0.0;     ///< of the bounding circle about the centre of mass
+    std::uint8_t damaged = 0;        ///< damaged wheels, see `wheels_after`
+    Pose pose;                       ///< pose at its first contact, or of a fixed body
+    PlanarBody start;                ///< planar state at that time
+    double radius_m = 0.0;           ///< of the bounding circle about the centre of mass
     /// Centre of the outlines' bounding box relative to the centre of mass, body axes, m.
     double box_x = 0.0;
     double box_y = 0.0;
@@ -233,6 +239,8 @@ private:
   void apply_contact_forces(double step_s);
   void record_actions(double step_s);
   double grip_of(std::size_t i) const;
+  double plan_share(double changed_mps) const;
+  void follow_plan(std::size_t i, double share, double step_s);
   void apply_road_forces(std::size_t i, double step_s);
   void stop_resting_bodies();
   void step();

@@ -29,7 +29,9 @@ double surface_area_m2(const TriangleMesh& mesh) {
 double max_energy_j(const Scene& scene, const Body& body, const Motion& motion) {
   if (!std::isfinite(body.mass_kg)) return 0.0;
   const MotionBound bound = motion.bound(0.0, scene.slice_s.back() + SceneOptions{}.longest_s);
-  const double speed = slack * (bound.speed_mps + bound.angular_radps * body.radius_m);
+  // A body that is touched lightly goes on with the accelerations of its plan.
+  const double speed = slack * (bound.speed_mps + bound.angular_radps * body.radius_m +
+                                2.0 * SceneOptions{}.plan_ends_mps);
   const double spin = bound.angular_radps;
   return slack * 0.5 * (body.mass_kg * speed * speed + body.vehicle.yaw_inertia_kgm2 * spin * spin);
 }

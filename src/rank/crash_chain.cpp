@@ -74,6 +74,7 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
   first_closing_mps_ = first.closing_speed_mps;
   first_closing_energy_j_ = first.closing_energy_j;
   begin_s_ = first.time_of_impact_s;
+  origin_m_ = first.point_m.head<2>();
   bodies_.clear();
   actors_.clear();
   const auto add = [&](std::size_t index, std::size_t number, const Vehicle& vehicle,
@@ -154,6 +155,43 @@ void CrashChain::finish() {
   }
 }
 
+void CrashChain::finish_recording(std::vector<BodyMotion>& motion) {
+  std::vector<std::size_t> place(actors_.size(), actors_.size());
+  const auto add = [&](BodyMotion& to, double time_s, const PlanarBody& body, bool pressed) {
+    to.t_s.push_back(time_s);
+    to.x_m.push_back(origin_m_.x() + body.x);
+    to.y_m.push_back(origin_m_.y() + body.y);
+    to.yaw_rad.push_back(std::atan2(body.sine, body.cosine));
+    to.vx_mps.push_back(body.vx);
+    to.vy_mps.push_back(body.vy);
+    to.yaw_rate_radps.push_back(body.spin);
+    to.pressed.push_back(pressed ? 1 : 0);
+  };
+  bool going = true;
+  while (going) {
+    const double before_s = run_.now_s();
+    going = run_.advance(1);
+    for (std::size_t i = 0; i < actors_.size(); ++i) {
+      if (!run_.touched(i)) continue;
+      if (place[i] == actors_.size()) {
+        place[i] = motion.size();
+        motion.emplace_back();
+        motion.back().body = actors_[i];
+        ContactBody planned;
+        planned.vehicle = bodies_[i].vehicle;
+        bodies_[i].plan->state_at(before_s, planned.pose, planned.velocity);
+        planned.pose.translation += bodies_[i].shift_m;
+        add(motion.back(), before_s,
+            make_planar(planned, Vector3d(origin_m_.x(), origin_m_.y(), 0.0)), false);
+      }
+      add(motion[place[i]], run_.now_s(), run_.body(i), run_.pressed(i));
+    }
+  }
+  static_assert(ego_body + 1 == 0);
+  std::sort(motion.begin(), motion.end(),
+            [](const BodyMotion& p, const BodyMotion& q) { return p.body + 1 < q.body + 1; });
+}
+
 ContactEffect CrashChain::effect(std::size_t index) const {
   const View<const SceneContact> all = contacts();
   const SceneContact& contact = all[index];
@@ -164,9 +202,9 @@ ContactEffect CrashChain::effect(std::size_t index) const {
   });
   ContactEffect e;
   if (!again) {
-    e.closing_energy_j = closing_energy_j(
-        contact.given_a.vehicle->mass_kg, contact.given_b.vehicle->mass_kg,
-        contact.is_first ? first_closing_mps_ : closing_of(contact).norm());
+    e.closing_energy_j =
+        closing_energy_j(contact.given_a.vehicle->mass_kg, contact.given_b.vehicle->mass_kg,
+                         contact.is_first ? first_closing_mps_ : closing_of(contact).norm());
   }
   e.restitution = contact.outcome.restitution;
   e.dissipated_j = contact.outcome.dissipated_j;

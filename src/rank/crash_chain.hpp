@@ -31,6 +31,9 @@ public:
   /// Simulates at most `steps` steps; returns false once all bodies are at rest.
   bool advance(int steps) { return run_.advance(steps); }
   void finish();
+  /// Does the same and records the motion of the bodies that a force acts on, the ego first.
+  /// Allocates.
+  void finish_recording(std::vector<BodyMotion>& motion);
 
   /// Contacts that had a force and have ended.
   View<const SceneContact> contacts() const { return run_.contacts(); }
@@ -63,6 +66,7 @@ private:
   double first_closing_mps_ = 0.0;
   double first_closing_energy_j_ = 0.0;
   double begin_s_ = 0.0;
+  Eigen::Vector2d origin_m_ = Eigen::Vector2d::Zero();
   SceneRun run_;
   std::vector<SceneBody> bodies_;
   std::vector<std::size_t> actors_;  ///< by body of the run: actor index or `ego_body`

@@ -55,6 +55,7 @@ HarmExposure exposure_of(const Scene& scene, std::size_t index, const ExposureWi
   if (window == nullptr) return e;
   e.delta_v_mps = window->exposure_mps;
   e.pdof_deg = pdof_of(*window);
+  e.squeezed = window->squeezed;
   e.closing_speed_mps = window->struck_mps;
   e.leading_edge_m = window->edge_m;
   e.intrusion_m = window->intrusion_m;
@@ -114,10 +115,9 @@ void CrashScore::add_scores(const Scene& scene, const CrashEffects& effects,
   if (row.of_body == nullptr) return;
   for (const CrashEffects::BodyCells& body : effects.bodies) {
     if (body.count == 0) continue;
-    const double weight =
-        row.counts_people
-            ? people_weight(exposure_of(scene, body.body, nullptr), scene.harm.weights)
-            : 1.0;
+    const double weight = row.counts_people ? people_weight(exposure_of(scene, body.body, nullptr),
+                                                            scene.harm.weights)
+                                            : 1.0;
     if (weight == 0.0) continue;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const HarmSample& sample = samples[i];

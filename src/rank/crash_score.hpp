@@ -52,9 +52,8 @@ double max_intrusion_m(const Vehicle& v);
 class WindowReader {
 public:
   /// `is_bound`: what the final simulation may add lowers no number.
-  WindowReader(const Scene& scene, const CrashEffects& effects,
-               const CrashEffects::BodyCells& body, const std::vector<ExposureWindow>& windows,
-               const HarmSample& sample, bool is_bound)
+  WindowReader(const Scene& scene, const CrashEffects& effects, const CrashEffects::BodyCells& body,
+               const std::vector<ExposureWindow>& windows, const HarmSample& sample, bool is_bound)
       : scene_(scene),
         effects_(effects),
         body_(body),

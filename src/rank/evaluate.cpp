@@ -116,15 +116,17 @@ double first_contact_s(const FutureOutcome& outcome) {
   return outcome.collides ? outcome.time_of_impact_s : std::numeric_limits<double>::infinity();
 }
 
-/// How far the plan of the ego is followed: until its first contact or the horizon; time 0 if no
-/// future is known.
-FollowedPlan followed_plan(const Scene& scene, const std::vector<FutureOutcome>& futures) {
+/// How far the plan of the ego is followed; `until_s` gets the times.
+FollowedPlan followed_plan(const Scene& scene, const std::vector<FutureOutcome>& futures,
+                           std::vector<WeightedScore>& until_s) {
   FollowedPlan followed;
+  until_s.clear();
   for (const FutureOutcome& outcome : futures) {
-    const double first = first_contact_s(outcome);
-    followed.longest_s = std::max(followed.longest_s, std::min(first, scene.slice_s.back()));
+    until_s.push_back(
+        {std::min(first_contact_s(outcome), scene.slice_s.back()), outcome.probability});
     followed.touches = followed.touches || outcome.collides;
   }
+  followed.until_s = until_s;
   return followed;
 }
 
@@ -148,7 +150,7 @@ void add_manoeuvre(const Scene& scene, const Candidate& candidate,
   const auto if_finite = [](double number) {
     return std::isfinite(number) ? std::optional<double>(number) : std::nullopt;
   };
-  const FollowedPlan followed = followed_plan(scene, result.futures);
+  const FollowedPlan followed = followed_plan(scene, result.futures, scratch.weighted);
   ManoeuvreFacts facts = evaluate_manoeuvre(scene, candidate, followed, leaving, scratch);
   result.demand = facts.demand;
   result.feasible = facts.feasible;

@@ -48,6 +48,7 @@ Exposure person_exposure(const HarmExposure& body, Person person, const HarmOpti
   e.person = person;
   e.delta_v_mps = body.delta_v_mps * sample.occupant_speed;
   e.pdof_deg = body.pdof_deg;
+  e.squeezed = body.squeezed;
   e.impact_speed_mps =
       std::max(hurting_speed_mps(body.closing_speed_mps), fall_mps) * sample.outside_speed;
   e.leading_edge_m = body.leading_edge_m;

@@ -15,6 +15,33 @@ ManoeuvreDemand demand_until(const Scene& scene, const Candidate& candidate, dou
   return demand_of(candidate, scene.limits, way);
 }
 
+ManoeuvreDemand expected_demand(const Scene& scene, const Candidate& candidate,
+                                View<const WeightedScore> until_s,
+                                const std::optional<RoadLeaving>& leaving) noexcept {
+  ManoeuvreDemand mean;
+  ManoeuvreDemand demand;
+  double sum = 0.0;
+  for (std::size_t f = 0; f < until_s.size(); ++f) {
+    if (f == 0 || until_s[f].score != until_s[f - 1].score) {
+      demand = demand_until(scene, candidate, until_s[f].score, leaving);
+    }
+    const double before = sum;
+    sum += until_s[f].probability;
+    if (!(sum > 0.0)) continue;
+    // Of equal values the mean is that value.
+    const double share = until_s[f].probability / sum;
+    const auto add = [&](double value, double& to) {
+      to = before > 0.0 ? to + share * (value - to) : value;
+    };
+    add(demand.grip, mean.grip);
+    add(demand.engine, mean.engine);
+    add(demand.brakes, mean.brakes);
+    add(demand.steering, mean.steering);
+    add(demand.steering_rate, mean.steering_rate);
+  }
+  return mean;
+}
+
 double leaving_score(const Scene& scene, const std::optional<RoadLeaving>& leaving,
                      double first_s) noexcept {
   const bool counts = leaving && measure_row(scene.measure).counts_people;
@@ -31,7 +58,7 @@ ManoeuvreFacts evaluate_manoeuvre(const Scene& scene, const Candidate& candidate
                                   const FollowedPlan& followed,
                                   const std::optional<RoadLeaving>& leaving, Scratch& scratch) {
   ManoeuvreFacts facts;
-  facts.demand = demand_until(scene, candidate, followed.longest_s, leaving);
+  facts.demand = expected_demand(scene, candidate, followed.until_s, leaving);
   facts.feasible = is_feasible(candidate, facts.demand);
   facts.clearance = followed.touches
                         ? Clearance{.distance_m = 0.0, .time_gap_s = 0.0}

@@ -7,10 +7,11 @@
 
 namespace crashrank::detail {
 
-/// How far the plan of a candidate is followed.
+/// How far the plan of a candidate is followed: until its first contact or the horizon.
 struct FollowedPlan {
-  double longest_s = 0.0;  ///< until the first contact, in the future in which it is latest
-  bool touches = false;    ///< it has a contact in at least one future
+  /// That time in each future, as `score`, with the probabilities of the futures.
+  View<const WeightedScore> until_s;
+  bool touches = false;  ///< it has a contact in at least one future
 };
 
 /// Results for a candidate that do not depend on its crash.
@@ -27,6 +28,12 @@ struct ManoeuvreFacts {
 ManoeuvreFacts evaluate_manoeuvre(const Scene& scene, const Candidate& candidate,
                                   const FollowedPlan& followed,
                                   const std::optional<RoadLeaving>& leaving, Scratch& scratch);
+
+/// Demand of a plan as far as it is followed in each future, as the mean over the futures: what it
+/// demands after a contact that nearly all futures have hardly counts.
+ManoeuvreDemand expected_demand(const Scene& scene, const Candidate& candidate,
+                                View<const WeightedScore> until_s,
+                                const std::optional<RoadLeaving>& leaving) noexcept;
 
 /// Demand of a plan until `until_s`.
 ManoeuvreDemand demand_until(const Scene& scene, const Candidate& candidate, double until_s,

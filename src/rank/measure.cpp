@@ -36,16 +36,14 @@ constexpr MeasureRow closing_energy{
     nullptr,
     [](const CrashLimits& u, const HarmWeights&) { return u.contacts * u.closing_energy_j; }};
 
-constexpr MeasureRow delta_v{Measure::delta_v, true, false, nullptr, no_contact, no_side,
-                             [](const WindowReader& body) {
-                               return body.is_ego() ? body.summed_mps() : 0.0;
-                             },
-                             // The speed of the ego is at most that of a body with all the energy;
-                             // reversing it doubles the delta-v.
-                             [](const CrashLimits& u, const HarmWeights&) {
-                               return u.contacts * 2.0 *
-                                      std::sqrt(2.0 * u.energy_j / u.ego_mass_kg);
-                             }};
+constexpr MeasureRow delta_v{
+    Measure::delta_v, true, false, nullptr, no_contact, no_side,
+    [](const WindowReader& body) { return body.is_ego() ? body.summed_mps() : 0.0; },
+    // The speed of the ego is at most that of a body with all the energy;
+    // reversing it doubles the delta-v.
+    [](const CrashLimits& u, const HarmWeights&) {
+      return u.contacts * 2.0 * std::sqrt(2.0 * u.energy_j / u.ego_mass_kg);
+    }};
 
 constexpr MeasureRow energy{Measure::energy,
                             true,
@@ -66,21 +64,20 @@ constexpr MeasureRow intrusion{
     [](const WindowReader& body) { return body.intrusion_m(); },
     [](const CrashLimits& u, const HarmWeights&) { return u.contacts * 2.0 * u.intrusion_m; }};
 
-constexpr MeasureRow harm{
-    Measure::harm,
-    true,
-    true,
-    nullptr,
-    no_contact,
-    [](const SideEffect& side, const HarmWeights& weights) {
-      HarmExposure crushed;
-      crushed.crush_energy_j = side.crush_j;
-      return property_harm(crushed, weights);
-    },
-    [](const WindowReader& body) { return body.risk(); },
-    [](const CrashLimits& u, const HarmWeights& weights) {
-      return u.people + weights.property_per_mj * 1e-6 * u.energy_j;
-    }};
+constexpr MeasureRow harm{Measure::harm,
+                          true,
+                          true,
+                          nullptr,
+                          no_contact,
+                          [](const SideEffect& side, const HarmWeights& weights) {
+                            HarmExposure crushed;
+                            crushed.crush_energy_j = side.crush_j;
+                            return property_harm(crushed, weights);
+                          },
+                          [](const WindowReader& body) { return body.risk(); },
+                          [](const CrashLimits& u, const HarmWeights& weights) {
+                            return u.people + weights.property_per_mj * 1e-6 * u.energy_j;
+                          }};
 
 constexpr std::array<MeasureRow, 7> rows{polygons,  area, closing_energy, delta_v, energy,
                                          intrusion, harm};

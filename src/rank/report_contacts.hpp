@@ -35,9 +35,9 @@ struct ReportedContact {
 };
 
 /// Adds the contacts of a finished simulation to a result without any, with their effects on both
-/// bodies. `first` is the first contact and `order` that of CrashChain::effects. Returns the place of each
-/// contact, in that order. `plans` gets the poses at which damage is to be evaluated, of the
-/// contacts of the result and then of the further ones.
+/// bodies. `first` is the first contact and `order` that of CrashChain::effects. Returns the place
+/// of each contact, in that order. `plans` gets the poses at which damage is to be evaluated, of
+/// the contacts of the result and then of the further ones.
 std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChain& chain,
                                              const Touch& first,
                                              const std::vector<std::size_t>& order,

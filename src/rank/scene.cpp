@@ -205,6 +205,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
                  scene.ego.vehicle.wheelbase_m > 0.0 ? scene.ego.vehicle.rear_axle_x_m
                                                      : std::numeric_limits<double>::quiet_NaN());
   scene.infeasible = options.infeasible;
+  scene.records_motion = options.records_motion;
   scene.road = scenario.road;
   scene.grip = scenario.grip;
   scene.ego.occupants = scenario.ego.occupants;

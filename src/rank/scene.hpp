@@ -79,6 +79,7 @@ struct Scene {
   std::vector<HarmSample> samples;  ///< further samples of the unknown parameters; may be empty
   EgoLimits limits;
   Infeasible infeasible = Infeasible::demote;
+  bool records_motion = false;
   Road road;
   double grip = 0.8;  ///< friction of the tyres on the road
   PlanTrajectories trajectories;

@@ -33,9 +33,13 @@ void add_grazes(const Scene& scene, const Scratch& scratch, std::size_t future,
 /// Simulates the scene that follows from a first contact, in one future and one sample.
 void simulate_chain(const Scene& scene, const Motion& ego, std::size_t future, const Contact& first,
                     const HarmSample& sample, Scratch& scratch, RankWork& work,
-                    CrashEffects& effects) {
+                    CrashEffects& effects, std::vector<BodyMotion>* motion = nullptr) {
   scratch.chain.begin(scene, ego, future, first, sample);
-  scratch.chain.finish();
+  if (motion != nullptr) {
+    scratch.chain.finish_recording(*motion);
+  } else {
+    scratch.chain.finish();
+  }
   work.crash_steps += scratch.chain.run().steps();
   work.crash_pieces += scratch.chain.run().work();
   scratch.chain.mark_relevant_plans(scene, scratch.relevant);
@@ -64,7 +68,9 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
     found.summary.closing_speed_mps = first.closing_speed_mps;
     found.summary.state = first.state;
     found.effects.emplace_back();
-    simulate_chain(scene, ego, future, first, scene.nominal, scratch, work, found.effects.back());
+    const bool records = scene.records_motion && future == scene.futures.likeliest();
+    simulate_chain(scene, ego, future, first, scene.nominal, scratch, work, found.effects.back(),
+                   records ? &result.motion : nullptr);
     result.crowded = scratch.chain.run().crowded();
     found.summary.contacts = scratch.chain.contacts().size();
     touch.contact.contact_without_force = found.summary.contact_without_force =

@@ -300,10 +300,9 @@ private:
     return fmt::format(
         "<br>exposure m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
         "<br>harm: ego {}, others {}",
-        detail::fixed_text(ego.exposure_mps, 1),
-        detail::fixed_text(others.exposure_mps, 1), detail::fixed_text(ego.crush_m, 2),
-        detail::fixed_text(others.crush_m, 2), detail::harm_text(ego.harm),
-        detail::harm_text(others.harm));
+        detail::fixed_text(ego.exposure_mps, 1), detail::fixed_text(others.exposure_mps, 1),
+        detail::fixed_text(ego.crush_m, 2), detail::fixed_text(others.crush_m, 2),
+        detail::harm_text(ego.harm), detail::harm_text(others.harm));
   }
 
   void candidate(std::size_t place) {

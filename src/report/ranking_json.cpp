@@ -122,6 +122,30 @@ Json people_json(const Scenario& scenario, const CandidateResult& ranked) {
   return people;
 }
 
+/// Simulated motions of the bodies that a contact force acted on.
+Json motion_json(const Scenario& scenario, const CandidateResult& ranked) {
+  constexpr double deg_per_rad = 57.29577951308232;
+  const auto degrees = [](std::vector<double> angles) {
+    for (double& angle : angles) angle *= deg_per_rad;
+    return angles;
+  };
+  Json all = Json::array();
+  for (const BodyMotion& motion : ranked.motion) {
+    Json pressed = Json::array();
+    for (const char one : motion.pressed) pressed.push_back(one != 0);
+    all.push_back({{"body", motion.body == ego_body ? "ego" : scenario.actors[motion.body].name},
+                   {"t_s", motion.t_s},
+                   {"x_m", motion.x_m},
+                   {"y_m", motion.y_m},
+                   {"yaw_deg", degrees(motion.yaw_rad)},
+                   {"vx_mps", motion.vx_mps},
+                   {"vy_mps", motion.vy_mps},
+                   {"yaw_rate_dps", degrees(motion.yaw_rate_radps)},
+                   {"pressed", std::move(pressed)}});
+  }
+  return all;
+}
+
 Json demand_json(const ManoeuvreDemand& demand) {
   return {{"grip", demand.grip},
           {"engine", demand.engine},
@@ -230,6 +254,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
     }
   }
   entry["grazes"] = std::move(grazes);
+  if (result.has_motion) entry["motion"] = motion_json(scenario, ranked);
   entry["origin"] = origin_name(candidate.origin);
   entry["acceleration_mps2"] = candidate.acceleration_mps2;
   entry["curvature_per_m"] = candidate.curvature_per_m;

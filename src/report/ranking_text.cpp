@@ -154,11 +154,13 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
                   result.ranking.begin() + static_cast<std::ptrdiff_t>(shown), overlaps_first)) {
     text += fmt::format("overlaps at start: {}\n", detail::overlap_meaning);
   }
-  text += fmt::format("\n{} of {} {}touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
-                      result.complete ? "" : "are known to ",
-                      simulated ? " Exposure (the greatest change of velocity within 0.3 s) and crush are the ego's."
-                                : " Damage is ego + others.",
-                      result.elapsed_s * 1e3, result.complete ? "" : "; not every score is known");
+  text += fmt::format(
+      "\n{} of {} {}touch nothing.{} Ranked in {:.1f} ms{}.\n", free, all,
+      result.complete ? "" : "are known to ",
+      simulated
+          ? " Exposure (the greatest change of velocity within 0.3 s) and crush are the ego's."
+          : " Damage is ego + others.",
+      result.elapsed_s * 1e3, result.complete ? "" : "; not every score is known");
   if (!result.complete) {
     text += result.proved ? "The first place is proved.\n"
                           : fmt::format("The first place is not proved: {} are in the race.\n",

@@ -113,7 +113,7 @@ bool simulate_contact_on_road(const ContactScene& scene, const DriverAction& act
     const double step_s = contact.run().time_s() - before_s;
     touched = touched || contact.run().presses();
     for (std::size_t k = 0; k < 2 && touched; ++k) {
-      const double change = contact.run().step_change_mps((k == 0) == a_is_first).norm();
+      const double change = contact.run().step_action((k == 0) == a_is_first).path_mps;
       const double middle_s = before_s + 0.5 * step_s;
       if (change > 2.0 * cars[k].grip * test::gravity_mps2 * step_s) {
         bodies[k].road_from_s = middle_s + 0.05;
@@ -185,6 +185,7 @@ TEST(SceneReference, RestPositionsMatchAPlainIntegrator) {
     detail::SceneOptions options;
     options.after = action.after;
     options.grip = action.grip;
+    options.plan_ends_mps = 0.0;
     run.begin({setup.bodies.data(), setup.bodies.size()}, 0, 1, 0.0, scene.point_m, options);
     test::run_to_end(run);
     // Leave out scenes with further contacts or longer sliding contact.
@@ -214,7 +215,7 @@ TEST(SceneReference, RestPositionsMatchAPlainIntegrator) {
                 percentile(*values, 0.5), percentile(*values, 0.9), percentile(*values, 0.95),
                 percentile(*values, 1.0));
   }
-  ASSERT_GT(places.size(), count / 5);
+  ASSERT_GT(places.size(), count / 6);
   EXPECT_LT(percentile(places, 0.5), 0.01);
   EXPECT_LT(percentile(places, 0.95), 0.05);
   EXPECT_LT(percentile(headings, 0.5), 0.1);

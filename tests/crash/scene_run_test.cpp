@@ -61,15 +61,11 @@ TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
         if (first.outcome.steps != alone.steps) return;
         EXPECT_NEAR((first.outcome.a.impulse_ns - alone.a.impulse_ns).norm(), 0.0,
                     1e-3 * closing * scene.a.vehicle->mass_kg);
-        // In longer contacts a scene does not count accelerations that are no larger than those of
-        // braking.
-        constexpr double impact_s = 0.3;
-        if (alone.duration_s > impact_s) return;
         changes.push_back(test::change(first.outcome, alone, closing));
         EXPECT_NEAR(first.outcome.duration_s, alone.duration_s, 1e-3);
       });
   test::print_changes("scene against contact alone", changes);
-  ASSERT_GT(changes.size(), 150U);
+  ASSERT_GT(changes.size(), 100U);
   // Centres of mass have other rounding errors, which may change the rounding of a piece in single
   // precision.
   EXPECT_LT(percentile(changes, 0.99), 1e-12);

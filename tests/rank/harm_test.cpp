@@ -91,47 +91,20 @@ TEST(Harm, StatedOccupantsReplaceTheDefaultNumber) {
   EXPECT_EQ(most_harm(e, options), 1.0);
 }
 
-TEST(Harm, RisksOfSeveralEventsCombineAsProbabilities) {
-  EXPECT_DOUBLE_EQ(combined_risk(0.2, 0.5), 0.6);
-  EXPECT_EQ(combined_risk(0.0, 0.3), 0.3);
-  EXPECT_EQ(combined_risk(0.3, 0.0), 0.3);
-  EXPECT_EQ(combined_risk(1.0, 0.4), 1.0);
-  EXPECT_EQ(combined_risk(0.4, 1.0), 1.0);
-  EXPECT_DOUBLE_EQ(combined_risk(1e-18, 1e-18), 2e-18);
-  constexpr std::uint64_t seed = 32;
-  test::Random random(seed);
-  for (int i = 0; i < 2000; ++i) {
-    double survival = 1.0;
-    double risk = 0.0;
-    for (int event = 0; event < 6; ++event) {
-      const double p = random.uniform(0, 1);
-      const double before = risk;
-      survival *= 1.0 - p;
-      risk = combined_risk(risk, p);
-      ASSERT_GE(risk, std::max(before, p) * (1.0 - 1e-15)) << "seed " << seed << ", case " << i;
-      ASSERT_LE(risk, std::min(1.0, before + p)) << "seed " << seed << ", case " << i;
-    }
-    ASSERT_NEAR(risk, 1.0 - survival, 1e-15) << "seed " << seed << ", case " << i;
-  }
-}
-
-TEST(Harm, ATouchedRiderFallsAtRoadSpeed) {
+TEST(Harm, ARiderFallsAtRoadSpeedAsTheExposureGrows) {
   EXPECT_EQ(fall_speed_mps(20.0, 0.0), 0.0);
-  EXPECT_DOUBLE_EQ(fall_speed_mps(20.0, 0.5), 3.0);
-  EXPECT_DOUBLE_EQ(fall_speed_mps(20.0, 1.0), 6.0);
-  EXPECT_DOUBLE_EQ(fall_speed_mps(20.0, 9.0), 6.0);
+  EXPECT_LT(fall_speed_mps(20.0, 0.5), 0.1);
+  EXPECT_NEAR(fall_speed_mps(20.0, fall_exposure_mps), 6.0 * (1.0 - std::exp(-1.0)), 1e-12);
+  EXPECT_NEAR(fall_speed_mps(20.0, 9.0), 6.0, 1e-9);
   const HarmOptions options;
   for (const BodyKind kind : {BodyKind::motorcycle, BodyKind::bicycle}) {
     HarmExposure e;
     e.kind = kind;
     e.road_speed_mps = 20.0;
     EXPECT_EQ(risk_of(e, options, {}), 0.0);
-    e.delta_v_mps = 1.0;
+    e.delta_v_mps = 3.0;
     const double falls = risk_of(e, options, {});
-    HarmExposure struck = e;
-    struck.road_speed_mps = 0.0;
-    struck.closing_speed_mps = 6.0;
-    EXPECT_EQ(falls, risk_of(struck, options, {}));
+    EXPECT_GT(falls, 0.0);
     e.closing_speed_mps = 5.0;
     EXPECT_EQ(risk_of(e, options, {}), falls);
     e.closing_speed_mps = 9.0;
@@ -143,60 +116,25 @@ TEST(Harm, AToppledPedestrianFallsFromStandingHeight) {
   // A centre of mass 0.9 m high reaches the ground at sqrt(2·g·h).
   EXPECT_NEAR(standing_fall_mps(100.0), std::sqrt(2.0 * 9.81 * 0.9), 0.01);
   EXPECT_EQ(standing_fall_mps(-1.0), 0.0);
-  EXPECT_DOUBLE_EQ(standing_fall_mps(1.0), 0.5 * standing_fall_mps(2.0));
+  EXPECT_LT(standing_fall_mps(1.5), 0.07 * standing_fall_mps(100.0));
   const HarmOptions options;
   HarmExposure walking;
   walking.kind = BodyKind::pedestrian;
   walking.road_speed_mps = 20.0;
   EXPECT_EQ(risk_of(walking, options, {}), 0.0);
-  walking.delta_v_mps = 1.0;
-  HarmExposure struck = walking;
-  struck.delta_v_mps = 0.0;
-  struck.closing_speed_mps = standing_fall_mps(1.0);
-  EXPECT_EQ(risk_of(walking, options, {}), risk_of(struck, options, {}));
+  walking.delta_v_mps = 3.0;
+  EXPECT_GT(risk_of(walking, options, {}), 0.0);
 }
 
-TEST(Harm, AContactWithoutImpulseHarmsNobody) {
-  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, 71.0, 71.0, 0.3), 0.0);
-  EXPECT_DOUBLE_EQ(struck_speed_mps(10.0, 1.0, 75.0, 50.0, 50.0, 0.3), 1.5);
-}
-
-/// In a central impact of free bodies delta-v = (1 + e)·v·M/m: the struck speed is then v.
-TEST(Harm, ACentralImpactStrikesAtItsClosingSpeed) {
-  for (const double restitution : {0.0, 0.1, 0.3, 0.5}) {
-    for (const double closing : {0.5, 5.0, 30.0}) {
-      const double reduced = 75.0 * 1500.0 / 1575.0;
-      const double delta_v = (1.0 + restitution) * closing * reduced / 75.0;
-      EXPECT_NEAR(struck_speed_mps(closing, delta_v, 75.0, reduced, reduced, restitution), closing,
-                  1e-12);
-      // Touched at a lower speed and then accelerated to the same delta-v, as harmful.
-      EXPECT_NEAR(struck_speed_mps(0.1 * closing, delta_v, 75.0, reduced, reduced, restitution),
-                  closing, 1e-12);
-    }
-  }
-}
-
-/// A motorcycle that first strikes a person and then is struck by a car to a delta-v of 7 m/s has
-/// not struck the person at the speed that would take for that: 7·280/59 = 33 m/s.
-TEST(Harm, ALightBodyDoesNotGiveWhatAHeavyOneGives) {
-  const double person = 280.0 * 75.0 / 355.0;
-  const double car = 280.0 * 1500.0 / 1780.0;
-  EXPECT_NEAR(struck_speed_mps(8.0, 7.0, 280.0, person, car, 0.3), 8.0, 1e-12);
-  EXPECT_NEAR(struck_speed_mps(2.0, 7.0, 280.0, person, car, 0.3), 7.0 * 280.0 / car / 1.3, 1e-12);
-}
-
-TEST(Harm, TheStruckSpeedRisesWithClosingSpeedAndDeltaV) {
+TEST(Harm, TheHurtingSpeedRisesAndBecomesTheImpactSpeed) {
+  EXPECT_EQ(hurting_speed_mps(0.0), 0.0);
+  EXPECT_LT(hurting_speed_mps(1.5), 0.3);
+  EXPECT_NEAR(hurting_speed_mps(29.0 / 3.6), 29.0 / 3.6, 0.06);
   double before = 0.0;
-  for (double closing = 0.0; closing < 20.0; closing += 0.25) {
-    const double now = struck_speed_mps(closing, 8.0, 75.0, 70.0, 72.0, 0.2);
-    EXPECT_GE(now, before);
-    before = now;
-  }
-  before = 0.0;
-  for (double delta_v = 0.0; delta_v < 20.0; delta_v += 0.25) {
-    const double now = struck_speed_mps(6.0, delta_v, 75.0, 70.0, 72.0, 0.2);
-    EXPECT_GE(now, before);
-    before = now;
+  for (double v = 0.0; v < 20.0; v += 0.05) {
+    EXPECT_GE(hurting_speed_mps(v), before) << v;
+    EXPECT_LE(hurting_speed_mps(v), v);
+    before = hurting_speed_mps(v);
   }
 }
 

@@ -267,13 +267,5 @@ TEST(Stability, BoundsHoldForAllDirectionsAndFronts) {
   }
 }
 
-TEST(Stability, AGrazedPersonIsStruckAtALowerSpeed) {
-  const double reduced = 75.0 * 1500.0 / 1575.0;
-  const double full = 10.0 * reduced / 75.0;
-  EXPECT_NEAR(struck_speed_mps(10.0, full, 75.0, reduced, reduced, 0.0), 10.0, 1e-12);
-  EXPECT_NEAR(struck_speed_mps(10.0, 0.5 * full, 75.0, reduced, reduced, 0.0), 5.0, 1e-12);
-  EXPECT_EQ(struck_speed_mps(10.0, 0.0, 75.0, reduced, reduced, 0.0), 0.0);
-}
-
 }  // namespace
 }  // namespace crashrank

@@ -211,12 +211,11 @@ TEST(RankingJson, ListsContactsBetweenOthersInTheOrderOfTime) {
   EXPECT_EQ(answer["ranking"][0]["crowded"], false);
 }
 
-TEST(RankingText, ShowsTheLargestDeltaVOfAnEventAndTheDeepestCrush) {
+TEST(RankingText, ShowsTheExposureAndTheDeepestCrush) {
   Told told = by_harm();
   std::vector<Contact>& contacts = told.result.ranking[1].contacts;
   contacts[0].severity.ego.delta_v_mps = contacts[1].severity.ego.delta_v_mps = 11.1;
-  contacts[0].severity.ego.event_delta_v_mps = 17.25;
-  contacts[1].severity.ego.event_delta_v_mps = 14.0;
+  contacts[0].severity.ego.exposure_mps = contacts[1].severity.ego.exposure_mps = 17.25;
   contacts[0].severity.ego.crush_m = 0.12;
   contacts[1].severity.ego.crush_m = 0.34;
   const std::string text = ranking_text(told.scenario, told.models, told.result);
@@ -225,7 +224,7 @@ TEST(RankingText, ShowsTheLargestDeltaVOfAnEventAndTheDeepestCrush) {
   const std::string line = text.substr(row, text.find('\n', row) - row);
   EXPECT_NE(line.find(" 17.2 "), std::string::npos) << line;
   EXPECT_NE(line.find(" 0.34 "), std::string::npos) << line;
-  EXPECT_NE(text.find("event delta-v m/s"), std::string::npos) << text;
+  EXPECT_NE(text.find("exposure m/s"), std::string::npos) << text;
 }
 
 TEST(RankingText, SaysWhomACandidateHitsInAFutureThatIsNotTheLikeliest) {

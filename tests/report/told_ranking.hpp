@@ -99,7 +99,7 @@ struct Told {
     contact.closing_speed_mps = 5.0;
     contact.harm = 0.31;
     contact.outcome_a.delta_v_mps = 1.5;
-    contact.outcome_a.event_delta_v_mps = 6.25;
+    contact.outcome_a.exposure_mps = 6.25;
     contact.outcome_b.delta_v_mps = 3.5;
     contact.outcome_b.harm = 0.31;
     contact.damage_a = result.ranking[1].contacts[0].other;

@@ -87,7 +87,10 @@ inline constexpr double intrusion_gain_per_m = 4.62098;
 struct Exposure {
   Person person = Person::occupant;  ///< kind of person
   double delta_v_mps = 0.0;          ///< delta-v of the occupant's vehicle, magnitude, m/s
-  double pdof_deg = 0.0;          ///< direction the force comes from, degrees clockwise from ahead
+  double pdof_deg = 0.0;  ///< direction the force comes from, degrees clockwise from ahead
+  /// Share in [0, 1] of the delta-v that is crush between several bodies. It has no direction and
+  /// counts as from ahead.
+  double squeezed = 0.0;
   double impact_speed_mps = 0.0;  ///< closing speed, for people outside cars, m/s
   /// Height of the leading edge of the striking vehicle, m; 0.75 is a car's, 1.09 a pickup's.
   double leading_edge_m = 0.75;

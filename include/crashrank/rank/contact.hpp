@@ -130,6 +130,20 @@ struct FurtherContact {
   BodyDamage damage_b;             ///< triangles of b
 };
 
+/// Simulated motion of the centre of mass of a body that contact forces acted on, from its state
+/// before the first force to the end of the simulation. World axes; all members have one length.
+struct BodyMotion {
+  std::size_t body = ego_body;  ///< `ego_body`, or an index into Scenario::actors
+  std::vector<double> t_s;      ///< from the decision, rising
+  std::vector<double> x_m;
+  std::vector<double> y_m;
+  std::vector<double> yaw_rad;  ///< heading, left positive, from x
+  std::vector<double> vx_mps;
+  std::vector<double> vy_mps;
+  std::vector<double> yaw_rate_radps;
+  std::vector<char> pressed;  ///< 1: a contact force acted since the time before
+};
+
 /// An approach within the tolerance without intersection.
 struct Graze {
   std::size_t actor = 0;  ///< index into Scenario::actors

@@ -57,7 +57,8 @@ struct RankOptions {
   /// errors, 1 to `max_sampled_futures`.
   std::size_t sampled_futures = 64;
   Infeasible infeasible = Infeasible::demote;  ///< of candidates that the ego cannot follow
-  ImpactOptions impact;                        ///< `start_is_apart` is set internally
+  bool records_motion = false;  ///< fills in CandidateResult::motion; `Ranker` ignores it
+  ImpactOptions impact;         ///< `start_is_apart` is set internally
   /// Called before each simulation and after each candidate with the number of candidates evaluated
   /// and of all, by all workers, also concurrently; must return within microseconds and not throw.
   /// Returning false cancels the ranking: candidates not evaluated yet get bounds on their scores.
@@ -155,6 +156,9 @@ struct CandidateResult {
   std::vector<Contact> contacts;
   /// Contacts between other bodies in the same scene, in the order of their begin times.
   std::vector<FurtherContact> further;
+  /// Simulated motion in the likeliest future of every body that a contact force acted on, the ego
+  /// first, if RankOptions::records_motion asks for it.
+  std::vector<BodyMotion> motion;
   /// The simulation reached a limit: 64 contacts in all, 64 pairs of bodies, 40 simultaneous
   /// contacts, for each body the 32 nearest within 5 m.
   bool crowded = false;
@@ -307,6 +311,7 @@ struct RankResult {
   std::vector<Candidate> candidates;           ///< in the order of `make_candidates`
   std::vector<CandidateResult> ranking;        ///< every candidate except dropped ones, best first
   Infeasible infeasible = Infeasible::demote;  ///< as requested
+  bool has_motion = false;                     ///< RankOptions::records_motion was requested
   /// indices into `candidates`, ascending; Infeasible::drop only
   std::vector<std::size_t> dropped;
   bool complete = true;  ///< every score is known

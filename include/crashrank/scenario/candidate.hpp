@@ -13,7 +13,8 @@
 
 namespace crashrank {
 
-/// Largest ratio of what a manoeuvre requires to what the vehicle can do, until the first contact.
+/// Largest ratio of what a manoeuvre requires to what the vehicle can do, until the first contact;
+/// the mean over futures with different ones, by probability.
 /// Above 1 the vehicle cannot follow it: the simulation is then not realistic.
 struct ManoeuvreDemand {
   /// Horizontal acceleration of the centre of mass over grip times standard gravity, beside the

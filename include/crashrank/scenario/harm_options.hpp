@@ -57,10 +57,7 @@ struct HarmOptions {
   /// What undamaged wheels of all vehicles do after a contact. `brakes`: with 0.45 of the grip,
   /// the ego with more where its manoeuvre did. Bodies without wheels slide.
   AfterContact after_contact = AfterContact::brakes;
-  /// Least share of the closing speed at which a pedestrian, cyclist or motorcyclist is struck by
-  /// whatever touches them, [0, 1]. The forces of the contact law know little of mirrors, arms and
-  /// handlebars. A design choice.
-  double least_struck_share = 0.3;
+  double least_struck_share = 0.3;  ///< of earlier versions, [0, 1]; without effect
   bool intervals = true;  ///< evaluate the samples: eight simulations a crash in place of one
   /// Age and sex of all pedestrians, for the curves that have coefficients of them; empty: the mean
   /// person of the curve's sample.

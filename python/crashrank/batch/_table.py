@@ -24,11 +24,10 @@ if TYPE_CHECKING:
 CONTACT_COLUMNS: tuple[tuple[str, str, tuple[str | int, ...]], ...] = (
     ("first", "string", ("bodies", 0)),
     ("second", "string", ("bodies", 1)),
-    ("event", "int64", ("event",)),
     ("time_of_impact_s", "float64", ("time_of_impact_s",)),
     ("closing_speed_mps", "float64", ("closing_speed_mps",)),
-    ("event_delta_v_first_mps", "float64", ("severity", "a", "event_delta_v_mps")),
-    ("event_delta_v_second_mps", "float64", ("severity", "b", "event_delta_v_mps")),
+    ("exposure_first_mps", "float64", ("severity", "a", "exposure_mps")),
+    ("exposure_second_mps", "float64", ("severity", "b", "exposure_mps")),
     ("pdof_first_deg", "float64", ("severity", "a", "pdof_deg")),
     ("pdof_second_deg", "float64", ("severity", "b", "pdof_deg")),
 )
@@ -203,9 +202,8 @@ def rank_row(
 
 def _candidate(document: dict[str, Any]) -> dict[str, Any]:
     row = {name: value_at(document, path) for name, _, path in COLUMNS}
-    # Contacts between others belong to no event of the ego.
     row["contacts"] = [
-        {name: value_at({"event": None} | contact, path) for name, _, path in CONTACT_COLUMNS}
+        {name: value_at(contact, path) for name, _, path in CONTACT_COLUMNS}
         for contact in document["contacts"]
     ]
     return row

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "rank/scene.hpp"
 #include "rank/crash_score.hpp"
+#include "rank/scene.hpp"
 
 namespace crashrank::detail {
 

@@ -65,8 +65,9 @@ bool settle_without_contact(const RefineQuery& q, CandidateState& state, Scratch
 double estimate_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit,
                    double upper_bound, Scratch& scratch) {
   if (scored_by_damage(q.scene.measure)) return upper_bound;
-  const double estimate = estimate_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
-                                         first_contact_of(q, ego, hit), scratch.effects, scratch.score);
+  const double estimate =
+      estimate_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
+                     first_contact_of(q, ego, hit), scratch.effects, scratch.score);
   const bool says_nothing = !(estimate > 0.0) && !measure_row(q.scene.measure).counts_people;
   return says_nothing ? upper_bound : estimate;
 }
@@ -105,7 +106,6 @@ void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& eg
     double until_s = no_contact_s;
     if (touches) until_s = state.first_hits[future.first].impact.time_s;
     followed.touches = followed.touches || touches;
-    followed.longest_s = std::max(followed.longest_s, touches ? until_s : q.scene.slice_s.back());
     const double left = leaving_score(q.scene, leaving, until_s);
     state.result.leaves_road =
         state.result.leaves_road || (leaving.has_value() && leaving->time_s <= until_s);
@@ -147,7 +147,8 @@ bool find_nearby(const RefineQuery& q, CandidateState& state, Scratch& scratch, 
   state.leaving = leaving;
   if (!comes_near(q, scratch, work)) {
     state.result.leaves_road = leaving.has_value();
-    if (!fill_manoeuvre(q, {horizon_s, false}, state, scratch) ||
+    const WeightedScore whole{horizon_s, 1.0};
+    if (!fill_manoeuvre(q, {{&whole, 1}, false}, state, scratch) ||
         !settle_without_contact(q, state, scratch)) {
       return false;
     }
@@ -192,6 +193,15 @@ bool search_contacts(const RefineQuery& q, CandidateState& state, Scratch& scrat
   }
   state.result.stage = RankStage::searched;
   state.result.collision_probability = probability;
+  scratch.weighted.clear();
+  for (std::size_t f = 0; f < futures.size(); ++f) {
+    const FutureScore& future = state.futures[f];
+    const double until_s = future.first == FutureScore::no_contact
+                               ? q.scene.slice_s.back()
+                               : state.first_hits[future.first].impact.time_s;
+    scratch.weighted.push_back({until_s, futures.probability(f)});
+  }
+  followed.until_s = scratch.weighted;
   if (!fill_manoeuvre(q, followed, state, scratch)) return restore();
   combine(q, state, scratch);
   return true;

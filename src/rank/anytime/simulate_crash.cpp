@@ -91,8 +91,8 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
       bounded_contacts = chain.contacts().size();
       bounded_period = period;
       chain.effects(scratch.effects, scratch.order);
-      future.lower_bound = std::max(
-          future.lower_bound, left + scratch.score.lower_bound(q.scene, scratch.effects));
+      future.lower_bound =
+          std::max(future.lower_bound, left + scratch.score.lower_bound(q.scene, scratch.effects));
       combine(q, state, scratch);
     }
     in_time = !q.deadline.expired();

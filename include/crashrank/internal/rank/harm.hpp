@@ -40,9 +40,10 @@ namespace crashrank {
 struct HarmExposure {
   BodyKind kind = BodyKind::car;   ///< of this body
   bool ego = false;                ///< it is the ego
-  double delta_v_mps = 0.0;        ///< change of its velocity, m/s
+  double delta_v_mps = 0.0;        ///< its exposure, m/s
   double pdof_deg = 0.0;           ///< where the force comes from, degrees clockwise from ahead
-  double closing_speed_mps = 0.0;  ///< from `struck_speed_mps`, for people outside cars, m/s
+  double squeezed = 0.0;           ///< see Exposure::squeezed
+  double closing_speed_mps = 0.0;  ///< for people outside cars, m/s; see ExposureWindow::struck_mps
   double leading_edge_m = 0.75;    ///< of the other body, m
   double crush_energy_j = 0.0;     ///< turned into its damage, J
   /// Deepest intrusion into its passenger compartment, m, >= 0; kinds without one have no effect.
@@ -68,8 +69,8 @@ inline constexpr double fall_exposure_mps = 1.5;
 CRASHRANK_API double fall_speed_mps(double road_speed_mps, double exposure_mps) noexcept;
 
 /// Exposure of a person on foot around which the person falls, m/s. A design choice: a nudge at
-/// walking pace, 1.5 m/s, makes 6 % fall.
-inline constexpr double topple_exposure_mps = 3.0;
+/// walking pace, 1.5 m/s, makes 4 % fall.
+inline constexpr double topple_exposure_mps = 3.3;
 
 /// Impact speed equivalent to the fall of a person on foot, m/s: 4.2, the speed at which a centre
 /// of mass 0.9 m high reaches the ground, times 1 - exp(-(E/topple_exposure_mps)^4). Negative
@@ -79,10 +80,10 @@ CRASHRANK_API double standing_fall_mps(double exposure_mps) noexcept;
 /// Speed around which impacts begin to injure people outside cars seriously, m/s: nobody is
 /// seriously hurt by walking into a parked car, which a logistic curve fitted to collisions at 20
 /// to 80 km/h does not know. A design choice.
-inline constexpr double walking_mps = 3.3;
+inline constexpr double walking_mps = 3.6;
 
 /// Impact speed at which the curves of people outside cars are read, m/s: the speed times
-/// 1 - exp(-(v/walking_mps)²), which leaves 99.7 % of 29 km/h and 19 % of 1.5 m/s.
+/// 1 - exp(-(v/walking_mps)²), which leaves 99.3 % of 29 km/h and 16 % of 1.5 m/s.
 CRASHRANK_API double hurting_speed_mps(double speed_mps) noexcept;
 
 /// Harm to the people in or on one body in one contact: their number times the risk times their
