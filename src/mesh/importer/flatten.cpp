@@ -148,34 +148,6 @@ private:
 
 }  // namespace
 
-Result<std::uint64_t> clear_bad_faces(aiScene& scene, const Request& request) {
-  std::uint64_t cleared = 0;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    if (!sound(scene, m) || scene.mMeshes[m]->mFaces == nullptr) continue;
-    aiMesh& mesh = *scene.mMeshes[m];
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices > request.polygon_corners) {
-        Error error =
-            make_error(ErrorCode::limit_exceeded,
-                       "a polygon of " + std::to_string(face.mNumIndices) + " corners, more than " +
-                           std::to_string(request.polygon_corners),
-                       "triangulate the mesh before exporting it");
-        error.place = "mesh '" + text_of(mesh.mName) + "', face " + std::to_string(f);
-        return error;
-      }
-      bool inside = face.mIndices != nullptr && mesh.mVertices != nullptr;
-      for (unsigned c = 0; inside && c < face.mNumIndices; ++c) {
-        inside = face.mIndices[c] < mesh.mNumVertices;
-      }
-      if (inside) continue;
-      if (face.mNumIndices >= 3) ++cleared;
-      face.mNumIndices = 0;
-    }
-  }
-  return cleared;
-}
-
 Result<TriangleMesh> flatten(const aiScene& scene, const Request& request, double metres_per_unit,
                              const std::string& file_name) {
   const Result<std::vector<Visit>> visits = visit_nodes(scene, request);

@@ -1,6 +1,7 @@
 #include "mesh/importer/parse.hpp"
 
 #include "mesh/importer/content.hpp"
+#include "mesh/importer/faces.hpp"
 #include "mesh/importer/flatten.hpp"
 #include "mesh/importer/folder_io.hpp"
 #include "mesh/importer/gltf_count.hpp"
@@ -11,7 +12,6 @@
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/mesh.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
@@ -203,9 +203,7 @@ Result<Parsed> parse(const Request& request) {
   Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
   if (!dropped) return dropped.error();
   *dropped += left_out;
-  if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr) {
-    return parser_error(importer.GetErrorString(), files, request);
-  }
+  const CrossingPolygons crossing = triangulate_faces(*scene);
   undo_axis_change(*scene, request);
   const Result<double> unit = metres_per_unit(*scene, request);
   if (!unit) return unit.error();
@@ -229,6 +227,13 @@ Result<Parsed> parse(const Request& request) {
                               "; triangles are numbered without");
   }
   if (!holes.empty()) parsed.warnings.push_back(holes);
+  if (crossing.count > 0) {
+    parsed.warnings.push_back(
+        (crossing.count == 1
+             ? "1 polygon crosses itself: "
+             : std::to_string(crossing.count) + " polygons cross themselves, the first is ") +
+        crossing.first + "; its surface is a guess: export triangles");
+  }
   if (request.extension == "stl") {
     std::string cut = describe_stl_cut(STDIN_FILENO);
     if (!cut.empty()) parsed.warnings.push_back(std::move(cut));
