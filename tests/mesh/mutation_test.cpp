@@ -76,6 +76,7 @@ TEST(Mutation, DamagedFilesAreRefusedOrGiveASoundMesh) {
   const test::ScratchDir dir;
   std::size_t loaded = 0;
   std::size_t crashed = 0;
+  std::string names;
   for (int round = 0; round < rounds; ++round) {
     std::mt19937_64 random(1000 + static_cast<unsigned>(round));
     for (const auto& [name, bytes] : files) {
@@ -87,11 +88,14 @@ TEST(Mutation, DamagedFilesAreRefusedOrGiveASoundMesh) {
         continue;
       }
       EXPECT_NE(imported.error().code, ErrorCode::internal) << imported.error().message();
-      if (imported.error().reason.find("SIG") != std::string::npos) ++crashed;
+      if (imported.error().reason.find("SIG") != std::string::npos) {
+        ++crashed;
+        names += " " + name;
+      }
     }
   }
   std::cout << files.size() * static_cast<std::size_t>(rounds) << " damaged files: " << loaded
-            << " loaded, " << crashed << " crashed the parser\n";
+            << " loaded, " << crashed << " crashed the parser:" << names << '\n';
   EXPECT_GT(loaded, 0U);
 }
 

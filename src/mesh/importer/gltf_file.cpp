@@ -1,6 +1,3 @@
-#include <fstream>  // for writers of tinygltf, which has them compiled without including it
-
-#define TINYGLTF_IMPLEMENTATION
 #include "mesh/importer/gltf_file.hpp"
 
 #include "mesh/importer/content.hpp"
@@ -24,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* meshopt_name = "EXT_meshopt_compression";
-constexpr const char* draco_name = "KHR_draco_mesh_compression";
+constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 constexpr const char* data_header = "data:application/octet-stream;base64,";
 
 std::string numbered(const char* what, std::size_t number) {
@@ -160,7 +157,7 @@ void leave_out_what_no_surface_needs(Json& root) {
   }
   each(member(root, "meshes"), [](Json& mesh) {
     each(member(mesh, "primitives"), [](Json& primitive) {
-      if (extension(primitive, draco_name) != nullptr) primitive.erase("indices");
+      if (extension(primitive, draco_extension) != nullptr) primitive.erase("indices");
     });
   });
 }
