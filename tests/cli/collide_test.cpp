@@ -113,7 +113,9 @@ TEST(Collide, JsonHasTheContractsShape) {
     EXPECT_EQ(query.at("hash").get<std::string>().size(), 16U);
   }
   EXPECT_EQ(answer["queries"][0]["intersecting"], true);
+  EXPECT_EQ(answer["queries"][0]["state"], "intersecting");
   EXPECT_EQ(answer["queries"][1]["intersecting"], false);
+  EXPECT_EQ(answer["queries"][1]["state"], "separate");
   EXPECT_EQ(answer["queries"][1]["pairs"], 0);
   EXPECT_EQ(answer["queries"][1]["hash"], "e3b0c44298fc1c14");  // of no bytes
   // Queries of a hundred nanoseconds may not tell the two costs apart; one of them is then all.

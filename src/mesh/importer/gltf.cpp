@@ -54,7 +54,7 @@ public:
         accessors_.attribute(primitive, "POSITION", TINYGLTF_TYPE_VEC3);
     if (!base) return base.error();
     base_ = *base;
-    if (const Status read = read_morphs(node, mesh, primitive); !read) return read;
+    if (Status read = read_morphs(node, mesh, primitive); !read) return read;
     joints_.clear();
     return node.skin < 0 ? Status(Success{}) : read_skin(node.skin, primitive);
   }
