@@ -253,7 +253,7 @@ TEST(Collide, TheTableTellsTheModelledTimeBesideTheMeasuredOne) {
   const Boxes boxes;
   const Outcome run = boxes.place.crashrank({"collide", "a.obj", "b.obj", "--pose", half_in});
   ASSERT_EQ(run.code, 0) << run.err;
-  for (const char* word : {"measured us", "Nb Cb + Np Cp us", "Cb =", "Cp =", "yes"}) {
+  for (const char* word : {"measured us", "Nb Cb + Np Cp us", "Cb =", "Cp =", "intersecting"}) {
     EXPECT_NE(run.out.find(word), std::string::npos) << word << "\n" << run.out;
   }
   EXPECT_EQ(run.out.find('\x1b'), std::string::npos);  // no terminal, no colours
