@@ -13,8 +13,9 @@ install(TARGETS crashrank_cli crashrank-import RUNTIME DESTINATION ${package} CO
 find_path(cli_headers CLI/CLI.hpp REQUIRED)
 find_path(json_headers nlohmann/json.hpp REQUIRED)
 find_path(eigen_headers Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
+find_path(tinygltf_headers tiny_gltf.h REQUIRED)
 set(compiled_in "CLI11=${cli_headers}/CLI/CLI.hpp" "nlohmann-json=${json_headers}/nlohmann/json.hpp"
-  "eigen=${eigen_headers}/Eigen/Core")
+  "eigen=${eigen_headers}/Eigen/Core" "tinygltf=${tinygltf_headers}/tiny_gltf.h")
 if(CRASHRANK_THREE_JS)
   list(APPEND compiled_in "three.js=${CRASHRANK_THREE_JS}")
 endif()

@@ -10,8 +10,10 @@
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
+#include "crashrank/collide/body_state.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/internal/report/table.hpp"
 #include "crashrank/model/model.hpp"
 #include "crashrank/tree/build.hpp"
@@ -59,6 +61,32 @@ struct Query {
   Answer answer;  ///< `seconds` is the median of all runs
   double sort_seconds = 0.0;
   std::string hash;  ///< empty with --any, whose pair depends on the tree
+  BodyState state = BodyState::separate;
+};
+
+/// States of queries. The surfaces of the bodies are found when the first query needs them.
+class StateFinder {
+public:
+  StateFinder(const Model& a, const Model& b) : a_(a), b_(b) {}
+
+  BodyState operator()(const Pose& pose, const CollideResult& result) {
+    const bool near =
+        !result.intersecting && boxes_may_touch(a_.tree.nodes[0].box, b_.tree.nodes[0].box,
+                                                box_transform(a_.tree, b_.tree, pose));
+    if (near && !known_) {
+      solid_a_ = make_solid(a_.mesh);
+      solid_b_ = make_solid(b_.mesh);
+      known_ = true;
+    }
+    return body_state(a_, solid_a_, b_, solid_b_, pose, result);
+  }
+
+private:
+  const Model& a_;
+  const Model& b_;
+  Solid solid_a_;
+  Solid solid_b_;
+  bool known_ = false;
 };
 
 double seconds_since(Clock::time_point start) {
@@ -167,6 +195,7 @@ Json to_json(const CollideArguments& options, const Body& a, const Body& b,
     const Query& query = queries[i];
     list.push_back({{"index", i},
                     {"intersecting", query.answer.result.intersecting},
+                    {"state", body_state_name(query.state)},
                     {"pairs", query.answer.result.pairs},
                     {"bv_tests", query.answer.result.work.bv_tests},
                     {"primitive_tests", query.answer.result.work.primitive_tests},
@@ -199,7 +228,7 @@ std::string cost_text(const Cost& cost) {
 std::string to_text(const CollideArguments& options, const std::vector<Query>& queries,
                     const Cost& cost) {
   Table table({{"query", true},
-               {"touch"},
+               {"state"},
                {"pairs", true},
                {"Nb", true},
                {"Np", true},
@@ -208,7 +237,7 @@ std::string to_text(const CollideArguments& options, const std::vector<Query>& q
                {"hash"}});
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Query& query = queries[i];
-    table.add_row({std::to_string(i), query.answer.result.intersecting ? "yes" : "no",
+    table.add_row({std::to_string(i), body_state_name(query.state),
                    std::to_string(query.answer.result.pairs),
                    std::to_string(query.answer.result.work.bv_tests),
                    std::to_string(query.answer.result.work.primitive_tests),
@@ -254,6 +283,7 @@ int run(const CollideArguments& options) {
   if (!engine) return fail(engine.error());
   const Cost cost = measure_cost(*engine, a->model, b->model);
   std::vector<Pair> pairs;
+  StateFinder state(a->model, b->model);
   std::vector<Query> queries;
   queries.reserve(poses->size());
   {
@@ -264,8 +294,9 @@ int run(const CollideArguments& options) {
       return interrupted_after(options, *a, *b, queries, poses->size(), cost);
     });
     for (const Pose& pose : *poses) {
-      const Result<Query> query = ask(*engine, pose, options, pairs);
+      Result<Query> query = ask(*engine, pose, options, pairs);
       if (!query) return fail(query.error());
+      query->state = state(pose, query->answer.result);
       if (pairs_out) write_pairs(*pairs_out, queries.size(), pairs);
       const std::lock_guard<std::mutex> lock(mutex);
       queries.push_back(*query);
@@ -286,7 +317,8 @@ int run(const CollideArguments& options) {
 constexpr const char* collide_epilogue =
     R"(B stands at each pose in A's frame: R = Rz(yaw) Ry(pitch) Rx(roll), then the translation.
 A triangle's number is its place in the file. hash is the first 16 hex digits of SHA-256 over the
-sorted pairs as little-endian int32. seconds runs from the call to all pairs in the buffer, unsorted.
+sorted pairs as little-endian int32. state: separate, intersecting, a_inside_b, b_inside_a, or
+unknown_open: within the bounds of a surface that is not closed. seconds runs from the call to all pairs in the buffer, unsorted.
 
 Examples:
   crashrank collide car.obj truck.glb --pose 4.2,0.3,0,180,0,0

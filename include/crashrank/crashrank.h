@@ -137,6 +137,23 @@ CRASHRANK_API crashrank_status crashrank_collide_any(crashrank_query* query,
                                                      const crashrank_models* models, size_t a,
                                                      size_t b, const double b_in_a[16],
                                                      int32_t* intersecting, crashrank_error* error);
+/// How two bodies stand to each other.
+typedef int32_t crashrank_body_state;
+/// Values of crashrank_body_state.
+enum {
+  CRASHRANK_SEPARATE = 0,      ///< they share no point, and neither lies inside the other
+  CRASHRANK_INTERSECTING = 1,  ///< their surfaces share a point
+  CRASHRANK_A_INSIDE_B = 2,    ///< all of the first lies inside the second, or else a part of it
+  CRASHRANK_B_INSIDE_A = 3,    ///< the other way round
+  CRASHRANK_UNKNOWN_OPEN = 4   ///< a part lies within the bounds of a body that is not closed
+};
+/// The state of model `b` at `b_in_a`. Exact. The first call for a model that comes near another
+/// finds its surfaces, O(n log n), and keeps them in `models`. Otherwise as crashrank_collide_any.
+CRASHRANK_API crashrank_status crashrank_collide_state(crashrank_query* query,
+                                                       const crashrank_models* models, size_t a,
+                                                       size_t b, const double b_in_a[16],
+                                                       crashrank_body_state* state,
+                                                       crashrank_error* error);
 /// All pairs, sorted by a, then b. `pairs` belongs to the query until its next use; not to be read
 /// where `count` is 0. Allocates only to hold more pairs than ever before. Otherwise as
 /// crashrank_collide_any.

@@ -10,6 +10,7 @@
 #include "crashrank/base/result.hpp"
 #include "crashrank/base/version.hpp"
 #include "crashrank/base/view.hpp"
+#include "crashrank/collide/body_state.hpp"
 #include "crashrank/collide/broad_phase.hpp"
 #include "crashrank/collide/collide.hpp"
 #include "crashrank/collide/pair.hpp"

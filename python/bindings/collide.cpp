@@ -3,6 +3,7 @@
 #include "interrupts.hpp"
 #include "model.hpp"
 
+#include "crashrank/collide/body_state.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/dispatch/worker_pool.hpp"
@@ -10,6 +11,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <chrono>
@@ -143,6 +145,30 @@ TouchArray collide_any(const Body& a, const Body& b, const GivenPoses& given,
   return TouchArray(data, {poses.size()}, keeper);
 }
 
+/// The name of the state at each pose.
+std::vector<std::string> collide_state(const Body& a, const Body& b, const GivenPoses& given,
+                                       std::uint32_t workers) {
+  const std::vector<Pose> poses = read_poses(given);
+  std::vector<BodyState> states(poses.size());
+  {
+    const nb::gil_scoped_release unlocked;
+    const Solid solid_a = make_solid(a.model().mesh);
+    const Solid solid_b = make_solid(b.model().mesh);
+    CollideOptions options;
+    options.any = true;
+    run_all_queries(a, b, poses.size(), workers, [&](std::size_t i, Scratch& scratch) {
+      const CollideResult result =
+          collide(a.model(), b.model(), poses[i], scratch.pairs, scratch.workspace, options);
+      states[i] = body_state(a.model(), solid_a, b.model(), solid_b, poses[i], result);
+      return result;
+    });
+  }
+  std::vector<std::string> names;
+  names.reserve(states.size());
+  for (const BodyState state : states) names.emplace_back(body_state_name(state));
+  return names;
+}
+
 /// Pairs of all poses one after the other, each pose's sorted, and where each begins.
 std::pair<PairArray, OffsetArray> collide_all(const Body& a, const Body& b, const GivenPoses& given,
                                               std::uint32_t workers) {
@@ -210,6 +236,8 @@ void bind_queries(nb::module_& module) {
              "Pairs at one pose, sorted.");
   module.def("collide_any", &collide_any, nb::arg("a"), nb::arg("b"), nb::arg("poses").noconvert(),
              nb::arg("workers"), "By pose, whether any two triangles share a point.");
+  module.def("collide_state", &collide_state, nb::arg("a"), nb::arg("b"),
+             nb::arg("poses").noconvert(), nb::arg("workers"), "By pose, the name of the state.");
   module.def("collide_all", &collide_all, nb::arg("a"), nb::arg("b"), nb::arg("poses").noconvert(),
              nb::arg("workers"), "Pairs of all poses, and by pose where they begin.");
   module.def("pairs_hash", &hash_of, nb::arg("pairs").noconvert(),

@@ -17,7 +17,14 @@ from pathlib import Path as _Path
 
 from . import _core
 from ._answer import Answer, AnsweredCandidate
-from ._collide import collide, collide_all, collide_any, pairs_hash, pose_matrix
+from ._collide import (
+    collide,
+    collide_all,
+    collide_any,
+    collide_state,
+    pairs_hash,
+    pose_matrix,
+)
 from ._errors import (
     ArgumentTypeError,
     BadInputError,
@@ -74,6 +81,7 @@ __all__ = [
     "collide",
     "collide_all",
     "collide_any",
+    "collide_state",
     "load_model",
     "pairs_hash",
     "pose_matrix",

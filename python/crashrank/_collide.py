@@ -77,6 +77,33 @@ def collide_any(a: Model, b: Model, poses: ArrayLike, *, workers: int = 1) -> ND
 
 
 @checked_call
+def collide_state(a: Model, b: Model, poses: ArrayLike, *, workers: int = 1) -> list[str]:
+    """Return for each pose how the bodies stand to each other.
+
+    ``"separate"``, ``"intersecting"``, ``"a_inside_b"``, ``"b_inside_a"``, or ``"unknown_open"``
+    where a part of one lies within the bounds of one that is not closed. Exact. The surfaces of
+    both bodies are found once for each call. The interpreter's lock is released. Ctrl-C raises
+    KeyboardInterrupt.
+
+    Parameters
+    ----------
+    a, b : Model
+        The bodies.
+    poses : array_like, shape (N, 4, 4)
+        As in `collide_any`.
+    workers : int
+        As in `collide_any`.
+
+    Returns
+    -------
+    list of str
+    """
+    first, second = _as_model(a, "a"), _as_model(b, "b")
+    count = as_count(workers, "workers", 1, _core.max_workers)
+    return _core.collide_state(first, second, as_poses(poses), count)
+
+
+@checked_call
 def collide_all(
     a: Model, b: Model, poses: ArrayLike, *, workers: int = 1
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:

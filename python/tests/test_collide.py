@@ -36,6 +36,18 @@ def test_hashes_are_those_of_the_command(tmp_path, sedan, pole):
     touching = [query["intersecting"] for query in told["queries"]]
     assert 0 < sum(touching) < len(touching)
     np.testing.assert_array_equal(crashrank.collide_any(sedan, pole, poses), touching)
+    states = [query["state"] for query in told["queries"]]
+    assert crashrank.collide_state(sedan, pole, poses, workers=2) == states
+
+
+def test_states_of_boxes():
+    large, small = box(4.0), box(1.0, (1.5, 1.5, 1.5))
+    poses = np.stack([np.eye(4), np.eye(4)])
+    poses[1, 0, 3] = 50.0
+    assert crashrank.collide_state(large, small, poses) == ["b_inside_a", "separate"]
+    assert crashrank.collide_state(small, large, poses) == ["a_inside_b", "separate"]
+    opened = crashrank.Model(large.vertices, large.faces[:-2])
+    assert crashrank.collide_state(opened, small, poses) == ["unknown_open", "separate"]
 
 
 def separated(p, q):

@@ -4,6 +4,7 @@
 
 #include "crashrank/base/pose.hpp"
 #include "crashrank/base/result.hpp"
+#include "crashrank/collide/body_state.hpp"
 #include "crashrank/collide/pair.hpp"
 #include "crashrank/collide/wide_collide.hpp"
 #include "crashrank/internal/report/escape.hpp"
@@ -17,6 +18,8 @@
 #include <cstring>
 #include <exception>
 #include <initializer_list>
+#include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <utility>
@@ -24,14 +27,31 @@
 
 // What the C interface's names stand for. Both libraries include this: it is compiled into each.
 
+/// The surfaces of a model, found when they are first needed. Safe from any thread.
+class LazySolid {
+public:
+  const crashrank::Solid& of(const crashrank::Model& model) {
+    std::call_once(once_, [&] { solid_ = crashrank::make_solid(model.mesh); });
+    return solid_;
+  }
+
+private:
+  std::once_flag once_;
+  crashrank::Solid solid_;
+};
+
 struct crashrank_models {
   std::vector<crashrank::Model> list;
-  std::vector<crashrank::StatedMass> stated;  ///< by model, in its file
+  std::vector<std::unique_ptr<LazySolid>> solids;  ///< by model
+  std::vector<crashrank::StatedMass> stated;       ///< by model, in its file
 
   void add(crashrank::Model model, const crashrank::StatedMass& of_file = {}) {
     stated.reserve(list.size() + 1);
+    solids.reserve(list.size() + 1);
+    auto solid = std::make_unique<LazySolid>();
     list.push_back(std::move(model));
     stated.push_back(of_file);
+    solids.push_back(std::move(solid));
   }
 };
 

@@ -1,6 +1,8 @@
 #include "c/handles.hpp"
 
+#include "crashrank/collide/body_state.hpp"
 #include "crashrank/collide/pair.hpp"
+#include "crashrank/internal/collide/box_test.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model.hpp"
 
@@ -154,6 +156,31 @@ crashrank_status crashrank_collide_any(crashrank_query* query, const crashrank_m
   const crashrank_status status = ask(query, models, a, b, b_in_a, true, error);
   if (status == CRASHRANK_OK) *intersecting = query->pairs.empty() ? 0 : 1;
   return status;
+}
+
+crashrank_status crashrank_collide_state(crashrank_query* query, const crashrank_models* models,
+                                         size_t a, size_t b, const double b_in_a[16],
+                                         crashrank_body_state* state, crashrank_error* error) {
+  if (state == nullptr) return refuse_null("state", error);
+  const crashrank_status status = ask(query, models, a, b, b_in_a, true, error);
+  if (status != CRASHRANK_OK) return status;
+  return guarded(error, [&]() -> crashrank_status {
+    CollideResult result;
+    result.intersecting = !query->pairs.empty();
+    const Model& first = models->list[a];
+    const Model& second = models->list[b];
+    const Result<Pose> pose = c::to_pose(b_in_a, "b_in_a");
+    if (!pose) return refuse(pose.error(), error);
+    const bool near =
+        !result.intersecting && boxes_may_touch(first.tree.nodes[0].box, second.tree.nodes[0].box,
+                                                box_transform(first.tree, second.tree, *pose));
+    const Solid none;
+    const Solid& first_solid = near ? models->solids[a]->of(first) : none;
+    const Solid& second_solid = near ? models->solids[b]->of(second) : none;
+    *state = static_cast<crashrank_body_state>(
+        body_state(first, first_solid, second, second_solid, *pose, result));
+    return CRASHRANK_OK;
+  });
 }
 
 crashrank_status crashrank_collide_all(crashrank_query* query, const crashrank_models* models,

@@ -148,9 +148,11 @@ Error broken_off(detail::ChildProcess& child, double seconds, std::size_t memory
                       "try again when the machine is less busy");
   }
   if (child.signal() != 0) {
-    return make_error(ErrorCode::bad_input, "the parser broke down on it: " + how,
-                      "the file is damaged, nested too deeply, or needs more than " +
-                          std::to_string(memory_bytes >> 20) + " MiB; export it again");
+    return make_error(ErrorCode::bad_input, "the parser failed on it: " + how,
+                      "the file holds something that the parser does not know, is nested too "
+                      "deeply, damaged, or needs more than " +
+                          std::to_string(memory_bytes >> 20) +
+                          " MiB; export it in another way or format");
   }
   return make_error(ErrorCode::internal, "the importer gave no answer: " + how,
                     "check the installation of crashrank-import");

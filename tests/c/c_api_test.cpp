@@ -62,6 +62,39 @@ TEST(CApi, PairsAreTheLibrarys) {
   ASSERT_EQ(crashrank_collide_any(query.get(), models.get(), 0, 1, away, &touching, nullptr),
             CRASHRANK_OK);
   EXPECT_EQ(touching, 0);
+  crashrank_body_state state = -1;
+  ASSERT_EQ(crashrank_collide_state(query.get(), models.get(), 0, 1, away, &state, nullptr),
+            CRASHRANK_OK);
+  EXPECT_EQ(state, CRASHRANK_SEPARATE);
+  ASSERT_EQ(crashrank_collide_state(query.get(), models.get(), 0, 1, identity, &state, nullptr),
+            CRASHRANK_OK);
+  EXPECT_EQ(state, CRASHRANK_INTERSECTING);
+}
+
+TEST(CApi, StatesAreTheLibrarys) {
+  // A tetrahedron with corners at 0 and 8 on the axes, and one of a sixteenth of its size.
+  const Models models = make_models();
+  for (const float size : {8.0F, 0.5F}) {
+    const float corners[12] = {0, 0, 0, size, 0, 0, 0, size, 0, 0, 0, size};
+    const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    ASSERT_EQ(crashrank_models_add(models.get(), corners, 4, faces, 4, nullptr, 0, nullptr),
+              CRASHRANK_OK);
+    ASSERT_EQ(crashrank_models_add(models.get(), corners, 4, faces, 3, nullptr, 0, nullptr),
+              CRASHRANK_OK);  // without its fourth face
+  }
+  const Query query = make_query();
+  const double inside[16] = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1};
+  const auto state = [&](size_t a, size_t b) {
+    crashrank_body_state found = -1;
+    EXPECT_EQ(crashrank_collide_state(query.get(), models.get(), a, b, inside, &found, nullptr),
+              CRASHRANK_OK);
+    return found;
+  };
+  EXPECT_EQ(state(0, 2), CRASHRANK_B_INSIDE_A);
+  EXPECT_EQ(state(0, 3), CRASHRANK_B_INSIDE_A);
+  EXPECT_EQ(state(1, 2), CRASHRANK_UNKNOWN_OPEN);
+  EXPECT_EQ(crashrank_collide_state(query.get(), models.get(), 0, 1, inside, nullptr, nullptr),
+            CRASHRANK_USAGE);
 }
 
 TEST(CApi, PartsHaveToCoverTheTriangles) {

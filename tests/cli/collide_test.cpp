@@ -113,7 +113,9 @@ TEST(Collide, JsonHasTheContractsShape) {
     EXPECT_EQ(query.at("hash").get<std::string>().size(), 16U);
   }
   EXPECT_EQ(answer["queries"][0]["intersecting"], true);
+  EXPECT_EQ(answer["queries"][0]["state"], "intersecting");
   EXPECT_EQ(answer["queries"][1]["intersecting"], false);
+  EXPECT_EQ(answer["queries"][1]["state"], "separate");
   EXPECT_EQ(answer["queries"][1]["pairs"], 0);
   EXPECT_EQ(answer["queries"][1]["hash"], "e3b0c44298fc1c14");  // of no bytes
   // Queries of a hundred nanoseconds may not tell the two costs apart; one of them is then all.
@@ -251,7 +253,7 @@ TEST(Collide, TheTableTellsTheModelledTimeBesideTheMeasuredOne) {
   const Boxes boxes;
   const Outcome run = boxes.place.crashrank({"collide", "a.obj", "b.obj", "--pose", half_in});
   ASSERT_EQ(run.code, 0) << run.err;
-  for (const char* word : {"measured us", "Nb Cb + Np Cp us", "Cb =", "Cp =", "yes"}) {
+  for (const char* word : {"measured us", "Nb Cb + Np Cp us", "Cb =", "Cp =", "intersecting"}) {
     EXPECT_NE(run.out.find(word), std::string::npos) << word << "\n" << run.out;
   }
   EXPECT_EQ(run.out.find('\x1b'), std::string::npos);  // no terminal, no colours

@@ -256,6 +256,11 @@ std::vector<Case> cases() {
       {"zero.dae", test::as_collada(soup, "0"), "<unit>"},
       {"comma.dae", test::as_collada(soup, "0,5"), "", 36},
       {"entities.dae", entity_bomb(), "entities"},
+      {"skew.dae",
+       replaced(
+           test::as_collada(soup), "</matrix>",
+           "</matrix><extra><technique profile=\"x\"><skew/><skew >45</skew></technique></extra>"),
+       "the transform <skew> is not supported"},
       {"zero.fbx", test::as_fbx(soup, 0.0), ""},
       {"negative.fbx", test::as_fbx(soup, -100.0), "UnitScaleFactor"},
       {"no_extension", cube(), "extension"},

@@ -166,6 +166,9 @@ TEST_F(ImporterProcess, AHangingImporterIsKilledAtTheDeadline) {
 TEST_F(ImporterProcess, TheWayItEndedIsTold) {
   EXPECT_NE(import_by("kill -SEGV $$").error().reason.find("SIGSEGV"), std::string::npos);
   EXPECT_EQ(import_by("kill -SEGV $$").error().code, ErrorCode::bad_input);
+  const std::string ended = import_by("kill -ABRT $$").error().message();
+  EXPECT_NE(ended.find("the parser failed on it"), std::string::npos) << ended;
+  EXPECT_NE(ended.find("something that the parser does not know"), std::string::npos) << ended;
   EXPECT_EQ(import_by("kill -XCPU $$").error().code, ErrorCode::limit_exceeded);
   const Error failed = import_by("echo 'libassimp.so: no such file' >&2; exit 127").error();
   EXPECT_EQ(failed.code, ErrorCode::internal);

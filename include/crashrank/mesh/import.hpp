@@ -50,11 +50,13 @@ struct ImportedMesh {
 /// otherwise; then `transform` is applied. Node transforms are applied in double and rounded to
 /// float32 once; a mirroring node has its triangles turned over, so that outside stays outside.
 /// Triangles come in the order nodes depth first, the node's meshes, their faces; polygons are cut
-/// into triangles in place; points and lines are left out; degenerate and duplicate triangles keep
+/// into triangles in place by exact ear clipping (convex ones of four corners from the first, of
+/// more from the last); points and lines are left out; degenerate and duplicate triangles keep
 /// their places. Vertices are those that triangles use, equal positions merged. Each mesh of a node
 /// is a part, named by node, else mesh, else material, else file; a repeated name is extended by
 /// material or mesh where they differ ("body/glass") and by a number otherwise ("wheel.2").
-/// Animation, skinning and textures are ignored.
+/// Animation and textures are ignored. glTF's morph weights, instances, hidden nodes and skins at
+/// rest count; other formats' skins do not.
 ///
 /// The parser runs in a process of its own, with the limits above, and opens no file outside the
 /// mesh's folder; its reply is checked before use. That program, crashrank-import,

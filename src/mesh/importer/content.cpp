@@ -71,6 +71,13 @@ Result<Content> look_at_collada(int descriptor, Content content) {
     if (text.find("<!ENTITY") != std::string::npos) {
       return refuse("the file declares XML entities", "export it without a document type");
     }
+    // A transform that is valid, and at which the parser ends the process.
+    if (text.find("<skew>") != std::string::npos || text.find("<skew ") != std::string::npos) {
+      Error error =
+          refuse("the transform <skew> is not supported", "export it with transforms as matrices");
+      error.place = "<node>";
+      return error;
+    }
     for (std::size_t at = text.find("<unit "); at != std::string::npos;
          at = text.find("<unit ", at + 1)) {
       const std::size_t end = text.find('>', at);

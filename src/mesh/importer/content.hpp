@@ -13,7 +13,8 @@ struct Content {
 };
 
 /// Refuses files whose bytes contradict their extension, archives (a small one can unpack to
-/// gigabytes), XML entities and units that are no length. Reads the descriptor by position.
+/// gigabytes), XML entities, units that are no length and Collada's skew, which the parser does not
+/// know. Reads the descriptor by position.
 Result<Content> look_at(int descriptor, const std::string& extension);
 
 /// Up to `size` bytes from `offset` on; fewer at the end of the file.

@@ -1,21 +1,18 @@
 #include "mesh/importer/flatten.hpp"
 
 #include "mesh/importer/affine.hpp"
+#include "mesh/importer/mesh_builder.hpp"
 #include "mesh/importer/part_names.hpp"
-#include "mesh/importer/vertex_pool.hpp"
 
 #include <assimp/material.h>
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
 
-#include <limits>
 #include <utility>
 #include <vector>
 
 namespace crashrank::importer {
 namespace {
-
-constexpr std::uint32_t unseen = std::numeric_limits<std::uint32_t>::max();
 
 std::string text_of(const aiString& text) { return {text.data, text.length}; }
 
@@ -85,96 +82,23 @@ Result<std::vector<Visit>> visit_nodes(const aiScene& scene, const Request& requ
   return visits;
 }
 
-class Flattener {
-public:
-  Flattener(const Request& request, double metres_per_unit)
-      : transform_(request.transform), max_vertices_(request.vertices) {
-    transform_.scale *= metres_per_unit;
+Status add(const Visit& visit, const std::string& name, MeshBuilder& builder) {
+  const aiMesh& source = *visit.mesh;
+  if (source.mVertices == nullptr) return bad("part '" + name + "'", "it has no vertices");
+  builder.begin_part(name, source.mNumVertices, visit.to_file.mirrors());
+  const auto position = [&](std::uint32_t index) {
+    const aiVector3D& vertex = source.mVertices[index];
+    return visit.to_file(Eigen::Vector3d(vertex.x, vertex.y, vertex.z));
+  };
+  for (unsigned f = 0; f < source.mNumFaces; ++f) {
+    const aiFace& face = source.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    builder.add({face.mIndices[0], face.mIndices[1], face.mIndices[2]}, position);
   }
-
-  Status add(const Visit& visit, const std::string& name) {
-    const aiMesh& source = *visit.mesh;
-    if (source.mVertices == nullptr) return bad("part '" + name + "'", "it has no vertices");
-    // A rotation and a positive scale follow, so mirroring is decided here.
-    const bool turn_over = visit.to_file.mirrors();
-    std::vector<std::uint32_t> place(source.mNumVertices, unseen);
-    const std::size_t first = mesh_.triangles.size();
-    for (unsigned f = 0; f < source.mNumFaces; ++f) {
-      const aiFace& face = source.mFaces[f];
-      if (face.mNumIndices != 3) continue;
-      std::array<std::uint32_t, 3> corners{};
-      for (unsigned c = 0; c < 3; ++c) {
-        const unsigned index = face.mIndices[c];
-        if (index >= source.mNumVertices) return bad("part '" + name + "'", "a face lost a vertex");
-        if (place[index] == unseen) {
-          place[index] = transform(visit.to_file, source.mVertices[index]);
-          if (place[index] == unseen) {
-            return bad("part '" + name + "', vertex " + std::to_string(index),
-                       "its coordinates are not finite numbers of single precision");
-          }
-        }
-        corners[c] = place[index];
-      }
-      if (turn_over) std::swap(corners[1], corners[2]);
-      mesh_.triangles.push_back(corners);
-    }
-    if (pool_.vertices().size() > max_vertices_) {
-      return make_error(ErrorCode::limit_exceeded,
-                        "more than " + std::to_string(max_vertices_) + " vertices",
-                        "simplify the mesh or raise the limit");
-    }
-    mesh_.parts.push_back({name, static_cast<std::uint32_t>(first),
-                           static_cast<std::uint32_t>(mesh_.triangles.size() - first)});
-    return Success{};
-  }
-
-  TriangleMesh take() {
-    mesh_.vertices = pool_.take();
-    return std::move(mesh_);
-  }
-
-private:
-  std::uint32_t transform(const Affine& to_file, const aiVector3D& vertex) {
-    const Eigen::Vector3d point = to_file(Eigen::Vector3d(vertex.x, vertex.y, vertex.z));
-    const Eigen::Vector3f body = apply(transform_, point).cast<float>();
-    return body.allFinite() ? pool_.index_of(body) : unseen;
-  }
-
-  ImportTransform transform_;
-  std::size_t max_vertices_;
-  TriangleMesh mesh_;
-  VertexPool pool_;
-};
+  return builder.end_part();
+}
 
 }  // namespace
-
-Result<std::uint64_t> clear_bad_faces(aiScene& scene, const Request& request) {
-  std::uint64_t cleared = 0;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    if (!sound(scene, m) || scene.mMeshes[m]->mFaces == nullptr) continue;
-    aiMesh& mesh = *scene.mMeshes[m];
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices > request.polygon_corners) {
-        Error error =
-            make_error(ErrorCode::limit_exceeded,
-                       "a polygon of " + std::to_string(face.mNumIndices) + " corners, more than " +
-                           std::to_string(request.polygon_corners),
-                       "triangulate the mesh before exporting it");
-        error.place = "mesh '" + text_of(mesh.mName) + "', face " + std::to_string(f);
-        return error;
-      }
-      bool inside = face.mIndices != nullptr && mesh.mVertices != nullptr;
-      for (unsigned c = 0; inside && c < face.mNumIndices; ++c) {
-        inside = face.mIndices[c] < mesh.mNumVertices;
-      }
-      if (inside) continue;
-      if (face.mNumIndices >= 3) ++cleared;
-      face.mNumIndices = 0;
-    }
-  }
-  return cleared;
-}
 
 Result<TriangleMesh> flatten(const aiScene& scene, const Request& request, double metres_per_unit,
                              const std::string& file_name) {
@@ -190,11 +114,11 @@ Result<TriangleMesh> flatten(const aiScene& scene, const Request& request, doubl
   }
   const std::vector<std::string> names =
       name_parts(labels, file_name.substr(0, file_name.find_last_of('.')), request.name_bytes);
-  Flattener flattener(request, metres_per_unit);
+  MeshBuilder builder(request, metres_per_unit);
   for (std::size_t i = 0; i < visits->size(); ++i) {
-    if (Status status = flattener.add((*visits)[i], names[i]); !status) return status.error();
+    if (Status status = add((*visits)[i], names[i], builder); !status) return status.error();
   }
-  return flattener.take();
+  return builder.take();
 }
 
 }  // namespace crashrank::importer

@@ -10,10 +10,6 @@ struct aiScene;
 
 namespace crashrank::importer {
 
-/// Removes faces that name a vertex that is not there, and refuses polygons with too many corners.
-/// To be called before the parser's own triangulation, which trusts both. The number removed.
-Result<std::uint64_t> clear_bad_faces(aiScene& scene, const Request& request);
-
 /// Every triangle of every mesh of every node, depth first, in body coordinates. Recursion-free:
 /// the depth of the node tree is the file's to choose. `metres_per_unit` is the file's own unit;
 /// parts without a name are called after `file_name`, less its extension.

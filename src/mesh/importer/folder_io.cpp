@@ -175,6 +175,20 @@ void FolderIo::note(const std::string& name, const std::string& reason) {
   }
 }
 
+bool FolderIo::read(const std::string& name, std::vector<unsigned char>& bytes,
+                    std::string& reason) {
+  const int descriptor = open_inside(name, reason);
+  if (descriptor < 0) {
+    note(name, reason);
+    return false;
+  }
+  const std::size_t size = size_of(descriptor);
+  DescriptorStream stream(descriptor, true, 0, size);
+  bytes.resize(size);
+  bytes.resize(stream.Read(bytes.data(), 1, size));
+  return true;
+}
+
 bool FolderIo::Exists(const char* file) const {
   std::string reason;
   return mesh_name_ == file || (may_name_files(extension_) && !resolve(file, reason).empty());

@@ -24,6 +24,10 @@ public:
   /// Files that the mesh names and did not get, as "'NAME' is outside the mesh's folder".
   const std::vector<std::string>& refused() const { return refused_; }
 
+  /// The whole of a file that the mesh names. False with the reason, and noted, if it may not be
+  /// read.
+  bool read(const std::string& name, std::vector<unsigned char>& bytes, std::string& reason);
+
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char* mode) override;

@@ -1,9 +1,10 @@
 #include "mesh/importer/parse.hpp"
 
 #include "mesh/importer/content.hpp"
+#include "mesh/importer/faces.hpp"
 #include "mesh/importer/flatten.hpp"
 #include "mesh/importer/folder_io.hpp"
-#include "mesh/importer/gltf_count.hpp"
+#include "mesh/importer/gltf.hpp"
 #include "mesh/importer/obj_fault.hpp"
 #include "mesh/importer/ply_check.hpp"
 #include "mesh/importer/text_checks.hpp"
@@ -11,11 +12,8 @@
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/mesh.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
-#include <assimp/LogStream.hpp>
 
 #include <unistd.h>
 
@@ -46,27 +44,6 @@ void keep_parsers_of(Assimp::Importer& importer, const std::string& extension) {
       importer.UnregisterLoader(importer.GetImporter(i));
     }
   }
-}
-
-// The glTF parser leaves out faces with bad indices on its own and only logs it.
-class DropListener : public Assimp::LogStream {
-public:
-  void write(const char* message) override {
-    heard_ = heard_ || std::string(message).find("out-of-range indices") != std::string::npos;
-  }
-  bool heard() const { return heard_; }
-
-private:
-  bool heard_ = false;
-};
-
-std::uint64_t faces_in(const aiScene& scene) {
-  std::uint64_t faces = 0;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[m];
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) faces += mesh.mFaces[f].mNumIndices == 3 ? 1 : 0;
-  }
-  return faces;
 }
 
 std::uint64_t polygons_in(const aiScene& scene) {
@@ -167,25 +144,19 @@ Error parser_error(const std::string& text, const FolderIo& files, const Request
   return error;
 }
 
-}  // namespace
-
-Result<Parsed> parse(const Request& request) {
-  const Result<Content> content = look_at(STDIN_FILENO, request.extension);
-  if (!content) return content.error();
+// What Assimp reads: all formats but glTF 2.
+Result<Parsed> parse_with_assimp(const Request& request, const Content& content) {
   const Result<std::uint64_t> face_lines = check_lines(request);
   if (!face_lines) return face_lines.error();
 
   // Never destroyed: the process ends soon, and the destructor of a very deep node tree recurses.
   Assimp::Importer& importer = *std::make_unique<Assimp::Importer>().release();
-  auto owned = std::make_unique<FolderIo>(request.path, request.extension, content->skip,
-                                          request.file_bytes);
+  auto owned =
+      std::make_unique<FolderIo>(request.path, request.extension, content.skip, request.file_bytes);
   FolderIo& files = *owned;
   importer.SetIOHandler(owned.release());
   keep_parsers_of(importer, request.extension);
   configure(importer);
-  DropListener listener;
-  Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-  Assimp::DefaultLogger::get()->attachStream(&listener, Assimp::Logger::Warn);
   if (importer.ReadFile(files.mesh_name(), 0) == nullptr) {
     return parser_error(importer.GetErrorString(), files, request);
   }
@@ -194,18 +165,10 @@ Result<Parsed> parse(const Request& request) {
   if (scene == nullptr || scene->mRootNode == nullptr) {
     return make_error(ErrorCode::bad_input, "the file holds no scene", "export the file again");
   }
-  std::uint64_t left_out = 0;
-  if (listener.heard()) {
-    const std::uint64_t promised = gltf_triangles(STDIN_FILENO, request.file_bytes);
-    left_out = std::max(promised, faces_in(*scene) + 1) - faces_in(*scene);
-  }
   const std::string holes = passed_over(*scene, *face_lines, request);
   Result<std::uint64_t> dropped = clear_bad_faces(*scene, request);
   if (!dropped) return dropped.error();
-  *dropped += left_out;
-  if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr) {
-    return parser_error(importer.GetErrorString(), files, request);
-  }
+  const CrossingPolygons crossing = triangulate_faces(*scene);
   undo_axis_change(*scene, request);
   const Result<double> unit = metres_per_unit(*scene, request);
   if (!unit) return unit.error();
@@ -216,24 +179,51 @@ Result<Parsed> parse(const Request& request) {
                       request.extension == "off" ? "export triangles"
                                                  : "begin each face with a small f and a blank");
   }
-  if (mesh->triangles.empty()) {
-    return make_error(ErrorCode::bad_input, "the file holds no triangles",
-                      "export surfaces, not points or lines");
-  }
-
   Parsed parsed{std::move(*mesh), *dropped, {}};
-  if (*dropped > 0) {
-    parsed.warnings.push_back(std::to_string(*dropped) +
-                              (*dropped == 1 ? " face that names a missing vertex was left out"
-                                             : " faces that name missing vertices were left out") +
-                              "; triangles are numbered without");
-  }
   if (!holes.empty()) parsed.warnings.push_back(holes);
+  if (crossing.count > 0) {
+    parsed.warnings.push_back(
+        (crossing.count == 1
+             ? "1 polygon crosses itself: "
+             : std::to_string(crossing.count) + " polygons cross themselves, the first is ") +
+        crossing.first + "; its surface is a guess: export triangles");
+  }
   if (request.extension == "stl") {
     std::string cut = describe_stl_cut(STDIN_FILENO);
     if (!cut.empty()) parsed.warnings.push_back(std::move(cut));
   }
   for (const std::string& file : files.refused()) parsed.warnings.push_back(file);
+  return parsed;
+}
+
+Result<Parsed> parse_by_format(const Request& request, const Content& content) {
+  if (request.extension == "gltf" || request.extension == "glb") {
+    FolderIo files(request.path, request.extension, content.skip, request.file_bytes);
+    Result<std::optional<Parsed>> parsed = parse_gltf(request, content.skip, files);
+    if (!parsed) return parsed.error();
+    if (*parsed) return std::move(**parsed);
+  }
+  return parse_with_assimp(request, content);
+}
+
+}  // namespace
+
+Result<Parsed> parse(const Request& request) {
+  const Result<Content> content = look_at(STDIN_FILENO, request.extension);
+  if (!content) return content.error();
+  Result<Parsed> parsed = parse_by_format(request, *content);
+  if (!parsed) return parsed;
+  if (parsed->mesh.triangles.empty()) {
+    return make_error(ErrorCode::bad_input, "the file holds no triangles",
+                      "export surfaces, not points or lines");
+  }
+  if (const std::uint64_t dropped = parsed->dropped_triangles; dropped > 0) {
+    parsed->warnings.insert(parsed->warnings.begin(),
+                            std::to_string(dropped) +
+                                (dropped == 1 ? " face that names a missing vertex was left out"
+                                              : " faces that name missing vertices were left out") +
+                                "; triangles are numbered without");
+  }
   return parsed;
 }
 
