@@ -77,11 +77,12 @@ std::string panel(const Profile& profile, std::size_t band, const Bounds& bounds
   }
   std::string text =
       fmt::format("{:g} to {:g} m", profile_edges_m[band], profile_edges_m[band + 1]);
-  if (!heights.empty()) {
+  if (band < lowest_pressing_band) {
+    text += ": driven over, does not press";
+  } else if (!heights.empty()) {
     text += fmt::format(": body from {:.2f} to {:.2f} m, {:.3g} m³", heights.low_m, heights.high_m,
                         static_cast<double>(profile.area_m2[band]) * band_height_m(band));
   }
-  if (band < lowest_pressing_band) text += "; driven over, does not press";
   // Free space inside is cut out of the body by the even-odd rule.
   return fmt::format(
       "<text y=\"-8\">{}</text>\n"
