@@ -41,8 +41,7 @@ double exposure_of(View<const ExposureCell> cells, const ExposedBody& body = car
 double value_of(const ExposureWindow& w) {
   const double size = w.change_mps.norm();
   const double along = size > 0.0 ? w.change_mps.dot(w.forward) / size : 0.0;
-  const double direction =
-      0.2 * (1.0 - along * along) - (along > 0.0 ? 0.4 * along * along : 0.0);
+  const double direction = 0.2 * (1.0 - along * along) - (along > 0.0 ? 0.4 * along * along : 0.0);
   return (1.0 + (1.0 - w.squeezed) * direction) *
          (w.exposure_mps * w.exposure_mps + 5.0 * w.exposure_mps * w.intrusion_m);
 }
@@ -127,8 +126,8 @@ TEST(Exposure, OfASteadyPushIsItsAccelerationTimesTheWindow) {
       const double end_s = std::min(t + step_s, duration_s);
       record.add(t, end_s, {}, push(acceleration * (end_s - t)));
     }
-    EXPECT_NEAR(exposure_of(record.cells()),
-                acceleration * std::min(duration_s, exposure_window_s), 1e-9)
+    EXPECT_NEAR(exposure_of(record.cells()), acceleration * std::min(duration_s, exposure_window_s),
+                1e-9)
         << duration_s;
   }
 }
@@ -264,8 +263,8 @@ TEST(Exposure, InPileUpsIsTheGreatestChangeOfVelocityWithinAWindow) {
   int exposed = 0;
   int squeezed = 0;
   for (int round = 0; round < 30; ++round) {
-    test::SceneSetup setup = round % 2 == 0 ? test::random_pile_up(random, 5, true)
-                                            : test::random_queue(random, 5);
+    test::SceneSetup setup =
+        round % 2 == 0 ? test::random_pile_up(random, 5, true) : test::random_queue(random, 5);
     SceneRun run;
     run.begin(setup.make_bodies(false), 0, 1, 0.0, Eigen::Vector3d::Zero(), {});
     Velocities log;

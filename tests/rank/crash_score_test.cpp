@@ -133,8 +133,7 @@ TEST(CrashScore, LowerBoundsHoldWhileASimulationGoesOn) {
     for (int part = 0; part < 5; ++part) {
       CrashEffects some;
       some.add(ego_body, {own.data(), random.below(static_cast<std::uint32_t>(own.size()) + 1)});
-      some.add(other,
-               {others.data(), random.below(static_cast<std::uint32_t>(others.size()) + 1)});
+      some.add(other, {others.data(), random.below(static_cast<std::uint32_t>(others.size()) + 1)});
       ASSERT_LE(scorer.lower_bound(scene, some), score) << "case " << i;
     }
     ASSERT_LE(scorer.lower_bound(scene, whole), score) << "case " << i;
