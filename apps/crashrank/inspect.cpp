@@ -194,11 +194,12 @@ Status draw_profile(const std::string& path, const std::string& mesh_file, const
 
 int run(const InspectArguments& options) {
   if (!options.profile.empty() && options.files.size() != 1) {
-    return fail(make_error(ErrorCode::usage, "--profile draws one mesh, so it needs exactly one MESH"));
+    return fail(
+        make_error(ErrorCode::usage, "--profile draws one mesh, so it needs exactly one MESH"));
   }
   if (is_standard(options.profile)) {
-    return fail(make_error(ErrorCode::usage,
-                           "--profile needs a file: the answer goes to standard output"));
+    return fail(
+        make_error(ErrorCode::usage, "--profile needs a file: the answer goes to standard output"));
   }
   if (const Status sound = can_be_written(options.profile, svg_picture, options.files); !sound) {
     return fail(sound.error());

@@ -69,8 +69,7 @@ std::string path_of(const Profile& profile, std::uint32_t first, std::uint32_t l
   return path;
 }
 
-std::string panel(const Profile& profile, std::size_t band, const Bounds& bounds,
-                  double px_per_m) {
+std::string panel(const Profile& profile, std::size_t band, const Bounds& bounds, double px_per_m) {
   HeightRange heights;
   for (std::uint32_t i = profile.first[band]; i < profile.first_inner[band]; ++i) {
     heights.grow(profile.pieces[i].behind);
@@ -105,11 +104,10 @@ std::string profile_picture(const Profile& profile, const std::string& title) {
   std::size_t count = 0;
   for (std::size_t band = 0; band < profile_bands; ++band) {
     if (profile.first[band] == profile.first[band + 1]) continue;
-    panels += fmt::format(
-        "<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n",
-        gap_px + static_cast<double>(count % columns) * (panel_px + gap_px),
-        head_px + label_px + static_cast<double>(count / columns) * cell_px,
-        panel(profile, band, bounds, px_per_m));
+    panels += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n",
+                          gap_px + static_cast<double>(count % columns) * (panel_px + gap_px),
+                          head_px + label_px + static_cast<double>(count / columns) * cell_px,
+                          panel(profile, band, bounds, px_per_m));
     ++count;
   }
   const double rows = std::ceil(static_cast<double>(count) / static_cast<double>(columns));

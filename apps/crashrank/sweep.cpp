@@ -29,7 +29,6 @@
 namespace crashrank::cli {
 namespace {
 
-
 struct SweepArguments {
   std::string a;
   std::string b;

@@ -47,8 +47,8 @@ struct CrushResponse {
     for (std::size_t band = lowest_pressing_band; band < profile_bands; ++band) {
       // The lowest band bears for what is below, which does not press.
       const double low_m = band == lowest_pressing_band ? 0.0 : profile_edges_m[band];
-      share[band] = static_cast<float>(
-          factor * strength.share_of_band(low_m, profile_edges_m[band + 1]));
+      share[band] =
+          static_cast<float>(factor * strength.share_of_band(low_m, profile_edges_m[band + 1]));
     }
   }
 

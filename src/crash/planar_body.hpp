@@ -85,7 +85,8 @@ inline PlanarPlace place_of(const PlanarBody& body) {
 }
 
 /// Pose of a body's origin when its planar state is `now`, given that it was `given` when the
-/// planar state was `start`; it slides along the ground that it stands on. `center_m`: centre of mass, body axes.
+/// planar state was `start`; it slides along the ground that it stands on. `center_m`: centre of
+/// mass, body axes.
 Pose moved_pose(const Pose& given, const Eigen::Vector3d& center_m, const PlanarPlace& start,
                 const PlanarPlace& now);
 

@@ -83,15 +83,14 @@ double SceneRun::closing_bound(std::size_t i, std::size_t j) const {
   return plane_length(p.vx - q.vx, p.vy - q.vy) + turning;
 }
 
-/// Returns true if no height of two bodies can be the same while both are within `listed_m` of where
-/// they are. `at`: state of the second body.
+/// Returns true if no height of two bodies can be the same while both are within `listed_m` of
+/// where they are. `at`: state of the second body.
 bool SceneRun::heights_apart(std::size_t i, std::size_t j, const PlanarBody& at) const {
   const PlanarBody& own = body(i);
   const HeightRange& p = bodies_[i].vehicle->silhouettes.all_heights;
   const HeightRange& q = bodies_[j].vehicle->silhouettes.all_heights;
   // The smaller body is where both meet; the way to there and while the list is valid.
-  const double reach_m =
-      2.0 * listed_m + std::min(members_[i].radius_m, members_[j].radius_m);
+  const double reach_m = 2.0 * listed_m + std::min(members_[i].radius_m, members_[j].radius_m);
   const bool own_is_smaller = members_[i].radius_m < members_[j].radius_m;
   const double x = own_is_smaller ? own.x : at.x;
   const double y = own_is_smaller ? own.y : at.y;

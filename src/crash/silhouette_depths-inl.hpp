@@ -18,10 +18,10 @@ namespace crashrank::detail::HWY_NAMESPACE {
 /// Depths of places below the four sides of a height band's silhouettes.
 struct Depths {
   F8 front, rear, left, right;
-  M8 known;  ///< the place lies within the nodes of all silhouettes
-  I8 row;              ///< node over y before the place
-  F8 row_share;        ///< share of the way to the next one
-  I8 column;           ///< node over x
+  M8 known;      ///< the place lies within the nodes of all silhouettes
+  I8 row;        ///< node over y before the place
+  F8 row_share;  ///< share of the way to the next one
+  I8 column;     ///< node over x
   F8 column_share;
 
   HWY_INLINE F8 least() const {
@@ -81,8 +81,15 @@ HWY_INLINE Depths depths_at(const Silhouettes& s, std::size_t band, F8 x, F8 y) 
   const NodePlace column = node_place(s.along_y[band], x);
   const Edges ends = edges_at(s, s.along_x[band], row, x);
   const Edges flanks = edges_at(s, s.along_y[band], column, y);
-  return {ends.greatest - x, x - ends.least, flanks.greatest - y, y - flanks.least,
-          both(row.known, column.known), row.node, row.share, column.node, column.share};
+  return {ends.greatest - x,
+          x - ends.least,
+          flanks.greatest - y,
+          y - flanks.least,
+          both(row.known, column.known),
+          row.node,
+          row.share,
+          column.node,
+          column.share};
 }
 
 /// Heights that the body takes up at places whose depths are known, m over its ground.

@@ -106,9 +106,9 @@ struct PressingPieces {
   const PieceCurves* curves = nullptr;
   float* path = nullptr;    ///< see PieceStates
   float* path_x = nullptr;  ///< see PieceStates
-  std::size_t band = 0;    ///< of the pieces
-  std::size_t target = 0;  ///< of the pressed body at the same height
-  std::size_t first = 0;   ///< first of the eight pieces within the block, 0 or 8
+  std::size_t band = 0;     ///< of the pieces
+  std::size_t target = 0;   ///< of the pressed body at the same height
+  std::size_t first = 0;    ///< first of the eight pieces within the block, 0 or 8
 };
 
 class ForceAccumulator {
@@ -179,8 +179,8 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   // Fill the lanes outside `where` with a number that keeps all results finite.
   const auto or_filler = [&](F8 a) { return select(where, a, all(0.01F)); };
   least = or_filler(least);
-  d = {or_filler(d.front), or_filler(d.rear), or_filler(d.left), or_filler(d.right), d.known,
-       d.row,              d.row_share,       d.column,          d.column_share};
+  d = {or_filler(d.front), or_filler(d.rear), or_filler(d.left), or_filler(d.right), d.known, d.row,
+       d.row_share,        d.column,          d.column_share};
   const F8 advance = or_filler(p.at.advance);
 
   const F8 nx = p.at.normal_x;

@@ -37,7 +37,6 @@ struct PressQuery {
   std::array<std::uint8_t, profile_bands> target_band{};
 };
 
-
 /// Sums of a pass, in the pressed body's axes.
 struct PressTotals {
   bool approaching = false;

@@ -152,9 +152,8 @@ std::vector<char> wide_spaces(const Raster& raster, const std::vector<std::int32
     std::swap(side, before);
     for (std::size_t i = 1; i < columns; ++i) {
       const std::int32_t label = labels[row + i];
-      side[i] = label > outside_label
-                    ? 1 + std::min(before[i - 1], std::min(before[i], side[i - 1]))
-                    : 0;
+      side[i] =
+          label > outside_label ? 1 + std::min(before[i - 1], std::min(before[i], side[i - 1])) : 0;
       if (side[i] >= needed) wide[static_cast<std::size_t>(label)] = 1;
     }
   }
@@ -186,10 +185,10 @@ std::vector<std::int32_t> winding_numbers(const BandSurface& surface, const Rast
     for (std::ptrdiff_t row = raster.row_of(low); row <= raster.row_of(high); ++row) {
       const double y = raster.center(0, row).y();
       if ((end[0].y() < y) == (end[1].y() < y)) continue;
-      const double x = end[0].x() + (y - end[0].y()) / (end[1].y() - end[0].y()) *
-                                        (end[1].x() - end[0].x());
-      const auto column = static_cast<std::ptrdiff_t>(
-          std::floor((x - raster.low_x) * raster.cells_per_m - 0.5));
+      const double x =
+          end[0].x() + (y - end[0].y()) / (end[1].y() - end[0].y()) * (end[1].x() - end[0].x());
+      const auto column =
+          static_cast<std::ptrdiff_t>(std::floor((x - raster.low_x) * raster.cells_per_m - 0.5));
       if (raster.holds(column, row)) {
         winding[raster.index(column, row)] += end[0].y() < y ? 1 : -1;
       }
@@ -211,8 +210,8 @@ std::vector<char> free_spaces(const BandSurface& surface, const Raster& raster,
   if (std::none_of(free.begin(), free.end(), [](char wide) { return wide != 0; })) return free;
   // Beside the middle, where no vertex of a drawn body lies.
   constexpr double beside_vertices_m = 1.3e-6;
-  const std::vector<std::int32_t> winding = winding_numbers(
-      surface, raster, 0.5 * (surface.low_m + surface.high_m) + beside_vertices_m);
+  const std::vector<std::int32_t> winding =
+      winding_numbers(surface, raster, 0.5 * (surface.low_m + surface.high_m) + beside_vertices_m);
   struct Sums {
     double cells = 0.0;
     double wound = 0.0;
@@ -278,9 +277,8 @@ SkyMap::SkyMap(const BandSurface& surface) {
       const std::size_t cell = raster_.index(raster_.column_of(p.x()), raster_.row_of(p.y()));
       heights_[cell].grow(static_cast<float>(p.z()));
     }
-    visit_covered(raster_, facet, [&](std::size_t cell, double z) {
-      heights_[cell].grow(static_cast<float>(z));
-    });
+    visit_covered(raster_, facet,
+                  [&](std::size_t cell, double z) { heights_[cell].grow(static_cast<float>(z)); });
   }
 }
 
@@ -349,9 +347,8 @@ std::vector<HeightRange> rasterise_heights(const BandSurface& surface, const Ras
                     heights[cell].grow(static_cast<float>(p.z() + left * (q.z() - p.z())));
                   });
     }
-    visit_covered(raster, facet, [&](std::size_t cell, double z) {
-      heights[cell].grow(static_cast<float>(z));
-    });
+    visit_covered(raster, facet,
+                  [&](std::size_t cell, double z) { heights[cell].grow(static_cast<float>(z)); });
   });
   return heights;
 }

@@ -85,7 +85,8 @@ struct Raster {
 Raster raster_over(const BandSurface& surface, double cell_m);
 
 /// Calls back for the cells that a line passes through, each of which shares a side with the one
-/// before, with the shares of the line at which it enters and leaves them (Amanatides and Woo 1987).
+/// before, with the shares of the line at which it enters and leaves them (Amanatides and Woo
+/// 1987).
 template <class Visit>
 void visit_cells(const Raster& raster, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                  Visit&& visit) {
@@ -112,8 +113,7 @@ void visit_cells(const Raster& raster, const Eigen::Vector2d& from, const Eigen:
   double entered = 0.0;
   while (columns_left > 0 || rows_left > 0) {
     const bool next_column = rows_left == 0 || (columns_left > 0 && at_column <= at_row);
-    const double left =
-        std::max(entered, std::min(1.0, next_column ? at_column : at_row));
+    const double left = std::max(entered, std::min(1.0, next_column ? at_column : at_row));
     visit(raster.index(column, row), entered, left);
     entered = left;
     if (next_column) {
@@ -157,7 +157,6 @@ enum class Cell : std::uint8_t {
 /// height of the band does not wind around it or it lies mostly open to the sky.
 /// `sky` is filled where it is needed.
 std::vector<Cell> divide_cells(const BandSurface& surface, const Raster& raster,
-                               const std::vector<HeightRange>& heights,
-                               std::optional<SkyMap>& sky);
+                               const std::vector<HeightRange>& heights, std::optional<SkyMap>& sky);
 
 }  // namespace crashrank::detail

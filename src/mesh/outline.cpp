@@ -98,8 +98,7 @@ BorderEdges border_edges(const BandSurface& surface, const Raster& raster,
 /// The point of the edges that is nearest to a corner of the raster within two cells; the corner
 /// itself where there is none. Cells of the border that the surface leaves free lie outside the
 /// body, so the nearest point of all edges is on its outline.
-Vector2d snap(const Raster& raster, const BorderEdges& border, std::ptrdiff_t x,
-              std::ptrdiff_t y) {
+Vector2d snap(const Raster& raster, const BorderEdges& border, std::ptrdiff_t x, std::ptrdiff_t y) {
   const Vector2d p = raster.corner(x, y);
   Vector2d at = p;
   for (std::ptrdiff_t reach = 1; reach <= snap_cells; ++reach) {

@@ -100,12 +100,15 @@ void add_pieces(const detail::BandOutline& outline, const detail::OutlineLoop& l
     const Vector2d normal(along.y() / length, -along.x() / length);
     for (int k = 0; k < count; ++k) {
       // From the middle: the same bits whichever way the line runs.
-      const Vector2d middle =
-          0.5 * (from + to) + ((2 * k + 1 - count) / (2.0 * count)) * along;
+      const Vector2d middle = 0.5 * (from + to) + ((2 * k + 1 - count) / (2.0 * count)) * along;
       const Vector2d half = (0.5 / count) * along;
-      OutlinePiece piece{static_cast<float>(middle.x()), static_cast<float>(middle.y()),
-                         static_cast<float>(normal.x()), static_cast<float>(normal.y()),
-                         static_cast<float>(length / count), {}, {}};
+      OutlinePiece piece{static_cast<float>(middle.x()),
+                         static_cast<float>(middle.y()),
+                         static_cast<float>(normal.x()),
+                         static_cast<float>(normal.y()),
+                         static_cast<float>(length / count),
+                         {},
+                         {}};
       const auto heights = outline.heights(middle - half, middle + half, profile_depth_m);
       piece.at_edge = heights.at_edge;
       piece.behind = heights.behind;
@@ -145,8 +148,12 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
     profile.first[band] = profile.first_inner[band] =
         static_cast<std::uint32_t>(profile.pieces.size());
     if (triangles[band].empty()) continue;
-    const detail::BandSurface surface{&mesh, &triangles[band], *box, profile.ground_m,
-                                      profile_edges_m[band], profile_edges_m[band + 1]};
+    const detail::BandSurface surface{&mesh,
+                                      &triangles[band],
+                                      *box,
+                                      profile.ground_m,
+                                      profile_edges_m[band],
+                                      profile_edges_m[band + 1]};
     const detail::BandOutline outline(surface, cell_m, tolerance_cells, sky);
     double area = 0.0;
     for (const detail::OutlineLoop& loop : outline.loops()) {
@@ -161,10 +168,10 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
                           "simplify it, or check its scale");
       }
     }
-    profile.area_m2[band] = static_cast<float>(
-        area * occupied_share(profile.pieces.data() + profile.first[band],
-                              profile.pieces.data() + profile.first_inner[band],
-                              band_height_m(band)));
+    profile.area_m2[band] =
+        static_cast<float>(area * occupied_share(profile.pieces.data() + profile.first[band],
+                                                 profile.pieces.data() + profile.first_inner[band],
+                                                 band_height_m(band)));
   }
   profile.first[profile_bands] = static_cast<std::uint32_t>(profile.pieces.size());
   return profile;
@@ -175,8 +182,7 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
 double Profile::volume_m3() const {
   double volume = 0.0;
   for (std::size_t band = 0; band < profile_bands; ++band) {
-    volume +=
-        static_cast<double>(area_m2[band]) * band_height_m(band);
+    volume += static_cast<double>(area_m2[band]) * band_height_m(band);
   }
   return volume;
 }

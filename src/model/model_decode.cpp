@@ -153,7 +153,8 @@ Result<std::shared_ptr<const Profile>> missing_profile(const ModelHeader& header
     if (means_no_profile(made.error())) return std::shared_ptr<const Profile>();
     return made.error();
   }
-  if (!made->pieces.empty()) return refused("profile", "it has no piece, but the mesh has outlines");
+  if (!made->pieces.empty())
+    return refused("profile", "it has no piece, but the mesh has outlines");
   return std::shared_ptr<const Profile>(std::make_shared<Profile>(std::move(*made)));
 }
 

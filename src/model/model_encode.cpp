@@ -143,7 +143,11 @@ Status check_bands(const Profile& profile, double most_area_m2) {
 }
 
 Status check_profile(const Profile& profile, const TriangleMesh& mesh) {
-  if (profile.pieces.empty()) return Success{};
+  if (profile.pieces.empty()) {
+    const Result<Profile> made = make_profile(mesh);
+    if (made && !made->pieces.empty()) return broken("profile", "it has no piece");
+    return Success{};
+  }
   if (profile.pieces.size() > max_profile_pieces) {
     Error error = broken("profile", "it has more than 2 million pieces");
     error.code = ErrorCode::limit_exceeded;

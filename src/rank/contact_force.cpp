@@ -32,7 +32,8 @@ double first_force_s(const Scene& scene, const CrashChain& chain, std::size_t ac
 }  // namespace
 
 bool lacks_force(const Scene& scene, const CrashChain& chain, const Contact& first) {
-  const double speed_mps = first.normal.isZero(0.0) ? first.closing_speed_mps : first.normal_speed_mps;
+  const double speed_mps =
+      first.normal.isZero(0.0) ? first.closing_speed_mps : first.normal_speed_mps;
   if (!(speed_mps > least_forced_speed_mps)) return false;
   const double within_s = std::min(force_within_s, force_within_m / speed_mps);
   return first_force_s(scene, chain, first.actor) > first.time_of_impact_s + within_s;

@@ -102,6 +102,16 @@ void doubt_shapes(const Scenario& scenario, View<const Model> models, const Rank
       doubts.push_back(fmt::format("{}, but such a body is {:g} to {:g} m long; check its scale",
                                    body_text, known->min_length_m, known->max_length_m));
     }
+    // As make_profile, which lets such a body stand on its lowest point.
+    constexpr double below_ground_m = 0.3;
+    const auto lowest_m = static_cast<double>(models[i].mesh.bounds().min.z());
+    if (lowest_m < -below_ground_m) {
+      doubts.push_back(fmt::format(
+          "{}: it reaches {:.2g} m below the ground (z = 0 of its mesh) and is taken to stand on "
+          "its "
+          "lowest point; is it upside down, or its origin not on the ground? Check up and origin",
+          body_text, -lowest_m));
+    }
     if (!drives(model.kind)) continue;
     if (const auto turned = guess_orientation(extent_m, model.transform)) {
       doubts.push_back(fmt::format(

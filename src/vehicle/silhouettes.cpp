@@ -51,7 +51,7 @@ struct Crossing {
 
 /// Narrower bays fold up with the structure beside them, m; so do those below the floor of a
 /// vehicle, in bands below `lowest_bay_band`.
-constexpr float least_bay_m = 0.8F;
+constexpr float least_bay_m = 1.2F;
 constexpr std::size_t lowest_bay_band = 3;
 static_assert(profile_edges_m[lowest_bay_band] == 0.4);
 
@@ -64,9 +64,8 @@ std::vector<SilhouetteNode> intervals_of(std::vector<Crossing>& crossings, float
   std::vector<SilhouetteNode> intervals;
   float out = -1.0F;
   for (const Crossing& c : crossings) {
-    const bool begins = intervals.empty() ||
-                        (out > 0.0F && c.out < 0.0F &&
-                         c.value - intervals.back().greatest_m >= least_gap_m);
+    const bool begins = intervals.empty() || (out > 0.0F && c.out < 0.0F &&
+                                              c.value - intervals.back().greatest_m >= least_gap_m);
     if (begins) intervals.push_back({c.value, c.value});
     intervals.back().greatest_m = std::max(intervals.back().greatest_m, c.value);
     if (c.out != 0.0F) out = c.out;

@@ -254,10 +254,11 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
         return status.error();
       }
     }
-    // No body is denser than steel; one without volume drags nothing along.
+    // No body is denser than steel; one that nothing presses on drags nothing along.
     constexpr double steel_kgm3 = 7850.0;
     const double volume_m3 = v.profile->volume_m3();
-    v.density_kgm3 = volume_m3 > 0.0 ? std::min(steel_kgm3, v.mass_kg / volume_m3) : 0.0;
+    v.density_kgm3 =
+        v.has_outline() && volume_m3 > 0.0 ? std::min(steel_kgm3, v.mass_kg / volume_m3) : 0.0;
   }
   v.strength = facts.honeycomb ? honeycomb_strength(*facts.honeycomb)
                : v.movable()   ? strength_of(v, box)

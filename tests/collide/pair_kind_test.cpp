@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+
 #include <cstdint>
 #include <random>
 #include <string>
@@ -15,6 +17,7 @@ namespace crashrank {
 namespace {
 
 using test::triangle;
+using Point = Eigen::Vector3d;
 
 // The same kind whichever comes first and however the corners are numbered.
 void expect_kind(PairKind kind, const TriangleD& a, const TriangleD& b, const char* what) {

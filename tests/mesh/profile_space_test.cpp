@@ -123,10 +123,10 @@ TEST(ProfileSpace, BeamsAndPlatesAreSeenAtTheirHeights) {
 TEST(ProfileSpace, ASlopingSurfaceIsLowAtItsEdgeAndHigherBehind) {
   // A wedge that rises from 0.6 m at x = 2 to 0.8 m at x = 0.
   TriangleMesh mesh;
-  mesh.vertices = {{2, -1, 0.6F}, {2, 1, 0.6F}, {0, 1, 0.8F}, {0, -1, 0.8F}, {0, 1, 0.6F},
-                   {0, -1, 0.6F}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}, {0, 3, 5}, {3, 2, 4}, {3, 4, 5},
-                    {0, 5, 4}, {0, 4, 1}};
+  mesh.vertices = {{2, -1, 0.6F}, {2, 1, 0.6F}, {0, 1, 0.8F},
+                   {0, -1, 0.8F}, {0, 1, 0.6F}, {0, -1, 0.6F}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}, {0, 3, 5},
+                    {3, 2, 4}, {3, 4, 5}, {0, 5, 4}, {0, 4, 1}};
   const Band band = band_of(profile_of(mesh), 4);
   for (const OutlinePiece& piece : band.pieces) {
     if (piece.normal_x < 0.9F) continue;
@@ -193,9 +193,8 @@ TEST(ProfileSpace, OutlinesOfRandomBodiesOfBoxesHoldTheirSampledProjection) {
       for (double x = -reach; x < reach; x += step) {
         for (double y = -reach; y < reach; y += step) {
           const Vector2d p(x, y);
-          covered += std::any_of(boxes.begin(), boxes.end(), [&](const TurnedBox& b) {
-            return in_band(b) && b.holds(p);
-          });
+          covered += std::any_of(boxes.begin(), boxes.end(),
+                                 [&](const TurnedBox& b) { return in_band(b) && b.holds(p); });
         }
       }
       covered *= step * step;

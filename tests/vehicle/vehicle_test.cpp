@@ -293,13 +293,6 @@ TEST(Vehicle, AGivenProfileIsUsedAndAMissingOneIsMade) {
   EXPECT_EQ(made->profile->area_m2, profile->area_m2);
 }
 
-TEST(Vehicle, WhollyAboveTheHighestBandItPressesOnNothing) {
-  const Result<Vehicle> high = describe_vehicle(test::box_mesh({1, 1, 1}, {0, 0, 9}), {});
-  ASSERT_TRUE(high);
-  EXPECT_FALSE(high->profile->presses());
-  EXPECT_EQ(high->density_kgm3, 0.0);
-}
-
 TEST(Vehicle, WithoutATriangleItIsRefused) {
   const Result<Vehicle> empty = describe_vehicle(TriangleMesh{}, {});
   ASSERT_FALSE(empty);

@@ -11,14 +11,14 @@
 
 namespace crashrank {
 
-/// Intervals in which the body lies along one body axis, sampled on nodes along the other: one where
-/// it is convex, several where a bay at least 0.8 m wide and 0.4 m over the ground parts them. They are
-/// stored in layers by falling length: layer k of a node is its interval number k. Nodes with fewer
-/// intervals than layers hold -1e9 and 1e9 in the others.
+/// Intervals in which the body lies along one body axis, sampled on nodes along the other: one
+/// where it is convex, several where a bay at least 1.2 m wide and 0.4 m over the ground parts
+/// them. They are stored in layers by falling length: layer k of a node is its interval number k.
+/// Nodes with fewer intervals than layers hold -1e9 and 1e9 in the others.
 struct Silhouette {
   static constexpr std::size_t most_layers = 4;  ///< the narrowest gaps beyond are closed
-  float low_m = 0.0F;        ///< coordinate of the first node, m
-  float nodes_per_m = 0.0F;  ///< 1 over their distance, 1/m
+  float low_m = 0.0F;                            ///< coordinate of the first node, m
+  float nodes_per_m = 0.0F;                      ///< 1 over their distance, 1/m
   std::uint32_t first = 0;   ///< of its nodes in `Silhouettes::nodes`, layer by layer
   std::uint32_t count = 0;   ///< nodes of a layer; 0: no outline in the band
   std::uint32_t layers = 0;  ///< number of layers
@@ -92,16 +92,16 @@ struct Silhouettes {
   /// Heights that the body takes up along the line of a node, m over its ground; they go on beyond
   /// the edge of a band where the body does.
   std::vector<HeightRange> heights;
-  HeightRange all_heights;  ///< of all bands that press, m over the ground
-  std::array<BandBounds, profile_bands> bands{};    ///< around both
-  std::vector<SilhouetteNode> nodes;                ///< of all
-  std::vector<PieceBlock> blocks;                   ///< by rising band
-  std::vector<PieceRows> rows;                      ///< of the blocks
-  std::vector<BlockGroup> groups;                   ///< of the blocks
-  float min_x = 0.0F;                               ///< bounds of all outlines, m
-  float max_x = 0.0F;                               ///< m
-  float min_y = 0.0F;                               ///< m
-  float max_y = 0.0F;                               ///< m
+  HeightRange all_heights;                        ///< of all bands that press, m over the ground
+  std::array<BandBounds, profile_bands> bands{};  ///< around both
+  std::vector<SilhouetteNode> nodes;              ///< of all
+  std::vector<PieceBlock> blocks;                 ///< by rising band
+  std::vector<PieceRows> rows;                    ///< of the blocks
+  std::vector<BlockGroup> groups;                 ///< of the blocks
+  float min_x = 0.0F;                             ///< bounds of all outlines, m
+  float max_x = 0.0F;                             ///< m
+  float min_y = 0.0F;                             ///< m
+  float max_y = 0.0F;                             ///< m
 
   /// Larger side of the bounds, m.
   double longest_m() const { return static_cast<double>(std::max(max_x - min_x, max_y - min_y)); }
@@ -109,8 +109,8 @@ struct Silhouettes {
   double width_m() const { return static_cast<double>(std::min(max_x - min_x, max_y - min_y)); }
 };
 
-/// Samples a profile: nodes every 50 mm, every twentieth of the width of narrow bodies. O(pieces log
-/// pieces).
+/// Samples a profile: nodes every 50 mm, every twentieth of the width of narrow bodies. O(pieces
+/// log pieces).
 CRASHRANK_API Silhouettes make_silhouettes(const Profile& profile);
 
 }  // namespace crashrank
