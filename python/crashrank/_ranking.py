@@ -57,6 +57,7 @@ class RankedCandidate(Record):
     overtaken_share: float | None
     collides: bool | None
     contacts: tuple[Record, ...]
+    motion: tuple[Record, ...]
     crowded: bool
     other: str | None
     time_of_impact_s: float | None

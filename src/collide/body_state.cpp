@@ -2,7 +2,7 @@
 
 #include "crashrank/internal/base/products.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
-#include "crashrank/internal/collide/predicates.hpp"
+#include "crashrank/internal/base/predicates.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <Eigen/Core>

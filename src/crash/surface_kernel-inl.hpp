@@ -161,18 +161,18 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   F8 least = d.least();
   M8 where = both(p.where, less(zero, least));
   if (bits(where) == 0) return;
-  // Heights that both bodies take up: the piece at the surface and behind it, the pressed body
-  // there.
+  // Heights that both bodies take up: the piece at the surface and, the deeper it is, behind it;
+  // the pressed body there.
   const Edges there = heights_at(target_, p.target, d);
-  const F8 rise = all(q_.rise_m);
-  const auto common_m = [&](const std::array<float, block_pieces>& low,
-                            const std::array<float, block_pieces>& high) {
-    return positive(minimum(load(high.data() + p.first) + rise, there.greatest) -
-                    maximum(load(low.data() + p.first) + rise, there.least));
+  const F8 behind = minimum(one, least * all(1.0F / profile_depth));
+  const auto height_of = [&](const std::array<float, block_pieces>& at_edge,
+                             const std::array<float, block_pieces>& at_depth) {
+    const F8 edge = load(at_edge.data() + p.first);
+    return edge + behind * (load(at_depth.data() + p.first) - edge) + all(q_.rise_m);
   };
-  const F8 common_at_edge = common_m(p.rows->edge_low_m, p.rows->edge_high_m);
-  const F8 common_behind = common_m(p.rows->behind_low_m, p.rows->behind_high_m);
-  where = both(where, less(zero, common_behind));
+  const F8 common = minimum(height_of(p.rows->edge_high_m, p.rows->behind_high_m), there.greatest) -
+                    maximum(height_of(p.rows->edge_low_m, p.rows->behind_low_m), there.least);
+  where = both(where, less(zero, common));
   if (bits(where) == 0) return;
   lowest_band_ = {std::min(lowest_band_[0], p.target), std::min(lowest_band_[1], p.band)};
   highest_band_ = {std::max(highest_band_[0], p.target), std::max(highest_band_[1], p.band)};
@@ -210,8 +210,6 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   const F8 end_weight = nx * nx;
   const F8 side_weight = flank * ny * ny;
   const F8 depth = end_weight * end + side_weight * minimum(side, end_depth_limit);
-  const F8 common = common_at_edge + (common_behind - common_at_edge) *
-                                         minimum(one, depth * all(1.0F / profile_depth));
   CrushCurves own = crush_curves(own_, p.target, x, y, nx, ny);
   own.shorten(end_weight * (d.front + d.rear) + side_weight * (d.left + d.right));
   F8 force;

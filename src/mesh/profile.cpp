@@ -89,7 +89,10 @@ double enclosed_m2(const detail::OutlineLoop& loop) {
 }
 
 void add_pieces(const detail::BandOutline& outline, const detail::OutlineLoop& loop,
-                double longest_m, std::vector<OutlinePiece>& pieces) {
+                std::size_t band, double longest_m, std::vector<OutlinePiece>& pieces) {
+  // Where a gap was closed there is no surface.
+  const HeightRange all{static_cast<float>(profile_edges_m[band]),
+                        static_cast<float>(profile_edges_m[band + 1])};
   for (std::size_t i = 0; i < loop.points.size(); ++i) {
     const Vector2d& from = loop.points[i];
     const Vector2d& to = loop.points[(i + 1) % loop.points.size()];
@@ -110,8 +113,8 @@ void add_pieces(const detail::BandOutline& outline, const detail::OutlineLoop& l
                          {},
                          {}};
       const auto heights = outline.heights(middle - half, middle + half, profile_depth_m);
-      piece.at_edge = heights.at_edge;
-      piece.behind = heights.behind;
+      piece.behind = heights.behind.empty() ? all : heights.behind;
+      piece.at_edge = heights.at_edge.empty() ? piece.behind : heights.at_edge;
       pieces.push_back(piece);
     }
   }
@@ -124,7 +127,6 @@ double occupied_share(const OutlinePiece* first, const OutlinePiece* last, doubl
   for (const OutlinePiece* piece = first; piece != last; ++piece) {
     const auto piece_m = static_cast<double>(piece->length_m);
     length += piece_m;
-    if (piece->behind.empty()) continue;
     occupied += piece_m * static_cast<double>(piece->behind.high_m - piece->behind.low_m);
   }
   return length > 0.0 ? std::min(1.0, occupied / (length * height_m)) : 0.0;
@@ -157,7 +159,7 @@ Result<Profile> profile_of(const TriangleMesh& mesh) {
     const detail::BandOutline outline(surface, cell_m, tolerance_cells, sky);
     double area = 0.0;
     for (const detail::OutlineLoop& loop : outline.loops()) {
-      add_pieces(outline, loop, piece_m, profile.pieces);
+      add_pieces(outline, loop, band, piece_m, profile.pieces);
       if (!loop.inner) {
         area += enclosed_m2(loop);
         profile.first_inner[band] = static_cast<std::uint32_t>(profile.pieces.size());

@@ -154,7 +154,7 @@ Result<std::shared_ptr<const Profile>> missing_profile(const ModelHeader& header
     return made.error();
   }
   if (!made->pieces.empty())
-    return refused("profile", "it has no piece, but the mesh has outlines");
+    return refused("profile", "there is none, though the mesh has outlines");
   return std::shared_ptr<const Profile>(std::make_shared<Profile>(std::move(*made)));
 }
 

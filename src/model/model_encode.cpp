@@ -114,10 +114,7 @@ bool is_unit(float x, float y) {
   return std::abs(std::sqrt(p * p + q * q) - 1.0) <= rounding;
 }
 
-/// True for an empty range, whose bits are those of a new one, and for one within a band.
 bool lies_in_band(const HeightRange& range, std::size_t band) {
-  const HeightRange none;
-  if (range.low_m == none.low_m && range.high_m == none.high_m) return true;
   constexpr double rounding_m = 1e-6;
   return static_cast<double>(range.low_m) >= profile_edges_m[band] - rounding_m &&
          range.low_m <= range.high_m &&

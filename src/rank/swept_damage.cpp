@@ -1,6 +1,6 @@
 #include "rank/swept_damage.hpp"
 
-#include "crashrank/internal/collide/predicates.hpp"
+#include "crashrank/internal/base/predicates.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "crashrank/internal/collide/predicates.hpp"
+#include "crashrank/internal/base/predicates.hpp"
 
 #include "crashrank/internal/base/products.hpp"
 

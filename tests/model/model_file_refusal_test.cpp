@@ -119,7 +119,7 @@ TEST_F(ModelFile, StoresWhatIsStatedOfTheMass) {
 }
 
 // A flat plate on the ground has no outline, and yet can be collided with.
-TEST_F(ModelFile, StoresAMeshWithoutOutlinesWithoutAProfile) {
+TEST_F(ModelFile, StoresAMeshWithoutOutlinesWithAnEmptyProfile) {
   TriangleMesh plate;
   test::add_triangle(plate, {0, 0, 0}, {2, 0, 0}, {2, 2, 0});
   test::add_triangle(plate, {0, 0, 0}, {2, 2, 0}, {0, 2, 0});
@@ -130,7 +130,8 @@ TEST_F(ModelFile, StoresAMeshWithoutOutlinesWithoutAProfile) {
   EXPECT_EQ(loaded_pieces(bytes), 0U);
   const Result<LoadedModel> loaded = decoded(bytes);
   ASSERT_TRUE(loaded.ok()) << loaded.error().message();
-  EXPECT_EQ(loaded->stored.model.profile, nullptr);
+  ASSERT_NE(loaded->stored.model.profile, nullptr);
+  EXPECT_TRUE(loaded->stored.model.profile->pieces.empty());
   EXPECT_EQ(encoded(loaded->stored), bytes);
   expect_refused(with_other_head(bytes, [](detail::ModelHeader& h) { h.band_area_m2[4] = 1.0F; }),
                  "profile", "it has no piece");

@@ -123,7 +123,7 @@ TEST(Fault, AnEgoWithoutAnOutlineIsRefusedByNameAndAnActorIsNoCrashPartner) {
   point.vertices = {{0, 0, 0}};
   point.triangles = {{0, 0, 0}};
   TriangleMesh plate;
-  plate.vertices = {{0, -1, -1}, {0, 1, -1}, {0, 0, 1}};
+  plate.vertices = {{0, -1, 0}, {0, 1, 0}, {1, 0, 0}};
   plate.triangles = {{0, 1, 2}};
   for (const TriangleMesh& mesh : {point, plate}) {
     Scene scene = car_and_wall(10.0);

@@ -264,7 +264,11 @@ TEST(Harm, HittingACarRanksBeforeHittingAPedestrian) {
   }
   // 75 kg against 1500 kg: nearly all of the change of velocity is that of the person.
   const ContactSeverity& hit = of(harm, "straight on").contacts.front().severity;
-  EXPECT_NEAR(hit.other.delta_v_mps, 14.0 * 1500 / 1575, 0.5);
+  // While the car pushes the person along, its force also balances that of the road.
+  constexpr double push_s = 0.3;
+  EXPECT_GT(hit.other.delta_v_mps, 14.0 * 1500 / 1575 - 0.5);
+  EXPECT_LT(hit.other.delta_v_mps,
+            14.0 * 1500 / 1575 + 0.5 + push_s * scene.scenario.grip * standard_gravity_mps2);
   EXPECT_NEAR(hit.ego.delta_v_mps, 14.0 * 75 / 1575, 0.1);
   EXPECT_NEAR(std::fmod(hit.ego.pdof_deg + 10, 360.0), 10, 5);
   EXPECT_FALSE(of(energy, "brake").contacts.front().severity.simulated);

@@ -1,6 +1,6 @@
 #include "mesh/importer/polygon.hpp"
 
-#include "crashrank/internal/collide/predicates.hpp"
+#include "crashrank/internal/base/predicates.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/pose.hpp"
-#include "crashrank/internal/collide/predicates.hpp"
+#include "crashrank/internal/base/predicates.hpp"
 #include "crashrank/mesh/triangle_mesh.hpp"
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "crashrank/base/version.hpp"
-#include "crashrank/internal/collide/exact_integer.hpp"
+#include "crashrank/internal/base/exact_integer.hpp"
 
 #include <Eigen/Core>
 
