@@ -171,7 +171,15 @@ inline void list_blocks(const PressQuery& q, float near_m, NearPieces& near) {
   // piece that is found inside later without having been tracked on its way in.
   constexpr float inside_m = 0.05F;
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
-  const float allowed_m = near.is_new() ? inside_m : 0.0F;
+  // On a slope outlines lie as far apart as seen from above, and overlap by the slope's share of
+  // the length of the bodies when they meet.
+  constexpr float length_m = 10.0F;
+  const auto steepness2 = [](const PlanarBody& body) {
+    return static_cast<float>(body.rise_x * body.rise_x + body.rise_y * body.rise_y);
+  };
+  const float overlap_m =
+      0.5F * length_m * std::max(steepness2(q.pusher->motion), steepness2(q.pressed->motion));
+  const float allowed_m = near.is_new() ? inside_m + overlap_m : 0.0F;
   near.count = 0;
   ++near.list;
   for (std::size_t g = 0; g < own.groups.size(); ++g) {

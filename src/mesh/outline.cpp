@@ -234,13 +234,14 @@ BandOutline::BandOutline(const BandSurface& surface, double cell_m, double toler
         continue;
       }
       OutlineLoop loop;
-      loop.inner = cells[raster_.index(column, row - 1)] == Cell::inside;
+      std::ptrdiff_t twice_area = 0;  // in cells; negative around free space
       std::ptrdiff_t x = column;
       std::ptrdiff_t y = row;
       std::size_t direction = 0;
       do {
         if (direction == 0) begun[raster_.index(x, y)] = 1;
         loop.points.push_back(snap(raster_, border, x, y));
+        twice_area += x * step_y[direction] - y * step_x[direction];
         x += step_x[direction];
         y += step_y[direction];
         // Left where that keeps solid cells to the left and free ones to the right, else ahead,
@@ -255,6 +256,7 @@ BandOutline::BandOutline(const BandSurface& surface, double cell_m, double toler
           }
         }
       } while (x != column || y != row || direction != 0);
+      loop.inner = twice_area < 0;
       loop.points =
           simplified(std::move(loop.points), tolerance_cells * raster_.cell_m, raster_.middle_y);
       if (loop.points.size() < 2) continue;

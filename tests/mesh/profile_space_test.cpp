@@ -84,6 +84,24 @@ TEST(ProfileSpace, AYardIsFreeWithSolidWallsOrSheetsAndUnderARoof) {
   }
 }
 
+TEST(ProfileSpace, ABodyInAYardHasItsOwnOuterOutline) {
+  TriangleMesh mesh = yard();
+  append(mesh, box(-1, -0.5, 0, 1, 0.5, 1));
+  const Band band = band_of(profile_of(mesh), 3);
+  EXPECT_EQ(band.outlines(), 2);
+  EXPECT_EQ(Band::outlines_of(band.inner), 1);
+  EXPECT_NEAR(band.area_of_pieces() + Band::area_within(band.inner), 35.0 - 24.0 + 2.0, 0.05);
+  EXPECT_NEAR(band.winding({0.0, 0.0}), 2.0, 1e-6) << "in the block, within the outer outline";
+}
+
+TEST(ProfileSpace, AFoundationIsBelowTheGround) {
+  const Profile wall = profile_of(box(0, -2, -5, 0.3, 2, 2.5));
+  EXPECT_EQ(wall.ground_m, 0.0);
+  EXPECT_NEAR(static_cast<double>(band_of(wall, 9).heights().high_m), 2.5, 1e-6);
+  EXPECT_EQ(profile_of(box(0, -2, -1, 0.3, 2, 1)).ground_m, -1.0);
+  EXPECT_EQ(profile_of(box(0, -2, -5, 0.3, 2, 0)).ground_m, -5.0);
+}
+
 TEST(ProfileSpace, ASolidBlockAClosedShellAndANarrowGapAreNotFree) {
   TriangleMesh gap = box(-3, -2, 0, 3, -0.12, 1);
   append(gap, box(-3, 0.12, 0, 3, 2, 1));
