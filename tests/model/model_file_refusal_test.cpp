@@ -142,6 +142,7 @@ TEST_F(ModelFile, StoresAMeshWithoutOutlinesWithAnEmptyProfile) {
   const Bytes whole = encoded(sample(60));
   Bytes without = with_other_head(whole, [](detail::ModelHeader& h) {
     h.first_piece = {};
+    h.first_inner_piece = {};
     h.band_area_m2 = {};
     h.ground_m = 0.0;
   });
