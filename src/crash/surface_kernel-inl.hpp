@@ -248,8 +248,12 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
       minimum(all(2.0F * spread) * minimum(depth, depth_ahead), all(q_.excess_width_m));
   force = force * (one + extra_width * all(1.0F / q_.narrower_width_m));
   const auto height = static_cast<float>(band_height_m(p.target));
+  // The lowest band drags along what is below it, too.
+  const auto dragged_m = static_cast<float>(p.target == lowest_pressing_band
+                                                ? profile_edges_m[lowest_pressing_band + 1]
+                                                : band_height_m(p.target));
   const F8 length = load(p.rows->length_m.data() + p.first);
-  const F8 pressed = (force + all(q_.dragged_density_kgm3 * height) * advance * advance) *
+  const F8 pressed = (force + all(q_.dragged_density_kgm3 * dragged_m) * advance * advance) *
                      minimum(one, least * all(1.0F / soft_m)) * own_share *
                      (length * (common * all(1.0F / height)));
   const F8 whole = select(where, pressed, zero);
