@@ -133,19 +133,20 @@ double occupied_share(const OutlinePiece* first, const OutlinePiece* last, doubl
 }
 
 Result<Profile> profile_of(const TriangleMesh& mesh) {
-  // A body that reaches below z = 0 stands on its lowest point, as one whose origin is its middle;
-  // what reaches deeper than any vehicle's middle lies is the foundation of what is above.
+  // A body that reaches below z = 0 stands on its lowest point, as one whose origin is its middle.
+  // What reaches deeper than any vehicle's middle lies has a foundation: of it the uppermost metre
+  // counts.
   constexpr double below_ground_m = 0.3;
   constexpr double foundation_m = 2.5;
+  constexpr double seen_below_m = 1.0;
   Profile profile;
   const Result<Box> box = surface_bounds(mesh);
   if (!box) return box.error();
   const auto lowest_m = static_cast<double>(box->min.z());
   const bool stands_above =
       static_cast<double>(box->max.z()) > profile_edges_m[lowest_pressing_band];
-  if (lowest_m < -below_ground_m && !(lowest_m < -foundation_m && stands_above)) {
-    profile.ground_m = lowest_m;
-  }
+  const bool has_foundation = lowest_m < -foundation_m && stands_above;
+  if (lowest_m < -below_ground_m) profile.ground_m = has_foundation ? -seen_below_m : lowest_m;
   const double longest = static_cast<double>(std::max(box->extent().x(), box->extent().y()));
   const double cell_m = std::clamp(longest / cells_along, finest_cell_m, coarsest_cell_m);
   const double piece_m =

@@ -96,8 +96,8 @@ TEST(ProfileSpace, ABodyInAYardHasItsOwnOuterOutline) {
 
 TEST(ProfileSpace, AFoundationIsBelowTheGround) {
   const Profile wall = profile_of(box(0, -2, -5, 0.3, 2, 2.5));
-  EXPECT_EQ(wall.ground_m, 0.0);
-  EXPECT_NEAR(static_cast<double>(band_of(wall, 9).heights().high_m), 2.5, 1e-6);
+  EXPECT_EQ(wall.ground_m, -1.0);
+  EXPECT_NEAR(static_cast<double>(band_of(wall, 10).heights().high_m), 3.5, 1e-6);
   EXPECT_EQ(profile_of(box(0, -2, -1, 0.3, 2, 1)).ground_m, -1.0);
   EXPECT_EQ(profile_of(box(0, -2, -5, 0.3, 2, 0)).ground_m, -5.0);
 }

@@ -12,9 +12,9 @@
 namespace crashrank {
 
 /// Edges of the height bands of a profile, m over the ground (body z = 0; a mesh that reaches more
-/// than 0.3 m below that stands on its lowest point, unless it reaches more than 2.5 m below and
-/// stands above the ground as well: that is a foundation). What is higher than the last edge is not
-/// part of a profile.
+/// than 0.3 m below that stands on its lowest point; of one that reaches more than 2.5 m below and
+/// above the ground as well, which is a foundation, the uppermost metre below counts). What is
+/// higher than the last edge is not part of a profile.
 inline constexpr std::array<double, 12> profile_edges_m{0.0, 0.1, 0.2, 0.4, 0.6, 0.8,
                                                         1.0, 1.2, 1.6, 2.2, 3.0, 4.0};
 /// Number of height bands.
