@@ -128,7 +128,7 @@ TEST(Compile, InspectTellsWhatAModelFileHolds) {
   EXPECT_NEAR(file.at("extent_m")[0].get<double>(), 4.0, 1e-6);
   EXPECT_EQ(file.at("parts")[0].at("name"), "body");
   const Json& model = file.at("model");
-  EXPECT_EQ(model.at("version"), 2);
+  EXPECT_EQ(model.at("version"), 3);
   EXPECT_EQ(model.at("checksum"), compiled.json().at("checksum"));
   EXPECT_EQ(model.at("bytes"), compiled.json().at("bytes"));
   EXPECT_EQ(model.at("mass_kg"), 1450.0);
@@ -137,7 +137,7 @@ TEST(Compile, InspectTellsWhatAModelFileHolds) {
   EXPECT_EQ(model.at("up"), "+y");
   EXPECT_EQ(model.at("forward"), "-z");
   const Outcome text = place.crashrank({"inspect", "mm.crm"});
-  EXPECT_NE(text.out.find("model file version 2"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("model file version 3"), std::string::npos) << text.out;
   EXPECT_FALSE(
       place.crashrank({"inspect", "a.obj", "--json"}).json()["files"][0].contains("model"));
 
