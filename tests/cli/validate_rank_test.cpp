@@ -88,7 +88,7 @@ struct Sedan {
     vertices.resize(counts[2]);
     triangles.resize(counts[3]);
     const std::size_t begin =
-        section(384) + section(std::size_t{8} * counts[0]) + section(counts[1]);
+        section(448) + section(std::size_t{8} * counts[0]) + section(counts[1]);
     std::memcpy(vertices.data(), file.data() + begin, 12 * vertices.size());
     std::memcpy(triangles.data(), file.data() + begin + section(12 * vertices.size()),
                 12 * triangles.size());
