@@ -133,15 +133,15 @@ struct FurtherContact {
 /// Simulated motion of the centre of mass of a body that contact forces acted on, from its state
 /// before the first force to the end of the simulation. World axes; all members have one length.
 struct BodyMotion {
-  std::size_t body = ego_body;  ///< `ego_body`, or an index into Scenario::actors
-  std::vector<double> t_s;      ///< from the decision, rising
-  std::vector<double> x_m;
-  std::vector<double> y_m;
-  std::vector<double> yaw_rad;  ///< heading, left positive, from x
-  std::vector<double> vx_mps;
-  std::vector<double> vy_mps;
-  std::vector<double> yaw_rate_radps;
-  std::vector<char> pressed;  ///< 1: a contact force acted since the time before
+  std::size_t body = ego_body;         ///< `ego_body`, or an index into Scenario::actors
+  std::vector<double> t_s;             ///< from the decision, rising
+  std::vector<double> x_m;             ///< position, m
+  std::vector<double> y_m;             ///< m
+  std::vector<double> yaw_rad;         ///< heading, left positive, from x
+  std::vector<double> vx_mps;          ///< velocity, m/s
+  std::vector<double> vy_mps;          ///< m/s
+  std::vector<double> yaw_rate_radps;  ///< left positive, rad/s
+  std::vector<char> pressed;           ///< 1: a contact force acted since the time before
 };
 
 /// An approach within the tolerance without intersection.
