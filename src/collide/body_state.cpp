@@ -1,8 +1,8 @@
 #include "crashrank/collide/body_state.hpp"
 
+#include "crashrank/internal/base/predicates.hpp"
 #include "crashrank/internal/base/products.hpp"
 #include "crashrank/internal/collide/box_test.hpp"
-#include "crashrank/internal/base/predicates.hpp"
 #include "crashrank/internal/collide/triangle_test.hpp"
 
 #include <Eigen/Core>
