@@ -170,10 +170,11 @@ void count_contacts(const Scenario& asked, const std::vector<Model>& models, con
       const Candidate& candidate = result->candidates[ranked.candidate];
       const bool is_small = is_small_overlap(likeliest, models, candidate.motion, contact);
       count.small_overlaps += is_small ? 1U : 0U;
-      std::printf("%s, '%s': '%s' after %.3f s, %.1f m/s along the normal%s\n", name,
-                  candidate.name.c_str(), scenario.actors[contact.actor].name.c_str(),
-                  contact.time_of_impact_s, contact.normal_speed_mps,
-                  is_small ? ", overlap under 2 cm" : "");
+      std::printf(
+          "%s, '%s': '%s' after %.3f s at (%.2f, %.2f, %.2f) m, %.1f m/s along the normal%s\n",
+          name, candidate.name.c_str(), scenario.actors[contact.actor].name.c_str(),
+          contact.time_of_impact_s, contact.point_m.x(), contact.point_m.y(), contact.point_m.z(),
+          contact.normal_speed_mps, is_small ? ", overlap under 2 cm" : "");
     }
   }
 }
