@@ -47,38 +47,30 @@ namespace {
 /// Windows with one begin, and the direction of each: forces from the side are at least as harmful
 /// as those from ahead, and these as those from behind.
 struct WindowSet {
-  struct Entry {
-    ExposureWindow window;
-    double from_side = 0.0;  ///< weights of the coefficients of side and rear, see injury.hpp
-    double from_behind = 0.0;
-
-    bool exceeds(const Entry& e) const {
-      return window.exposure_mps >= e.window.exposure_mps &&
-             window.struck_mps >= e.window.struck_mps &&
-             window.intrusion_m >= e.window.intrusion_m && from_side >= e.from_side &&
-             from_behind <= e.from_behind;
-    }
-  };
-  std::array<Entry, cells_per_window> entries;
+  std::array<ExposureWindow, cells_per_window> windows;
   std::size_t count = 0;
 
-  void add(const Entry& added) {
+  static bool exceeds(const ExposureWindow& w, const ExposureWindow& v) {
+    return w.exposure_mps >= v.exposure_mps && w.struck_mps >= v.struck_mps &&
+           w.intrusion_m >= v.intrusion_m && w.direction.from_side >= v.direction.from_side &&
+           w.direction.from_behind <= v.direction.from_behind;
+  }
+  void add(const ExposureWindow& added) {
     for (std::size_t k = 0; k < count; ++k) {
-      if (entries[k].exceeds(added)) return;
+      if (exceeds(windows[k], added)) return;
     }
     std::size_t kept = 0;
     for (std::size_t k = 0; k < count; ++k) {
-      if (!added.exceeds(entries[k])) entries[kept++] = entries[k];
+      if (!exceeds(added, windows[k])) windows[kept++] = windows[k];
     }
-    entries[kept] = added;
+    windows[kept] = added;
     count = kept + 1;
   }
 };
 
-WindowSet::Entry window_entry(const ExposedBody& body, const ExposureCell& first, std::int32_t end,
-                              const ContactAction& sum) {
-  WindowSet::Entry e;
-  ExposureWindow& w = e.window;
+ExposureWindow window_of(const ExposedBody& body, const ExposureCell& first, std::int32_t end,
+                         const ContactAction& sum) {
+  ExposureWindow w;
   const double more = body.restitution - 1.0;
   w.end = end;
   w.change_mps = Eigen::Vector2d(sum.dvx_mps + more * sum.rebound_x_mps,
@@ -93,17 +85,15 @@ WindowSet::Entry window_entry(const ExposedBody& body, const ExposureCell& first
   w.edge_m = sum.edge_m2ps / path_mps;
   if (!body.is_vehicle) {
     w.struck_mps = w.exposure_mps * (1.0 + sum.light_mps / path_mps);
-    return e;
+    return w;
   }
   w.intrusion_m = mean_intrusion_m(sum.intruded_m3, sum.deepest_m);
-  if (!(w.exposure_mps > 0.0)) return e;
+  if (!(w.exposure_mps > 0.0 && change_mps > 0.0)) return w;
   const double directed = change_mps / w.exposure_mps;
-  w.squeezed = 1.0 - directed;
-  if (!(change_mps > 0.0)) return e;
   const double along = w.change_mps.dot(w.forward) / change_mps;
-  e.from_side = directed * (1.0 - along * along);
-  e.from_behind = along > 0.0 ? directed * along * along : 0.0;
-  return e;
+  w.direction.from_side = directed * (1.0 - along * along);
+  w.direction.from_behind = along > 0.0 ? directed * along * along : 0.0;
+  return w;
 }
 
 }  // namespace
@@ -132,10 +122,10 @@ void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
     for (std::size_t k = first; k < cells.size() && cells[k].index < begin + cells_per_window;
          ++k) {
       sum.add(cells[k].action, 1.0);
-      set.add(window_entry(body, cells[first], cells[k].index + 1, sum));
+      set.add(window_of(body, cells[first], cells[k].index + 1, sum));
     }
     for (std::size_t k = 0; k < set.count; ++k) {
-      windows.push_back(set.entries[k].window);
+      windows.push_back(set.windows[k]);
       windows.back().begin = begin;
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/base/view.hpp"
+#include "crashrank/crash/injury.hpp"
 
 #include <Eigen/Core>
 
@@ -17,7 +18,7 @@ namespace crashrank::detail {
 /// change of velocity within 300 ms (49 CFR 563.8).
 inline constexpr double exposure_window_s = 0.3;
 /// Time cells of a window. Forces are summed over each cell.
-inline constexpr int cells_per_window = 32;
+inline constexpr int cells_per_window = 16;
 inline constexpr double exposure_cell_s = exposure_window_s / cells_per_window;
 
 /// Mass of the vehicle whose full hits the injury curves of people outside cars describe, kg.
@@ -54,7 +55,7 @@ struct ExposureCell {
 /// The cells of one body in which a contact force acted on it, in constant memory.
 class ExposureRecord {
 public:
-  static constexpr std::size_t most_cells = 512;  ///< later forces are not recorded
+  static constexpr std::size_t most_cells = 256;  ///< later forces are not recorded
 
   void prepare() { cells_.reserve(most_cells); }
   void begin() { cells_.clear(); }
@@ -74,8 +75,9 @@ struct ExposureWindow {
   double exposure_mps = 0.0;  ///< see `list_windows`
   /// Speed at which a hit by a car gives that exposure to a person outside cars.
   double struck_mps = 0.0;
-  double edge_m = 0.0;       ///< mean leading edge of what hits the body
-  double squeezed = 0.0;     ///< share of the exposure that exceeds the change of velocity
+  double edge_m = 0.0;  ///< mean leading edge of what hits the body
+  /// Of the change of velocity. The share of the exposure that exceeds it has none.
+  ForceDirection direction;
   double intrusion_m = 0.0;  ///< into its compartment, mean over a person's area
   double road_mps = 0.0;     ///< speed of the body before its first force
   Eigen::Vector2d change_mps = Eigen::Vector2d::Zero();  ///< change of its velocity

@@ -51,6 +51,12 @@ double risk_over_zero(const Argument& z) {
   return -std::expm1(-z.gain) * logistic(z.at_zero + z.gain);
 }
 
+/// -ln(1 - p) of that, log1p(L(z0) · (exp(gain) - 1)).
+double hazard_over_zero(const Argument& z) {
+  constexpr double most_gain = 600.0;  // keeps the exponential finite
+  return std::log1p(logistic(z.at_zero) * std::expm1(std::min(z.gain, most_gain)));
+}
+
 /// Logistic curve for occupants: intercept, slope per m/s, and the differences of side and rear
 /// from front.
 struct OccupantCurve {
@@ -64,22 +70,13 @@ constexpr OccupantCurve tum_occupant{-4.457, 0.177, 0.244, -0.431};
 constexpr OccupantCurve malliaris_mais3{-5.820, 0.202 / mph, 0.556, -2.170};
 constexpr OccupantCurve malliaris_fatal{-9.032, 0.198 / mph, 1.462, -1.921};
 
-/// Coefficient of the direction of force relative to the front: a weighted mean of the coefficient
-/// of the side and that of the front or rear. Even in the angle, with period 360 degrees.
-double direction_coefficient(const OccupantCurve& curve, double pdof_deg) {
-  const double angle = std::abs(std::remainder(pdof_deg, 360.0)) * std::numbers::pi / 180.0;
-  const double along = std::cos(angle);
-  const double end = along < 0.0 ? curve.rear : 0.0;
-  return curve.side + (end - curve.side) * along * along;
-}
-
-double occupant_risk(const OccupantCurve& curve, const Exposure& e) {
+double occupant_hazard(const OccupantCurve& curve, const Exposure& e) {
   Argument z;
-  z.at_zero = curve.intercept +
-              (1.0 - std::clamp(e.squeezed, 0.0, 1.0)) * direction_coefficient(curve, e.pdof_deg);
+  z.at_zero =
+      curve.intercept + curve.side * e.direction.from_side + curve.rear * e.direction.from_behind;
   z.gain = curve.per_mps * std::max(e.delta_v_mps, 0.0) +
            intrusion_gain_per_m * std::max(e.intrusion_m, 0.0);
-  return risk_over_zero(z);
+  return hazard_over_zero(z);
 }
 
 /// Not a logistic curve; intrusion multiplies the odds by exp(gain), as it does in a logistic
@@ -92,18 +89,18 @@ double joksch(const Exposure& e) {
          (risk + (1.0 - risk) * std::exp(-intrusion_gain_per_m * std::max(e.intrusion_m, 0.0)));
 }
 
-double occupant_risk(RiskModel model, const Exposure& e) {
+double occupant_hazard(RiskModel model, const Exposure& e) {
   switch (model) {
     case RiskModel::tum:
-      return occupant_risk(tum_occupant, e);
+      return occupant_hazard(tum_occupant, e);
     case RiskModel::malliaris_monfort:
-      return occupant_risk(malliaris_mais3, e);
+      return occupant_hazard(malliaris_mais3, e);
     case RiskModel::malliaris_rosen:
-      return occupant_risk(malliaris_fatal, e);
+      return occupant_hazard(malliaris_fatal, e);
     case RiskModel::joksch_monfort:
       break;
   }
-  return joksch(e);
+  return -std::log1p(-joksch(e));
 }
 
 /// Monfort & Mueller, centred on the means of their sample. The coefficient of the leading edge in
@@ -223,11 +220,24 @@ Result<RiskModel> risk_model_from_name(const std::string& name) {
                     "choose one of " + known);
 }
 
-double injury_risk(RiskModel model, const Exposure& exposure) {
-  if (exposure.person == Person::occupant) return occupant_risk(model, exposure);
+ForceDirection force_direction(double pdof_deg) {
+  const double angle = std::abs(std::remainder(pdof_deg, 360.0)) * std::numbers::pi / 180.0;
+  const double along = std::cos(angle);
+  return {1.0 - along * along, along < 0.0 ? along * along : 0.0};
+}
+
+double injury_hazard(RiskModel model, const Exposure& exposure) {
+  constexpr double most_risk = 1.0 - 1e-15;
+  const double most = -std::log1p(-most_risk);
+  if (exposure.person == Person::occupant) return std::min(occupant_hazard(model, exposure), most);
   const double edge_m = std::clamp(exposure.leading_edge_m, lowest_edge_m, highest_edge_m);
-  return risk_over_zero(
-      pedestrian_argument(model, pedestrian_speed_mps(exposure), edge_m, description_of(exposure)));
+  return std::min(hazard_over_zero(pedestrian_argument(model, pedestrian_speed_mps(exposure),
+                                                       edge_m, description_of(exposure))),
+                  most);
+}
+
+double injury_risk(RiskModel model, const Exposure& exposure) {
+  return -std::expm1(-injury_hazard(model, exposure));
 }
 
 double most_injury_risk(RiskModel model, const Exposure& exposure) {
@@ -235,7 +245,7 @@ double most_injury_risk(RiskModel model, const Exposure& exposure) {
   double most = 0.0;
   Exposure worst = exposure;
   for (const double pdof : {0.0, 90.0, 180.0}) {
-    worst.pdof_deg = pdof;
+    worst.direction = force_direction(pdof);
     most = std::max(most, injury_risk(model, worst));
   }
   return most;

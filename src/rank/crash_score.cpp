@@ -54,8 +54,7 @@ HarmExposure exposure_of(const Scene& scene, std::size_t index, const ExposureWi
   e.occupants = body.occupants;
   if (window == nullptr) return e;
   e.delta_v_mps = window->exposure_mps;
-  e.pdof_deg = pdof_of(*window);
-  e.squeezed = window->squeezed;
+  e.direction = window->direction;
   e.closing_speed_mps = window->struck_mps;
   e.leading_edge_m = window->edge_m;
   e.intrusion_m = window->intrusion_m;
@@ -63,20 +62,18 @@ HarmExposure exposure_of(const Scene& scene, std::size_t index, const ExposureWi
   return e;
 }
 
-/// -ln(1 - p): hazards of separate impacts add up.
 double WindowReader::hazard(const ExposureWindow& window) const {
-  constexpr double most_risk = 1.0 - 1e-15;
   HarmExposure e = exposure_of(scene_, body_.body, &window);
-  double risk = risk_of(e, scene_.harm, sample_);
+  double hazard = hazard_of(e, scene_.harm, sample_);
   if (is_bound_ && !has_cage(e.kind)) {
     // Windows that exceed this one may have another leading edge. Over all edges the risk is least
     // at one of the ends, see injury.cpp.
     for (const double edge_m : {0.0, 10.0}) {
       e.leading_edge_m = edge_m;
-      risk = std::min(risk, risk_of(e, scene_.harm, sample_));
+      hazard = std::min(hazard, hazard_of(e, scene_.harm, sample_));
     }
   }
-  return -std::log1p(-std::min(risk, most_risk));
+  return hazard;
 }
 
 double WindowReader::risk() const {
@@ -119,13 +116,35 @@ void CrashScore::add_scores(const Scene& scene, const CrashEffects& effects,
                                                             scene.harm.weights)
                                             : 1.0;
     if (weight == 0.0) continue;
+    const bool is_inside = has_cage(body_of(scene, body.body).vehicle.kind);
+    const auto same_curve = [is_inside](const HarmSample& p, const HarmSample& q) {
+      return p.model == q.model && (is_inside ? p.occupant_speed == q.occupant_speed
+                                              : p.outside_speed == q.outside_speed);
+    };
+    // Samples that read the same windows and curve have the same term.
+    struct Term {
+      const HarmSample* sample = nullptr;
+      double value = 0.0;
+    };
+    std::array<Term, 8> terms;
+    std::size_t known = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const HarmSample& sample = samples[i];
       if (i == 0 || sample.restitution != samples[i - 1].restitution) {
         list(scene, effects, body, sample.restitution);
+        known = 0;
       }
-      scores[i] +=
-          weight * row.of_body(WindowReader(scene, effects, body, windows_, sample, is_bound));
+      const auto end = terms.begin() + static_cast<std::ptrdiff_t>(known);
+      const auto term = std::find_if(
+          terms.begin(), end, [&](const Term& each) { return same_curve(*each.sample, sample); });
+      double value = 0.0;
+      if (term != end) {
+        value = term->value;
+      } else {
+        value = row.of_body(WindowReader(scene, effects, body, windows_, sample, is_bound));
+        if (known < terms.size()) terms[known++] = {&sample, value};
+      }
+      scores[i] += weight * value;
     }
   }
 }

@@ -47,8 +47,7 @@ Exposure person_exposure(const HarmExposure& body, Person person, const HarmOpti
   Exposure e;
   e.person = person;
   e.delta_v_mps = body.delta_v_mps * sample.occupant_speed;
-  e.pdof_deg = body.pdof_deg;
-  e.squeezed = body.squeezed;
+  e.direction = body.direction;
   e.impact_speed_mps =
       std::max(hurting_speed_mps(body.closing_speed_mps), fall_mps) * sample.outside_speed;
   e.leading_edge_m = body.leading_edge_m;
@@ -112,10 +111,15 @@ double hurting_speed_mps(double speed_mps) noexcept {
   return -speed_mps * std::expm1(-share * share);
 }
 
-double risk_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {
+double hazard_of(const HarmExposure& exposure, const HarmOptions& options,
+                 const HarmSample& sample) {
   Person person = Person::occupant;
   if (!carries_people(exposure.kind, person)) return 0.0;
-  return injury_risk(sample.model, person_exposure(exposure, person, options, sample));
+  return injury_hazard(sample.model, person_exposure(exposure, person, options, sample));
+}
+
+double risk_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {
+  return -std::expm1(-hazard_of(exposure, options, sample));
 }
 
 double people_weight(const HarmExposure& exposure, const HarmWeights& weights) {

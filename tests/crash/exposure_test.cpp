@@ -42,7 +42,8 @@ double value_of(const ExposureWindow& w) {
   const double size = w.change_mps.norm();
   const double along = size > 0.0 ? w.change_mps.dot(w.forward) / size : 0.0;
   const double direction = 0.2 * (1.0 - along * along) - (along > 0.0 ? 0.4 * along * along : 0.0);
-  return (1.0 + (1.0 - w.squeezed) * direction) *
+  const double directed = w.exposure_mps > 0.0 ? size / w.exposure_mps : 0.0;
+  return (1.0 + directed * direction) *
          (w.exposure_mps * w.exposure_mps + 5.0 * w.exposure_mps * w.intrusion_m);
 }
 
@@ -74,7 +75,6 @@ double sum_by_definition(View<const ExposureCell> cells, const ExposedBody& body
       const double change = w.change_mps.norm();
       w.exposure_mps = std::max(
           change, std::min(change + sum.cancelled_mps, std::sqrt(sum.crush_j / body.mass_kg)));
-      w.squeezed = 1.0 - change / w.exposure_mps;
       w.intrusion_m = std::min(sum.intruded_m3 / (0.45 * 0.65), sum.deepest_m);
       value = std::max(value, value_of(w));
     }
@@ -284,7 +284,7 @@ TEST(Exposure, InPileUpsIsTheGreatestChangeOfVelocityWithinAWindow) {
       double crush_j = 0.0;
       for (const ExposureCell& cell : cells) crush_j += cell.action.crush_j;
       const double exposure = exposure_of(cells, {mass_kg, true, 1.0});
-      // Cells of 9 ms cut windows coarser than steps.
+      // Cells of 19 ms cut windows coarser than steps.
       EXPECT_GE(exposure, 0.98 * change - 0.05) << "round " << round << ", body " << i;
       EXPECT_LE(exposure, std::max(1.02 * change + 0.05, std::sqrt(crush_j / mass_kg)))
           << "round " << round << ", body " << i;

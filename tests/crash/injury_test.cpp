@@ -22,7 +22,7 @@ constexpr RiskModel models[] = {RiskModel::tum, RiskModel::malliaris_monfort,
 Exposure occupant(double v, double pdof) {
   Exposure e;
   e.delta_v_mps = v;
-  e.pdof_deg = pdof;
+  e.direction = force_direction(pdof);
   return e;
 }
 
@@ -99,7 +99,7 @@ Exposure random_exposure(test::Random& random) {
   Exposure e;
   e.person = persons[random.below(4)];
   e.delta_v_mps = random.uniform(0, 50);
-  e.pdof_deg = random.uniform(0, 360);
+  e.direction = force_direction(random.uniform(0, 360));
   e.impact_speed_mps = random.uniform(0, 50);
   e.leading_edge_m = random.uniform(0.2, 1.6);
   e.intrusion_m = random.below(2) != 0 ? random.uniform(0, 0.8) : 0.0;

@@ -211,7 +211,7 @@ TEST(Harm, IsMonotoneAndBelowItsUpperBound) {
     less.intrusion_m *= random.uniform(0, 1);
     less.road_speed_mps *= random.uniform(0, 1);
     for (int direction = 0; direction < 20; ++direction) {
-      e.pdof_deg = less.pdof_deg = random.uniform(-10, 370);
+      e.direction = less.direction = force_direction(random.uniform(-10, 370));
       e.leading_edge_m = less.leading_edge_m = random.uniform(0.2, 1.6);
       ASSERT_LE(harm_of(e, options), most) << name();
       ASSERT_LE(harm_of(less, options), harm_of(e, options)) << name();

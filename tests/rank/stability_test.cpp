@@ -256,7 +256,7 @@ TEST(Stability, BoundsHoldForAllDirectionsAndFronts) {
         e.closing_speed_mps = step;
         const double most = most_harm(e, options);
         for (int side = 0; side < 36; ++side) {
-          e.pdof_deg = 10.0 * side;
+          e.direction = force_direction(10.0 * side);
           for (const double edge : {0.3, 0.6, 0.9, 1.5}) {
             e.leading_edge_m = edge;
             EXPECT_LE(harm_of(e, options), most);

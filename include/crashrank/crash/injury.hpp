@@ -83,15 +83,23 @@ struct PedestrianDescription {
 /// roughly 0.15 m (odds × 2), "acceptable" at 0.225 m (× 2.8) and "marginal" at 0.30 m (× 4).
 inline constexpr double intrusion_gain_per_m = 4.62098;
 
+/// Weights of the coefficients of side and rear, each in [0, 1]; what is left to a sum of 1 is the
+/// weight of the front. The share of a delta-v that is crush between several bodies has no
+/// direction and counts as from ahead.
+struct ForceDirection {
+  double from_side = 0.0;
+  double from_behind = 0.0;
+};
+
+/// The weights of a PDOF in degrees clockwise from ahead; see above.
+CRASHRANK_API ForceDirection force_direction(double pdof_deg);
+
 /// Inputs of the risk of one person.
 struct Exposure {
   Person person = Person::occupant;  ///< kind of person
   double delta_v_mps = 0.0;          ///< delta-v of the occupant's vehicle, magnitude, m/s
-  double pdof_deg = 0.0;  ///< direction the force comes from, degrees clockwise from ahead
-  /// Share in [0, 1] of the delta-v that is crush between several bodies. It has no direction and
-  /// counts as from ahead.
-  double squeezed = 0.0;
-  double impact_speed_mps = 0.0;  ///< closing speed, for people outside cars, m/s
+  ForceDirection direction;          ///< of the force on that vehicle
+  double impact_speed_mps = 0.0;     ///< closing speed, for people outside cars, m/s
   /// Height of the leading edge of the striking vehicle, m; 0.75 is a car's, 1.09 a pickup's.
   double leading_edge_m = 0.75;
   /// Deepest intrusion into the passenger compartment, for occupants, m, >= 0.
@@ -106,6 +114,10 @@ struct Exposure {
 /// 48 km/h). Intrusion adds `intrusion_gain_per_m` to the logistic's argument; in Joksch's curve,
 /// which is no logistic, it multiplies the odds alike, so that it counts beside a delta-v only.
 CRASHRANK_API double injury_risk(RiskModel model, const Exposure& exposure);
+
+/// -ln(1 - p) of that probability: hazards of independent impacts add up. At most 34.5, which is
+/// that of 1 - 1e-15.
+CRASHRANK_API double injury_hazard(RiskModel model, const Exposure& exposure);
 
 /// The largest `injury_risk` over all directions of force and all leading edges. Between the edges
 /// of 0.5 and 1.3 m, to which `injury_risk` clamps, the risk of Monfort & Mueller's MAIS3+ curve

@@ -41,8 +41,7 @@ struct HarmExposure {
   BodyKind kind = BodyKind::car;   ///< of this body
   bool ego = false;                ///< it is the ego
   double delta_v_mps = 0.0;        ///< its exposure, m/s
-  double pdof_deg = 0.0;           ///< where the force comes from, degrees clockwise from ahead
-  double squeezed = 0.0;           ///< see Exposure::squeezed
+  ForceDirection direction;        ///< of its force
   double closing_speed_mps = 0.0;  ///< for people outside cars, m/s; see ExposureWindow::struck_mps
   double leading_edge_m = 0.75;    ///< of the other body, m
   double crush_energy_j = 0.0;     ///< turned into its damage, J
@@ -110,6 +109,9 @@ CRASHRANK_API double harm_of(const HarmExposure& exposure, const HarmOptions& op
 /// alone, in [0, 1], without weights or numbers of people; 0 for kinds without people.
 CRASHRANK_API double risk_of(const HarmExposure& exposure, const HarmOptions& options,
                              const HarmSample& sample);
+/// -ln(1 - p) of that, see `injury_hazard`.
+CRASHRANK_API double hazard_of(const HarmExposure& exposure, const HarmOptions& options,
+                               const HarmSample& sample);
 
 /// Number of people in or on the body times the weight of one of them; 0 for kinds without people.
 /// `HarmExposure::occupants` replaces the number of `weights`.
