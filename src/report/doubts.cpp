@@ -307,6 +307,14 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
                                scenario.keys_without_effect.size() == 1 ? "it" : "them"));
 }
 
+void doubt_probabilities(const Scenario& scenario, std::vector<std::string>& doubts) {
+  Counted normalised;
+  for (const std::string& place : scenario.normalised) normalised.add(place);
+  if (normalised.count == 0) return;
+  doubts.push_back(fmt::format("probabilities do not sum to 1 and were divided by their sum: {}",
+                               normalised.examples()));
+}
+
 }  // namespace
 
 std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model> models,
@@ -333,6 +341,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_fixed(scenario, result, doubts);
   detail::doubt_bodies(scenario, models, result, doubts);
   doubt_keys(scenario, doubts);
+  doubt_probabilities(asked, doubts);
   return doubts;
 }
 

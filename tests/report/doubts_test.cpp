@@ -161,6 +161,14 @@ TEST(Doubts, KeysWithoutEffectAreNamed) {
             "out");
 }
 
+TEST(Doubts, NormalisedProbabilitiesAreNamed) {
+  Sound told;
+  told.scenario.normalised = {"actors[0].predictions"};
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0],
+            "probabilities do not sum to 1 and were divided by their sum: actors[0].predictions");
+}
+
 TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
   Sound told;
   told.scenario.grip = 0.8;
