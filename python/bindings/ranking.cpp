@@ -42,6 +42,12 @@ bool bounded(const RankBudget& budget) {
          budget.work != std::numeric_limits<std::uint64_t>::max();
 }
 
+/// The result, or a Failure that names the scenario's file.
+RankResult ranked_value(Result<RankResult> result, const Situation& situation) {
+  if (!result && result.error().file.empty()) result.error().file = situation.file();
+  return value_of(std::move(result));
+}
+
 /// Ranks; the interpreter's lock is not held. Throws Failure.
 RankResult rank_now(const Situation& situation, RankOptions& how, const RankBudget& within,
                     Progress& progress) {
@@ -53,14 +59,15 @@ RankResult rank_now(const Situation& situation, RankOptions& how, const RankBudg
     progress.all =
         value_of(make_candidates(situation.scenario(), static_cast<double>(bounds.extent().x())))
             .size();
-    return value_of(rank_within(situation.scenario(), situation.models(), how, budget));
+    return ranked_value(rank_within(situation.scenario(), situation.models(), how, budget),
+                        situation);
   }
   how.on_progress = [&progress](std::size_t evaluated, std::size_t candidates) {
     progress.done = evaluated;
     progress.all = candidates;
     return !progress.cancel;
   };
-  return value_of(rank(situation.scenario(), situation.models(), how));
+  return ranked_value(rank(situation.scenario(), situation.models(), how), situation);
 }
 
 std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const RankRequest& request,
