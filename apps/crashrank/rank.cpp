@@ -248,6 +248,7 @@ int run(const RankArguments& options) {
     RankingTextOptions text;
     text.top = options.top;
     text.colours = colours_wanted();
+    text.width = terminal_width();
     return ranking_text(*scenario, *models, result, text);
   };
   auto ends_itself = std::make_optional<EndsItself>();
