@@ -182,7 +182,22 @@ void warn_of_end(const RankArguments& options, const RankResult& ranked, bool an
   for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
 }
 
+/// Motions are recorded for the JSON answer, and not by the search that ends early.
+Status check_motion(const RankArguments& options) {
+  if (!options.motion) return Success{};
+  if (!options.json) {
+    return make_error(ErrorCode::usage, "--motion is part of the JSON answer alone",
+                      "add --json, or leave out --motion");
+  }
+  if (options.bounded()) {
+    return make_error(ErrorCode::usage, "--motion is not recorded by an answer within a budget",
+                      "leave out --deadline-ms, --work-budget and --first-place, or --motion");
+  }
+  return Success{};
+}
+
 int run(const RankArguments& options) {
+  if (const Status sound = check_motion(options); !sound) return fail(sound.error());
   if (options.json && is_standard(options.report)) {
     return fail(make_error(ErrorCode::usage,
                            "--json and --report - would both write standard output",
