@@ -105,9 +105,10 @@ std::string profile_picture(const Profile& profile, const std::string& title) {
   std::size_t count = 0;
   for (std::size_t band = 0; band < profile_bands; ++band) {
     if (profile.first[band] == profile.first[band + 1]) continue;
+    const std::size_t row = count / columns;
     panels += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n",
                           gap_px + static_cast<double>(count % columns) * (panel_px + gap_px),
-                          head_px + label_px + static_cast<double>(count / columns) * cell_px,
+                          head_px + label_px + static_cast<double>(row) * cell_px,
                           panel(profile, band, bounds, px_per_m));
     ++count;
   }
