@@ -5,6 +5,7 @@
 #include "mesh_arguments.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "profile_picture.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
@@ -179,9 +180,15 @@ int run(const CompileArguments& options) {
   // What was written is what counts.
   const Result<LoadedModel> written = load_model(options.output);
   if (!written) return fail(written.error());
+  const Model& model = written->stored.model;
+  const std::string odd =
+      model.profile ? profile_warning(*model.profile, model.mesh) : std::string();
+  if (!odd.empty()) {
+    warn(options.mesh_file, odd);
+  }
   const ModelFileFacts& facts = written->facts;
   const std::string checksum = fmt::format("{:08x}", facts.checksum);
-  const std::size_t triangles = written->stored.model.mesh.size();
+  const std::size_t triangles = model.mesh.size();
   if (options.json) {
     print_json({{"model", options.output},
                 {"version", facts.version},

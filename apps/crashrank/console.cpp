@@ -5,6 +5,7 @@
 #include "crashrank/internal/report/escape.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -99,6 +100,12 @@ bool colours_wanted() {
   const bool refused = no_color != nullptr && *no_color != '\0';
   const bool dumb = term == nullptr || std::strcmp(term, "dumb") == 0;
   return isatty(STDOUT_FILENO) != 0 && !refused && !dumb;
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;
+  return size.ws_col;
 }
 
 Progress::Progress(std::string what, std::size_t total) : what_(std::move(what)), total_(total) {

@@ -42,6 +42,9 @@ int finish(int code);
 /// True when stdout is a terminal that wants colours (NO_COLOR unset or empty, TERM not dumb).
 bool colours_wanted();
 
+/// Characters that a line of stdout has room for; 0 where it is no terminal.
+std::size_t terminal_width();
+
 /// Takes it upon the calling thread to write the answer; false where another thread has done so.
 /// Whoever interrupts has to end the process then. Safe from any thread.
 bool begin_answer();

@@ -157,6 +157,19 @@ std::string to_text(const std::string& file, const ImportedMesh& imported, const
   return text + parts.text(colours);
 }
 
+/// The outlines of a mesh, or those stored in its model.
+Result<std::shared_ptr<const Profile>> profile_of(const std::string& mesh_file,
+                                                  const TriangleMesh& mesh,
+                                                  const std::optional<Compiled>& compiled) {
+  if (compiled && compiled->stored.model.profile) return compiled->stored.model.profile;
+  Result<Profile> made = make_profile(mesh);
+  if (!made) {
+    made.error().file = mesh_file;
+    return made.error();
+  }
+  return std::make_shared<const Profile>(std::move(*made));
+}
+
 /// A mesh file, or the mesh of a model file.
 Result<ImportedMesh> look_at(const std::string& file, const MeshArguments& arguments,
                              std::optional<Compiled>& compiled) {
@@ -172,23 +185,10 @@ Result<ImportedMesh> look_at(const std::string& file, const MeshArguments& argum
   return mesh;
 }
 
-/// Draws the outlines of a mesh, or those stored in its model.
-Status draw_profile(const std::string& path, const std::string& mesh_file, const TriangleMesh& mesh,
-                    const std::optional<Compiled>& compiled) {
-  std::shared_ptr<const Profile> profile;
-  if (compiled) profile = compiled->stored.model.profile;
-  if (profile == nullptr) {
-    Result<Profile> made = make_profile(mesh);
-    if (!made) {
-      Error error = made.error();
-      error.file = mesh_file;
-      return error;
-    }
-    profile = std::make_shared<const Profile>(std::move(*made));
-  }
+Status draw_profile(const std::string& path, const std::string& mesh_file, const Profile& profile) {
   Result<OutputFile> out = OutputFile::open(path, svg_picture);
   if (!out) return out.error();
-  out->write(profile_picture(*profile, std::filesystem::path(mesh_file).filename().string()));
+  out->write(profile_picture(profile, std::filesystem::path(mesh_file).filename().string()));
   return out->close();
 }
 
@@ -225,10 +225,14 @@ int run(const InspectArguments& options) {
       if (failed == exit_usage) return failed;
       continue;
     }
+    const auto profile = profile_of(file, imported->mesh, compiled);
     if (!options.profile.empty()) {
-      const Status drawn = draw_profile(options.profile, file, imported->mesh, compiled);
+      if (!profile) return fail(profile.error());
+      const Status drawn = draw_profile(options.profile, file, **profile);
       if (!drawn) return fail(drawn.error());
     }
+    const std::string odd = profile ? profile_warning(**profile, imported->mesh) : std::string();
+    if (!odd.empty()) imported->warnings.push_back(odd);
     const ImportTransform transform =
         compiled ? compiled->stored.transform : *options.mesh.transform();
     const std::string hint = orientation_hint(imported->quality, transform, compiled.has_value());

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace crashrank::cli {
 namespace {
@@ -104,28 +105,49 @@ std::string profile_picture(const Profile& profile, const std::string& title) {
   std::size_t count = 0;
   for (std::size_t band = 0; band < profile_bands; ++band) {
     if (profile.first[band] == profile.first[band + 1]) continue;
+    const std::size_t row = count / columns;
     panels += fmt::format("<g transform=\"translate({:.1f} {:.1f})\">\n{}</g>\n",
                           gap_px + static_cast<double>(count % columns) * (panel_px + gap_px),
-                          head_px + label_px + static_cast<double>(count / columns) * cell_px,
+                          head_px + label_px + static_cast<double>(row) * cell_px,
                           panel(profile, band, bounds, px_per_m));
     ++count;
   }
   const double rows = std::ceil(static_cast<double>(count) / static_cast<double>(columns));
   const double width_px = gap_px + static_cast<double>(columns) * (panel_px + gap_px);
   const double height_px = head_px + gap_px + std::max(1.0, rows) * cell_px;
-  // A scale of 1, 10, ... m that fits a panel.
+  // A scale of 1, 10, ... m that fits a panel, where there is one.
   const double scale_m = std::pow(10.0, std::floor(std::log10(0.5 * std::max(length_m, width_m))));
+  const std::string scale =
+      count == 0 ? std::string()
+                 : fmt::format(
+                       "<path d=\"M{0:.0f} 44h{1:.2f}\" stroke=\"#000000\" "
+                       "stroke-width=\"2\"/>\n"
+                       "<text x=\"{2:.2f}\" y=\"48\">{3:g} m, forward to the right</text>\n",
+                       gap_px, px_per_m * scale_m, gap_px + px_per_m * scale_m + 8.0, scale_m);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
       "height=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\" stroke-width=\"1\">\n"
       "<title>{2}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
       "<text x=\"{3:.0f}\" y=\"24\" font-size=\"15\">{2}: {4}</text>\n"
-      "<path d=\"M{3:.0f} 44h{5:.2f}\" stroke=\"#000000\" stroke-width=\"2\"/>\n"
-      "<text x=\"{6:.2f}\" y=\"48\">{7:g} m, forward to the right</text>\n{8}</svg>\n",
+      "{5}{6}</svg>\n",
       width_px, height_px, escape_xml(title), gap_px,
       count > 0 ? "outlines by height over the ground, free space inside dashed"
                 : "nothing between 0 and 4 m over the ground",
-      px_per_m * scale_m, gap_px + px_per_m * scale_m + 8.0, scale_m, panels);
+      scale, panels);
+}
+
+std::string profile_warning(const Profile& profile, const TriangleMesh& mesh) {
+  const Eigen::Vector3f extent = mesh.bounds().extent();
+  std::string flat;
+  for (const auto& [axis, name] : {std::pair(0, "x"), std::pair(1, "y"), std::pair(2, "z")}) {
+    if (!(extent[axis] > 0.0F))
+      flat = fmt::format("the mesh is flat, without extent along {}", name);
+  }
+  if (profile.presses()) return flat.empty() ? flat : flat + ": as a body it encloses nothing";
+  return (flat.empty() ? flat : flat + ": ") +
+         "no material between 0.1 and 4 m over the ground, so that in a crash nothing presses on "
+         "it; "
+         "check scale, up axis and origin";
 }
 
 }  // namespace crashrank::cli

@@ -125,12 +125,14 @@ Result<HarmOptions> read_harm(const RankArguments& options, const Scenario& scen
 }
 
 /// Says what is to be warned of in the meshes, and adds it to `warnings`.
-Result<std::vector<Model>> load_models(Scenario& scenario, const TreeArguments& trees,
+Result<std::vector<Model>> load_models(Scenario& scenario, const std::string& file,
+                                       const TreeArguments& trees,
                                        std::vector<std::string>& warnings) {
   const Result<BuildOptions> build = trees.build_options();
   if (!build) return build.error();
   ScenarioModelOptions how;
   how.build = *build;
+  how.scenario = file;
   std::vector<Model> models;
   Progress progress("reading meshes", scenario.models.size());
   for (ScenarioModel& wanted : scenario.models) {
@@ -180,7 +182,22 @@ void warn_of_end(const RankArguments& options, const RankResult& ranked, bool an
   for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
 }
 
+/// Motions are recorded for the JSON answer, and not by the search that ends early.
+Status check_motion(const RankArguments& options) {
+  if (!options.motion) return Success{};
+  if (!options.json) {
+    return make_error(ErrorCode::usage, "--motion is part of the JSON answer alone",
+                      "add --json, or leave out --motion");
+  }
+  if (options.bounded()) {
+    return make_error(ErrorCode::usage, "--motion is not recorded by an answer within a budget",
+                      "leave out --deadline-ms, --work-budget and --first-place, or --motion");
+  }
+  return Success{};
+}
+
 int run(const RankArguments& options) {
+  if (const Status sound = check_motion(options); !sound) return fail(sound.error());
   if (options.json && is_standard(options.report)) {
     return fail(make_error(ErrorCode::usage,
                            "--json and --report - would both write standard output",
@@ -233,8 +250,11 @@ int run(const RankArguments& options) {
   if (!options.damage_folder.empty()) {
     if (const Status sound = check_damage_folder(damage); !sound) return fail(sound.error());
   }
+  const std::string scenario_file =
+      is_standard(options.scenario) ? "standard input" : options.scenario;
   std::vector<std::string> warnings;
-  const Result<std::vector<Model>> models = load_models(*scenario, options.tree, warnings);
+  const Result<std::vector<Model>> models =
+      load_models(*scenario, scenario_file, options.tree, warnings);
   if (!models) return fail(models.error());
   const auto text_of = [&](const RankResult& result, std::vector<std::string> more) {
     if (options.json) return ranking_json(*scenario, *models, result, more);
@@ -243,6 +263,7 @@ int run(const RankArguments& options) {
     RankingTextOptions text;
     text.top = options.top;
     text.colours = colours_wanted();
+    text.width = terminal_width();
     return ranking_text(*scenario, *models, result, text);
   };
   auto ends_itself = std::make_optional<EndsItself>();
@@ -257,7 +278,7 @@ int run(const RankArguments& options) {
   }();
   if (!ranked) {
     Error error = ranked.error();
-    if (error.file.empty()) error.file = options.scenario;
+    if (error.file.empty()) error.file = scenario_file;
     return fail(error);
   }
   if (is_interrupted()) {
@@ -287,7 +308,7 @@ int run(const RankArguments& options) {
   warn_of_end(options, *ranked, answered, warnings);
   print(text_of(*ranked, warnings));
   for (const std::string& doubt : ranking_doubts(*scenario, *models, *ranked)) {
-    warn(options.scenario, doubt);
+    warn(scenario_file, doubt);
   }
   return answered ? exit_done : exit_budget;
 }

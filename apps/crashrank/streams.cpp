@@ -83,7 +83,7 @@ Status can_be_replaced(const std::string& path, const OutputKind& kind) {
       !begins_with(path, kind.begins)) {
     return file_error(
         ErrorCode::usage, path,
-        "holds something else than " + std::string(kind.name) + ", which would replace it",
+        "is kept, as it does not begin like " + std::string(kind.name) + " that crashrank writes",
         "remove it first, or name another file");
   }
   return Success{};

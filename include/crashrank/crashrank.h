@@ -516,6 +516,7 @@ typedef struct crashrank_rank_options {
   int32_t json;               ///< other than 0: crashrank_ranking_json has an answer
   int32_t unused;             ///< not read
   crashrank_infeasible infeasible;  ///< 0: CRASHRANK_INFEASIBLE_DEMOTE
+  int64_t motion;                   ///< other than 0: crashrank_ranking_motion has motions
 } crashrank_rank_options;
 
 /// Ranks the candidates by the harm or damage of their crashes. The model with index i is that of
@@ -585,6 +586,32 @@ CRASHRANK_API crashrank_status crashrank_ranking_further(const crashrank_ranking
                                                          size_t index, size_t contact,
                                                          crashrank_further_contact* further,
                                                          crashrank_error* error);
+/// Simulated motion of the centre of mass of a body that contact forces acted on, in the likeliest
+/// future: from its state before the first force to the end of the simulation. World axes. The
+/// arrays are the ranking's and have `count` elements.
+typedef struct crashrank_body_motion {
+  size_t size;                   ///< sizeof(crashrank_body_motion)
+  const char* body;              ///< name of the actor, "ego" for the ego; the ranking's
+  size_t count;                  ///< number of times
+  const double* t_s;             ///< from now, rising
+  const double* x_m;             ///< position
+  const double* y_m;             ///< position
+  const double* yaw_rad;         ///< heading from x, left positive
+  const double* vx_mps;          ///< velocity
+  const double* vy_mps;          ///< velocity
+  const double* yaw_rate_radps;  ///< left positive
+  const uint8_t* pressed;        ///< 1: a contact force acted since the time before
+} crashrank_body_motion;
+
+/// Number of bodies with a motion of the candidate that crashrank_ranking_get has under `index`; 0
+/// without crashrank_rank_options.motion, for NULL, and where there is no such index.
+CRASHRANK_API size_t crashrank_ranking_motion_count(const crashrank_ranking* ranking, size_t index);
+/// One of them, the ego first, then in the order of the actors; `body` is its index from 0, and the
+/// caller sets `motion->size`. Errors: usage.
+CRASHRANK_API crashrank_status crashrank_ranking_motion(const crashrank_ranking* ranking,
+                                                        size_t index, size_t body,
+                                                        crashrank_body_motion* motion,
+                                                        crashrank_error* error);
 /// Properties of a candidate besides its crash; absent ones are NaN.
 typedef struct crashrank_manoeuvre {
   size_t size;             ///< sizeof(crashrank_manoeuvre)

@@ -23,6 +23,7 @@ RankOptions options_of(const RankRequest& request, const Scenario& scenario) {
   RankOptions options;
   options.workers = request.workers;
   options.sampled_futures = request.sampled_futures;
+  options.records_motion = request.motion;
   if (!request.measure.empty()) options.measure = value_of(measure_from_name(request.measure));
   if (!request.risk.empty()) options.risk = value_of(risk_from_name(request.risk));
   options.infeasible = value_of(infeasible_from_name(request.infeasible));
@@ -42,6 +43,12 @@ bool bounded(const RankBudget& budget) {
          budget.work != std::numeric_limits<std::uint64_t>::max();
 }
 
+/// The result, or a Failure that names the scenario's file.
+RankResult ranked_value(Result<RankResult> result, const Situation& situation) {
+  if (!result && result.error().file.empty()) result.error().file = situation.file();
+  return value_of(std::move(result));
+}
+
 /// Ranks; the interpreter's lock is not held. Throws Failure.
 RankResult rank_now(const Situation& situation, RankOptions& how, const RankBudget& within,
                     Progress& progress) {
@@ -53,14 +60,15 @@ RankResult rank_now(const Situation& situation, RankOptions& how, const RankBudg
     progress.all =
         value_of(make_candidates(situation.scenario(), static_cast<double>(bounds.extent().x())))
             .size();
-    return value_of(rank_within(situation.scenario(), situation.models(), how, budget));
+    return ranked_value(rank_within(situation.scenario(), situation.models(), how, budget),
+                        situation);
   }
   how.on_progress = [&progress](std::size_t evaluated, std::size_t candidates) {
     progress.done = evaluated;
     progress.all = candidates;
     return !progress.cancel;
   };
-  return value_of(rank(situation.scenario(), situation.models(), how));
+  return ranked_value(rank(situation.scenario(), situation.models(), how), situation);
 }
 
 std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const RankRequest& request,
@@ -160,9 +168,10 @@ void bind_rankings(nb::module_& module) {
           "How far contacts were searched for, s.")
       .def_ro("interrupted", &Ranked::interrupted, "Whether Ctrl-C ended it.");
   nb::class_<RankRequest>(module, "RankRequest", "What is asked of every ranking.")
-      .def(nb::init<std::string, std::string, std::string, std::string, unsigned, std::size_t>(),
+      .def(nb::init<std::string, std::string, std::string, std::string, unsigned, std::size_t,
+                    bool>(),
            nb::arg("measure"), nb::arg("risk"), nb::arg("infeasible"), nb::arg("profile"),
-           nb::arg("workers"), nb::arg("futures"));
+           nb::arg("workers"), nb::arg("futures"), nb::arg("motion") = false);
   nb::class_<RankBudget>(module, "RankBudget", "Where one ranking ends early.")
       .def(
           "__init__",

@@ -22,6 +22,7 @@ struct RankRequest {
   std::string profile_file;  ///< empty: none
   unsigned workers = 1;
   std::size_t sampled_futures = RankOptions{}.sampled_futures;
+  bool motion = false;  ///< RankOptions::records_motion
 };
 
 /// The library's options. Reads the profile. Throws Failure.

@@ -23,6 +23,7 @@ void Situation::load() {
   if (loaded_) return;
   ScenarioModelOptions how;
   how.import.importer = importer_path();
+  how.scenario = file_;
   std::vector<Model> models;
   std::vector<StatedMass> stated;
   std::vector<std::string> warnings;
@@ -77,7 +78,8 @@ SharedSituation with_bodies(Scenario scenario, const Bodies& bodies, const std::
                      "give bodies for names that the scenario's models have"});
     }
   }
-  return std::make_shared<Situation>(std::move(scenario), std::move(by_model), std::move(cache));
+  return std::make_shared<Situation>(std::move(scenario), std::move(by_model), file,
+                                     std::move(cache));
 }
 
 SharedSituation read_text(const std::string& text, const std::string& file,

@@ -18,9 +18,14 @@ namespace crashrank::python {
 /// share it.
 class Situation {
 public:
-  /// `cache`: where models of files are kept between scenarios; null: read for this one.
-  Situation(Scenario scenario, std::vector<SharedBody> bodies, std::shared_ptr<ModelCache> cache)
-      : scenario_(std::move(scenario)), bodies_(std::move(bodies)), cache_(std::move(cache)) {}
+  /// `file`: as errors name it; empty for text. `cache`: where models of files are kept between
+  /// scenarios; null: read for this one.
+  Situation(Scenario scenario, std::vector<SharedBody> bodies, std::string file,
+            std::shared_ptr<ModelCache> cache)
+      : scenario_(std::move(scenario)),
+        bodies_(std::move(bodies)),
+        file_(std::move(file)),
+        cache_(std::move(cache)) {}
 
   /// Reads the models that are not read yet. Not with the interpreter's lock: it may wait for
   /// another thread that reads them. Throws Failure.
@@ -28,6 +33,8 @@ public:
 
   /// As read; what model files state of the mass comes with `load`.
   const Scenario& scenario() const noexcept { return scenario_; }
+  /// The scenario's file; empty for text.
+  const std::string& file() const noexcept { return file_; }
   /// By model. After `load` only.
   const std::vector<Model>& models() const noexcept { return models_; }
   /// Of the meshes, each with its file. After `load` only.
@@ -40,6 +47,7 @@ private:
   bool loaded_ = false;
   Scenario scenario_;
   std::vector<SharedBody> bodies_;  ///< by model, null where its file is to be read
+  std::string file_;
   std::shared_ptr<ModelCache> cache_;
   std::vector<Model> models_;
   std::vector<std::string> warnings_;

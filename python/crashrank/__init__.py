@@ -39,7 +39,7 @@ from ._errors import (
 from ._model import Model, Part, load_model
 from ._parts import Actor, Body, Candidate, Ego, Pose, TimedPose
 from ._ranker import Ranker
-from ._ranking import RankedCandidate, Ranking, rank
+from ._ranking import BodyMotion, RankedCandidate, Ranking, rank
 from ._record import Record
 from ._scenario import Scenario
 from .batch import rank_table
@@ -59,6 +59,7 @@ __all__ = [
     "ArgumentTypeError",
     "BadInputError",
     "Body",
+    "BodyMotion",
     "BudgetError",
     "Candidate",
     "Ego",

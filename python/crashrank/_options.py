@@ -19,6 +19,7 @@ def as_request(
     infeasible: object,
     profile: object,
     futures: object,
+    motion: object = False,
 ) -> _core.RankRequest:
     """Return what is asked of every ranking: an absent measure or risk is the scenario's."""
     return _core.RankRequest(
@@ -28,6 +29,7 @@ def as_request(
         "" if profile is None else as_path(profile, "profile"),
         as_count(workers, "workers", 1, _core.max_workers),
         as_count(futures, "futures", 1, _core.max_sampled_futures),
+        as_flag(motion, "motion"),
     )
 
 

@@ -127,7 +127,8 @@ class Actor:
     poses: Sequence[TimedPose | Mapping[str, float]] | None = None
     """Timed poses in place of pose, speed, acceleration and yaw rate."""
     predictions: Sequence[Mapping[str, Any]] | None = None
-    """Motions that exclude each other, each with its ``probability``."""
+    """Motions that exclude each other, each with its ``probability``; pose and speed stand for
+    those that state none."""
     existence_probability: float | None = None
     """That it is there at all."""
     occupants: float | None = None

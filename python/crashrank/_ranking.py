@@ -5,11 +5,14 @@ from __future__ import annotations
 import html
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 from ._checks import as_count, as_path
-from ._errors import NotFoundError, checked_call, no_candidate
+from ._errors import NotFoundError, checked_call, no_candidate, usage
 from ._options import as_budget, as_progress, as_request
 from ._record import Record, wrap
 from ._scenario import Scenario, as_scenario
@@ -18,6 +21,28 @@ if TYPE_CHECKING:
     import pandas
     import pyarrow
     from matplotlib.figure import Figure
+
+
+class BodyMotion(NamedTuple):
+    """Simulated motion of a body that contact forces acted on, in the likeliest future.
+
+    Of its centre of mass, world axes, from its state before the first force to the end of the
+    simulation. The arrays have one length.
+    """
+
+    body: str
+    """Name of the actor; ``ego`` for the ego."""
+    t_s: NDArray[np.float64]
+    """From the decision, rising."""
+    x_m: NDArray[np.float64]
+    y_m: NDArray[np.float64]
+    yaw_deg: NDArray[np.float64]
+    """Heading from x, left positive."""
+    vx_mps: NDArray[np.float64]
+    vy_mps: NDArray[np.float64]
+    yaw_rate_dps: NDArray[np.float64]
+    pressed: NDArray[np.bool_]
+    """A contact force acted since the time before."""
 
 
 class RankedCandidate(Record):
@@ -57,7 +82,6 @@ class RankedCandidate(Record):
     overtaken_share: float | None
     collides: bool | None
     contacts: tuple[Record, ...]
-    motion: tuple[Record, ...]
     crowded: bool
     other: str | None
     time_of_impact_s: float | None
@@ -71,6 +95,18 @@ class RankedCandidate(Record):
     origin: str
     acceleration_mps2: float
     curvature_per_m: float
+
+    @property
+    def motion(self) -> tuple[BodyMotion, ...] | None:
+        """Motions of the bodies that are hit, the ego first; None unless `rank` recorded them."""
+        if "motion" not in self._members:
+            return None
+        return tuple(_body_motion(each) for each in self._members["motion"])
+
+
+def _body_motion(members: dict[str, Any]) -> BodyMotion:
+    body, *columns = (members[key] for key in BodyMotion._fields)
+    return BodyMotion(body, *(np.array(column) for column in columns))
 
 
 class Ranking(Sequence[RankedCandidate]):
@@ -247,6 +283,7 @@ def rank(
     infeasible: str = "demote",
     profile: object = None,
     futures: int = 64,
+    motion: bool = False,
     progress: Callable[[int, int], object] | None = None,
     base: object = None,
     allow: Iterable[object] = (),
@@ -285,6 +322,8 @@ def rank(
         File of weights and ranges, over those of the scenario.
     futures : int
         Futures drawn where predictions have too many combinations.
+    motion : bool
+        Record `RankedCandidate.motion` of every candidate. Without a budget only.
     progress : callable, optional
         Called about 40 times a second, in the calling thread, with the numbers of candidates
         evaluated and of all. Returning False ends the ranking with the partial answer. Without a
@@ -297,11 +336,12 @@ def rank(
     Ranking
     """
     given = as_scenario(scenario, base, allow)
-    return Ranking(
-        _core.rank(
-            given._situation,
-            as_request(measure, workers, risk, infeasible, profile, futures),
-            as_budget(deadline_s, work_budget, first_place_only),
-            as_progress(progress),
+    request = as_request(measure, workers, risk, infeasible, profile, futures, motion)
+    budget = as_budget(deadline_s, work_budget, first_place_only)
+    if motion and (deadline_s is not None or work_budget is not None or first_place_only):
+        raise usage(
+            "motion",
+            "is not recorded by an answer within a budget",
+            "leave out deadline_s, work_budget and first_place_only, or motion",
         )
-    )
+    return Ranking(_core.rank(given._situation, request, budget, as_progress(progress)))

@@ -184,6 +184,26 @@ def test_places_name_the_element():
     assert caught.value.place == "models.a.kind"
 
 
+def test_errors_of_meshes_name_the_scenario(tmp_path):
+    document = {
+        "scenario_version": 1,
+        "models": {"flat": {"mesh": "flat.obj", "kind": "car"}},
+        "ego": {"model": "flat", "speed_mps": 1},
+    }
+    path = tmp_path / "scenario.json"
+    path.write_text(json.dumps(document))
+    with pytest.raises(crashrank.NotFoundError) as missing:
+        crashrank.rank(path)
+    assert missing.value.file == str(tmp_path / "flat.obj")
+    assert f"(it is models.flat.mesh of {path})" in missing.value.reason
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+    for given, file in ((path, str(path)), (document, "")):
+        with pytest.raises(crashrank.BadInputError) as flat:
+            crashrank.rank(given, base=None if given is path else tmp_path)
+        assert (flat.value.file, flat.value.place) == (file, "models.flat.mesh")
+        assert flat.value.reason.startswith(f"{tmp_path / 'flat.obj'} has no material")
+
+
 def test_cyclic_and_deep_scenarios_are_refused():
     cyclic: dict = {}
     cyclic["models"] = cyclic

@@ -152,8 +152,10 @@ def kinds_declared(annotation):
 def test_declared_types_are_those_of_the_schema():
     schema = json.loads((DATA / "schemas/rank.schema.json").read_text())
     definitions = schema["$defs"]
+    # Motions are arrays, where they were recorded.
+    candidate = {k: v for k, v in definitions["candidate"]["properties"].items() if k != "motion"}
     for kind, members in (
-        (crashrank.RankedCandidate, definitions["candidate"]["properties"]),
+        (crashrank.RankedCandidate, candidate),
         (crashrank.Ranking, {k: v for k, v in schema["properties"].items() if k != "ranking"}),
     ):
         declared = {k: v for k, v in kind.__annotations__.items() if not k.startswith("_")}
@@ -279,6 +281,70 @@ def test_threads_share_a_scenario():
         thread.join()
     assert len(answers) == 6
     assert all(without_times(answer) == without_times(answers[0]) for answer in answers)
+
+
+def rear_end():
+    """Return a scene in which a saloon, wheels released, runs into the rear of another."""
+    car = {"mesh": str(DATA / "models/sedan.obj"), "kind": "car", "mass_kg": 1500}
+    return {
+        "scenario_version": 1,
+        "models": {"car": car, "lighter": {**car, "mass_kg": 1100}},
+        "ego": {"model": "car", "speed_mps": 14},
+        "actors": [{"name": "ahead", "model": "lighter", "pose": {"x_m": 9}, "speed_mps": 4}],
+        "candidates": {
+            "listed": [{"name": "roll"}],
+            "grid": False,
+            "add_straight_braking": False,
+        },
+        "harm": {"after_contact": "releases"},
+    }
+
+
+def greatest_change_mps(motion):
+    """Return the greatest change of velocity within 0.3 s."""
+    time, velocity = motion.t_s, np.stack([motion.vx_mps, motion.vy_mps], axis=1)
+    within = (time[None, :] - time[:, None] >= 0) & (time[None, :] - time[:, None] <= 0.3)
+    changes = np.linalg.norm(velocity[None, :] - velocity[:, None], axis=2)
+    return changes[within].max()
+
+
+def test_motions_give_the_exposure():
+    # Released wheels roll freely and the plans have no acceleration: velocities change by contact
+    # forces alone.
+    ranking = crashrank.rank(rear_end(), base=DATA, motion=True)
+    ego, ahead = ranking.best.motion
+    assert (ego.body, ahead.body) == ("ego", "ahead")
+    exposures = {each.body: each.exposure_mps for each in ranking.best.people}
+    for motion in (ego, ahead):
+        assert exposures[motion.body] > 3.0
+        assert greatest_change_mps(motion) == pytest.approx(exposures[motion.body], rel=0.01)
+    # Nothing else acts on the two.
+    momentum = 1500 * (ego.vx_mps[-1] - ego.vx_mps[0]) + 1100 * (ahead.vx_mps[-1] - ahead.vx_mps[0])
+    assert abs(momentum) < 0.01 * 1500 * 14
+
+
+def test_motions_are_those_of_the_command():
+    path = DATA / "scenarios/oncoming_truck.json"
+    told = run_command("rank", path, "--motion")
+    mine = crashrank.rank(path, motion=True)
+    assert without_times(mine.to_dict()) == without_times(told)
+    for row, candidate in zip(told["ranking"], mine, strict=True):
+        for wanted, motion in zip(row["motion"], candidate.motion, strict=True):
+            assert motion.body == wanted.pop("body")
+            for key, values in wanted.items():
+                assert getattr(motion, key).tolist() == values
+            assert motion.pressed.dtype == bool
+    assert crashrank.rank(path).best.motion is None
+
+
+@pytest.mark.parametrize(
+    "budget", [{"deadline_s": 1.0}, {"work_budget": 1000}, {"first_place_only": True}]
+)
+def test_motions_are_not_recorded_within_a_budget(budget):
+    with pytest.raises(crashrank.UsageError) as error:
+        crashrank.rank(DATA / "scenarios/oncoming_truck.json", motion=True, **budget)
+    assert error.value.place == "motion"
+    assert "leave out" in error.value.remedy
 
 
 def test_bodies_in_memory_are_ranked():

@@ -5,6 +5,7 @@
 #include "crashrank/report/ranking.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -31,6 +32,7 @@ Result<RankOptions> to_options(const crashrank_rank_options& options) {
     if (!infeasible) return infeasible.error();
     made.infeasible = *infeasible;
   }
+  made.records_motion = options.motion != 0;
   return made;
 }
 
@@ -169,6 +171,45 @@ crashrank_status crashrank_ranking_further(const crashrank_ranking* ranking, siz
         from.outcome_b.delta_v_mps,
         has_harm ? from.harm : std::numeric_limits<double>::quiet_NaN()};
     c::write_sized(made, *further);
+    return CRASHRANK_OK;
+  });
+}
+
+size_t crashrank_ranking_motion_count(const crashrank_ranking* ranking, size_t index) {
+  if (index >= crashrank_ranking_size(ranking)) return 0;
+  return ranking->result.ranking[index].motion.size();
+}
+
+crashrank_status crashrank_ranking_motion(const crashrank_ranking* ranking, size_t index,
+                                          size_t body, crashrank_body_motion* motion,
+                                          crashrank_error* error) {
+  if (const char* null = c::first_null({{"ranking", ranking}, {"motion", motion}})) {
+    return refuse_null(null, error);
+  }
+  if (index >= crashrank_ranking_size(ranking)) {
+    return refuse(CRASHRANK_USAGE, "the ranking has no such index", error);
+  }
+  if (body >= crashrank_ranking_motion_count(ranking, index)) {
+    return refuse(CRASHRANK_USAGE,
+                  "the candidate has no such motion; ask for motions in the options", error);
+  }
+  return guarded(error, [&]() -> crashrank_status {
+    const Status sized = c::check_size("crashrank_body_motion", *motion);
+    if (!sized) return refuse(sized.error(), error);
+    const BodyMotion& from = ranking->result.ranking[index].motion[body];
+    const crashrank_body_motion made{
+        sizeof made,
+        from.body == ego_body ? "ego" : ranking->actors[from.body].c_str(),
+        from.t_s.size(),
+        from.t_s.data(),
+        from.x_m.data(),
+        from.y_m.data(),
+        from.yaw_rad.data(),
+        from.vx_mps.data(),
+        from.vy_mps.data(),
+        from.yaw_rate_radps.data(),
+        reinterpret_cast<const std::uint8_t*>(from.pressed.data())};
+    c::write_sized(made, *motion);
     return CRASHRANK_OK;
   });
 }

@@ -40,6 +40,13 @@ Body make_body(const Model& model, double mass_kg) {
   return body;
 }
 
+/// Adds to an error of a mesh the key that names it.
+Error error_of_mesh(Error error, const ScenarioModel& model) {
+  error.place = "models." + model.name + ".mesh";
+  if (!model.path.empty()) error.reason = model.path + " " + error.reason;
+  return error;
+}
+
 Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> models,
                                std::size_t index) {
   if (index >= scenario.models.size()) {
@@ -48,8 +55,9 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
   }
   const ScenarioModel& model = scenario.models[index];
   if (models[index].tree.empty()) {
-    return Error{ErrorCode::bad_input, model.path, "models." + model.name, "has no triangle",
-                 "give it a mesh with a surface"};
+    return error_of_mesh(
+        make_error(ErrorCode::bad_input, "has no triangle", "give it a mesh with a surface"),
+        model);
   }
   const Eigen::Vector3d extent = models[index].mesh.bounds().extent().cast<double>();
   return RankedBody{index, model.mass_kg.value_or(guess_mass_kg(model.kind, extent)),
@@ -59,14 +67,12 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
 /// Adds the place to an error of `describe_vehicle`: the key of the scenario if its value is wrong,
 /// otherwise the mesh.
 Error error_of_model(Error error, const ScenarioModel& model) {
-  const std::string path = "models." + model.name;
   if (error.place == "centre of mass") {
-    error.place = path + ".center_of_mass_m";
+    error.place = "models." + model.name + ".center_of_mass_m";
   } else if (error.place == "yaw inertia") {
-    error.place = path + ".yaw_inertia_kgm2";
+    error.place = "models." + model.name + ".yaw_inertia_kgm2";
   } else {
-    error.file = model.path;
-    error.place = path;
+    return error_of_mesh(std::move(error), model);
   }
   return error;
 }
@@ -192,7 +198,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   };
   if (Status own = describe(ego->model, scene.ego); !own) return own.error();
   if (!scene.ego.vehicle.has_outline()) {
-    return error_of_model(
+    return error_of_mesh(
         make_error(ErrorCode::bad_input,
                    "has no material between 0.1 and 4 m over its ground, but the ego needs it",
                    "check its scale, its up axis and its origin on the ground"),

@@ -187,6 +187,7 @@ void doubt_heights(const Scenario& scenario, const RankResult& result, const Pla
   constexpr double steepest = 0.1;
   const Standing own = standing(ego);
   std::vector<Standing> stand;
+  stand.reserve(actors.size());
   for (const Placed& actor : actors) stand.push_back(standing(actor));
   Counted above;
   Counted below;

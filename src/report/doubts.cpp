@@ -1,3 +1,4 @@
+#include "crash/exposure.hpp"
 #include "crashrank/crash/contact_law.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/candidate.hpp"
@@ -69,8 +70,11 @@ void doubt_crowds(const RankResult& result, std::vector<std::string>& doubts) {
   }
   if (crowded.count == 0) return;
   doubts.push_back(fmt::format(
-      "{} to more bodies or contacts than are simulated, so that scores may be too low: {}",
-      crowded.many("candidate leads", "candidates lead"), crowded.examples()));
+      "{} to more bodies or contacts than are simulated, or to contact forces on a body for more "
+      "than {:g} s, after which scores count none, so that they may be too low: {}",
+      crowded.many("candidate leads", "candidates lead"),
+      static_cast<double>(detail::ExposureRecord::most_cells) * detail::exposure_cell_s,
+      crowded.examples()));
 }
 
 void doubt_starts(const Scenario& scenario, const RankResult& result,
@@ -111,13 +115,34 @@ void doubt_starts(const Scenario& scenario, const RankResult& result,
       detail::overlap_meaning));
 }
 
+bool has_outline(const RankResult& result, std::size_t actor) {
+  return actor >= result.actors.size() || result.actors[actor].has_outline;
+}
+
+/// A contact without force in the likeliest future with a body that has an outline, or none.
+bool is_unforced(const RankResult& result, const Contact& contact, bool with_outline) {
+  return contact.contact_without_force && has_outline(result, contact.actor) == with_outline;
+}
+
+/// The same in any future, of which the first contact stands for all.
+bool is_unforced(const RankResult& result, const CandidateResult& ranked, bool with_outline) {
+  return std::any_of(
+             ranked.contacts.begin(), ranked.contacts.end(),
+             [&](const Contact& each) { return is_unforced(result, each, with_outline); }) ||
+         std::any_of(ranked.futures.begin(), ranked.futures.end(), [&](const FutureOutcome& each) {
+           return each.contact_without_force && !each.is_likeliest &&
+                  has_outline(result, each.actor) == with_outline;
+         });
+}
+
 /// Body, speed and highest score of a candidate with a contact without force.
 std::string unforced_words(const Scenario& scenario, const RankResult& result,
                            const CandidateResult& ranked) {
   std::string text =
       fmt::format("'{}', in place {}, ", result.candidates[ranked.candidate].name, ranked.place);
-  const auto contact = std::find_if(ranked.contacts.begin(), ranked.contacts.end(),
-                                    [](const Contact& each) { return each.contact_without_force; });
+  const auto contact =
+      std::find_if(ranked.contacts.begin(), ranked.contacts.end(),
+                   [&](const Contact& each) { return is_unforced(result, each, true); });
   text += contact == ranked.contacts.end()
               ? std::string("in a future that is not the likeliest")
               : fmt::format("with '{}' at {:.1f} m/s", scenario.actors[contact->actor].name,
@@ -130,7 +155,7 @@ void doubt_forces(const Scenario& scenario, const RankResult& result,
                   std::vector<std::string>& doubts) {
   Counted unforced;
   for (const CandidateResult& ranked : result.ranking) {
-    if (!detail::has_contact_without_force(ranked)) continue;
+    if (!is_unforced(result, ranked, true)) continue;
     const std::string words = unforced_words(scenario, result, ranked);
     unforced.add(words);
     if (ranked.place > 1) continue;
@@ -151,10 +176,21 @@ void doubt_outlines(const Scenario& scenario, const RankResult& result,
     if (!result.actors[i].has_outline) without.add("'" + scenario.actors[i].name + "'");
   }
   if (without.count == 0) return;
+  Counted touches;
+  bool first = false;
+  for (const CandidateResult& ranked : result.ranking) {
+    if (!is_unforced(result, ranked, false)) continue;
+    touches.add({});
+    first = first || ranked.place == 1;
+  }
   doubts.push_back(fmt::format(
       "{} no material between 0.1 and 4 m over the ground of its model, so that nothing presses on "
-      "it and it adds no harm: {}; if that is wrong, check scale, up axis and origin of the mesh",
-      without.many("body has", "bodies have"), without.examples()));
+      "it and it adds no harm: {}{}; if that is wrong, check scale, up axis and origin of the mesh",
+      without.many("body has", "bodies have"), without.examples(),
+      touches.count == 0
+          ? std::string()
+          : fmt::format(" (touched by {}{})", touches.many("candidate", "candidates"),
+                        first ? ", the first place among them" : "")));
 }
 
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
@@ -307,6 +343,14 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
                                scenario.keys_without_effect.size() == 1 ? "it" : "them"));
 }
 
+void doubt_probabilities(const Scenario& scenario, std::vector<std::string>& doubts) {
+  Counted normalised;
+  for (const std::string& place : scenario.normalised) normalised.add(place);
+  if (normalised.count == 0) return;
+  doubts.push_back(fmt::format("probabilities do not sum to 1 and were divided by their sum: {}",
+                               normalised.examples()));
+}
+
 }  // namespace
 
 std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model> models,
@@ -333,6 +377,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_fixed(scenario, result, doubts);
   detail::doubt_bodies(scenario, models, result, doubts);
   doubt_keys(scenario, doubts);
+  doubt_probabilities(asked, doubts);
   return doubts;
 }
 

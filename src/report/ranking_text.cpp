@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <sstream>
 
 namespace crashrank {
 namespace {
@@ -94,6 +95,31 @@ std::string highest_hidden(const RankResult& result, const std::vector<std::stri
   return scores[static_cast<std::size_t>(most - result.ranking.begin())];
 }
 
+/// The text with lines broken at spaces where they are longer than `width`, 0: nowhere.
+std::string wrapped(const std::string& text, std::size_t width) {
+  if (width == 0) return text;
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::size_t column = 0;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+      const std::size_t length = display_width(word);
+      if (column > 0 && column + 1 + length > width) {
+        out += "\n  ";
+        column = 2;
+      } else if (column > 0) {
+        out += ' ';
+        ++column;
+      }
+      out += word;
+      column += length;
+    }
+    out += '\n';
+  }
+  return out;
+}
+
 /// Whether the contact that the table names begins with the bodies in each other.
 bool overlaps_first(const CandidateResult& ranked) {
   return !ranked.contacts.empty() && detail::begins_in_contact(ranked.contacts.front());
@@ -110,20 +136,21 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   const bool simulated = needs_crash(result.measure);
   std::vector<Table::Column> columns{
       {"rank", true},
-      {"candidate"},
+      {"candidate", false, 24},
       {std::string(measure_name(result.measure)) + " [" + measure_unit(result.measure) + "]",
        true}};
   if (simulated) {
-    columns.push_back({"interval"});
+    columns.push_back({"interval", false, 0, 2});
     columns.push_back({"may rank", true});
   }
   if (result.futures.method != FutureMethod::certain) columns.push_back({"collides", true});
-  columns.push_back({result.futures.method == FutureMethod::certain ? "hits" : "likeliest hits"});
-  columns.push_back({"after s", true});
-  columns.push_back({"closing m/s", true});
+  columns.push_back(
+      {result.futures.method == FutureMethod::certain ? "hits" : "likeliest hits", false, 16});
+  columns.push_back({"after s", true, 0, 5});
+  columns.push_back({"closing m/s", true, 0, 4});
   columns.push_back({simulated ? "exposure m/s" : "triangles", true});
-  columns.push_back({simulated ? "crush m" : "area m2", true});
-  columns.push_back({"ego's parts"});
+  columns.push_back({simulated ? "crush m" : "area m2", true, 0, 3});
+  columns.push_back({"ego's parts", false, 12, 1});
   const std::vector<std::string> scores = detail::score_texts(result);
   Table table(std::move(columns));
   for (std::size_t place = 0; place < shown; ++place) {
@@ -132,7 +159,8 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   std::string text = fmt::format("{}: {} candidate{}, {} other{} on the road\n\n",
                                  escape_terminal(scenario.name), all, all == 1 ? "" : "s",
                                  scenario.actors.size(), scenario.actors.size() == 1 ? "" : "s");
-  text += table.text(options.colours);
+  text = wrapped(text, options.width) + table.text(options.colours, options.width);
+  const std::size_t below = text.size();
   if (shown < all) {
     text += fmt::format("... and {} more, up to {} {}\n", all - shown,
                         highest_hidden(result, scores, shown), measure_unit(result.measure));
@@ -183,7 +211,7 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   if (result.measure == Measure::harm) {
     for (const std::string& line : detail::harm_words(result.harm)) text += line + "\n";
   }
-  return text;
+  return text.substr(0, below) + wrapped(text.substr(below), options.width);
 }
 
 }  // namespace crashrank

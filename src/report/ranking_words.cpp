@@ -89,12 +89,6 @@ std::string contact_name(const Scenario& scenario, const Contact& contact) {
          (contact.contact_without_force ? " (no force)" : "");
 }
 
-bool has_contact_without_force(const CandidateResult& ranked) {
-  const auto lacks_force = [](const auto& each) { return each.contact_without_force; };
-  return std::any_of(ranked.contacts.begin(), ranked.contacts.end(), lacks_force) ||
-         std::any_of(ranked.futures.begin(), ranked.futures.end(), lacks_force);
-}
-
 std::string pair_name(const Scenario& scenario, const FurtherContact& contact) {
   return scenario.actors[contact.a].name + " / " + scenario.actors[contact.b].name;
 }

@@ -27,9 +27,6 @@ std::string contact_name(const Scenario& scenario, const Contact& contact);
 /// What the first mark of `contact_name` means, one sentence without a full stop.
 extern const char* const overlap_meaning;
 
-/// Returns true if a contact of the likeliest future, or of another, is without force.
-bool has_contact_without_force(const CandidateResult& ranked);
-
 /// The names of both bodies: "saloon / pedestrian".
 std::string pair_name(const Scenario& scenario, const FurtherContact& contact);
 

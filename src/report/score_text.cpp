@@ -127,6 +127,61 @@ std::string tied_names(const RankResult& result, std::size_t first, std::size_t 
   return names;
 }
 
+/// Why the order of two neighbours is not certain.
+enum class Doubt { none, equal, samples, futures, numbers };
+
+Doubt doubt_of_order(const CandidateResult& ranked, const CandidateResult& next) {
+  if (ranked.separable || next.place == ranked.place || !ranked.score || !next.score) {
+    return Doubt::none;
+  }
+  if (*ranked.score == *next.score) return Doubt::equal;
+  if (ranked.overtaken > separable_share) return Doubt::samples;
+  return ranked.within_sampling_error ? Doubt::futures : Doubt::numbers;
+}
+
+/// Neighbours in a row whose order is not certain for one reason.
+struct Inseparable {
+  Doubt doubt = Doubt::none;
+  std::size_t first = 0;  ///< places
+  std::size_t last = 0;
+  std::size_t pairs = 0;
+  double least_share = 1.0;  ///< of samples in which their order reverses
+  double most_share = 0.0;
+
+  void add(Doubt why, const CandidateResult& ranked, std::size_t next_place) {
+    if (doubt == Doubt::none) first = ranked.place;
+    doubt = why;
+    last = next_place;
+    ++pairs;
+    least_share = std::min(least_share, ranked.overtaken);
+    most_share = std::max(most_share, ranked.overtaken);
+  }
+
+  std::string reason(std::size_t samples) const {
+    switch (doubt) {
+      case Doubt::equal:
+        return "equal scores";
+      case Doubt::futures:
+        return "another sample of futures may reverse the order";
+      case Doubt::samples:
+        break;
+      default:
+        return "half the steps or 1 mm aside may turn their order";
+    }
+    const std::string least = fmt::format("{:.0f}", 100.0 * least_share);
+    const std::string most = fmt::format("{:.0f}", 100.0 * most_share);
+    return fmt::format("the order reverses in {} % of {} samples",
+                       least == most ? most : least + " to " + most, samples);
+  }
+
+  std::string words(std::size_t samples) const {
+    return pairs == 1
+               ? fmt::format("rank {} and {} not separable ({})", first, last, reason(samples))
+               : fmt::format("rank {} to {} not separable from the next ({})", first, last,
+                             reason(samples));
+  }
+};
+
 }  // namespace
 
 std::vector<std::string> score_texts(const RankResult& result) {
@@ -207,26 +262,24 @@ std::string places_text(const CandidateResult& ranked) {
 
 std::vector<std::string> not_separable_words(const RankResult& result, std::size_t shown) {
   std::vector<std::string> words;
+  Inseparable run;
+  const auto tell = [&] {
+    if (run.doubt != Doubt::none) words.push_back(run.words(range_sample_count(result)));
+    run = {};
+  };
   const std::size_t end = std::min(shown, result.ranking.size());
   for (std::size_t i = 0; i < end; ++i) {
     const CandidateResult& ranked = result.ranking[i];
     if (ranked.sharing > 1 && i + 1 == ranked.place) {
+      tell();
       words.push_back(fmt::format("rank {}: {} candidates are tied ({})", ranked.place,
                                   ranked.sharing, tied_names(result, i, ranked.sharing)));
     }
-    if (i + 1 == end || ranked.separable) continue;
-    const CandidateResult& next = result.ranking[i + 1];
-    if (next.place == ranked.place || !ranked.score || !next.score) continue;
-    const std::string why = *ranked.score == *next.score ? std::string("equal scores")
-                            : ranked.overtaken > separable_share
-                                ? fmt::format("the order reverses in {:.0f} % of {} samples",
-                                              100.0 * ranked.overtaken, range_sample_count(result))
-                            : ranked.within_sampling_error
-                                ? std::string("another sample of futures may reverse the order")
-                                : std::string("half the steps or 1 mm aside may turn their order");
-    words.push_back(
-        fmt::format("rank {} and {} not separable ({})", ranked.place, next.place, why));
+    const Doubt doubt = i + 1 == end ? Doubt::none : doubt_of_order(ranked, result.ranking[i + 1]);
+    if (doubt != run.doubt || run.last != ranked.place) tell();
+    if (doubt != Doubt::none) run.add(doubt, ranked, result.ranking[i + 1].place);
   }
+  tell();
   return words;
 }
 

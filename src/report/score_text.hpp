@@ -39,7 +39,8 @@ std::string place_text(const CandidateResult& ranked);
 
 /// Candidates among the first `shown` rows that are tied, and neighbours whose order is not
 /// certain, one sentence each, names as they are: "rank 1: 3 candidates are tied (a, b, c)", "rank
-/// 2 and 3 not separable (the order reverses in 38 % of 129 samples)".
+/// 2 and 3 not separable (the order reverses in 38 % of 129 samples)". Neighbours in a row have one
+/// for each reason: "rank 2 to 5 not separable from the next (...)".
 std::vector<std::string> not_separable_words(const RankResult& result, std::size_t shown);
 
 /// Options of the harm: model, every weight, numbers of people, ranges. Lines without a break.

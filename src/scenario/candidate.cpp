@@ -117,14 +117,27 @@ GridPoint grid_point(const Scenario& scenario, double u, double w, double max_cu
   return {along_way * direction_of(ego.speed_mps), curvature};
 }
 
-std::string grid_name(std::size_t i, std::size_t j, const GridPoint& point, double wheelbase) {
+/// What the manoeuvre does, and its place in the grid: "brake 7.85 m/s2, 0.54 deg left (a00 s08)".
+std::string grid_name(std::size_t i, std::size_t j, const GridPoint& point, double speed_mps,
+                      double wheelbase) {
   constexpr double deg_per_rad = 57.29577951308232;
+  constexpr double half = 0.005;  // of the last digit
+  const double along_way = point.acceleration_mps2 * direction_of(speed_mps);
   const double steering = std::atan(point.curvature_per_m * wheelbase) * deg_per_rad;
-  // Zero is written without a sign, whatever its bits say.
-  const double acceleration = point.acceleration_mps2 == 0.0 ? 0.0 : point.acceleration_mps2;
-  char text[96];
-  std::snprintf(text, sizeof text, "a%02zu s%02zu (%+.2f m/s2, %+.2f deg)", i, j, acceleration,
-                steering == 0.0 ? 0.0 : steering);
+  char pace[48];
+  if (std::abs(along_way) < half) {
+    std::snprintf(pace, sizeof pace, "%s", speed_mps == 0.0 ? "stand" : "hold speed");
+  } else {
+    std::snprintf(pace, sizeof pace, "%s %.2f m/s2", along_way < 0.0 ? "brake" : "speed up",
+                  std::abs(along_way));
+  }
+  char way[48] = "straight";
+  if (std::abs(steering) >= half) {
+    std::snprintf(way, sizeof way, "%.2f deg %s", std::abs(steering),
+                  steering > 0.0 ? "left" : "right");
+  }
+  char text[128];
+  std::snprintf(text, sizeof text, "%s, %s (a%02zu s%02zu)", pace, way, i, j);
   return text;
 }
 
@@ -163,9 +176,9 @@ std::vector<Candidate> grid_candidates(const Scenario& scenario, double wheelbas
   for (const auto& [i, j, demand] : gentlest_first(grid)) {
     const GridPoint point =
         grid_point(scenario, level(i, grid.accelerations), level(j, grid.steerings), max_curvature);
-    candidates.push_back(arc_candidate(scenario.ego, grid_name(i, j, point, wheelbase),
-                                       CandidateOrigin::grid, point.acceleration_mps2,
-                                       point.curvature_per_m));
+    candidates.push_back(
+        arc_candidate(scenario.ego, grid_name(i, j, point, scenario.ego.speed_mps, wheelbase),
+                      CandidateOrigin::grid, point.acceleration_mps2, point.curvature_per_m));
   }
   return candidates;
 }

@@ -22,10 +22,11 @@ Pose read_pose_members(const JsonObject& object) {
                           rad_per_deg * object.number("roll_deg", angle, 0.0));
 }
 
-ActorMotion read_motion(const JsonObject& object) {
+/// `otherwise` has the pose and speed of a motion that states none.
+ActorMotion read_motion(const JsonObject& object, const ActorMotion& otherwise = {}) {
   ActorMotion motion;
-  motion.pose = read_pose(object);
-  motion.speed_mps = object.number("speed_mps", speed, 0.0);
+  motion.pose = object.has("pose") ? read_pose(object) : otherwise.pose;
+  motion.speed_mps = object.number("speed_mps", speed, otherwise.speed_mps);
   motion.acceleration_mps2 = object.number("acceleration_mps2", acceleration, 0.0);
   motion.yaw_rate_radps = rad_per_deg * object.number("yaw_rate_dps", yaw_rate, 0.0);
   motion.poses = read_poses(object);
@@ -44,16 +45,18 @@ double read_probability(const JsonObject& object) {
 void read_predictions(const JsonObject& object, ScenarioActor& actor) {
   const json* const predictions = object.array("predictions", 1, limits::predictions);
   if (predictions == nullptr) return;
-  for (const char* key : {"pose", "poses", "speed_mps", "acceleration_mps2", "yaw_rate_dps"}) {
-    if (object.has(key))
-      object.refuse(key, "is given together with predictions", "keep one of them");
+  for (const char* key : {"poses", "acceleration_mps2", "yaw_rate_dps"}) {
+    if (object.has(key)) {
+      object.refuse(key, "is given together with predictions",
+                    "keep one of them; pose and speed_mps may stand beside predictions");
+    }
   }
   for (std::size_t i = 0; i < predictions->size() && object.status().ok(); ++i) {
     const JsonObject each(
         (*predictions)[i], object.path_of(indexed("predictions", i).c_str()), object.status(),
         {"probability", "pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses"});
     Prediction prediction;
-    static_cast<ActorMotion&>(prediction) = read_motion(each);
+    static_cast<ActorMotion&>(prediction) = read_motion(each, actor);
     prediction.probability = read_probability(each);
     actor.predictions.push_back(std::move(prediction));
   }

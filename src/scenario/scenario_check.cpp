@@ -154,7 +154,7 @@ void check_candidates(const Scenario& scenario, Check& check) {
   if (!scenario.grid) {
     if (scenario.listed.empty() && !scenario.add_straight_braking) {
       check.refuse("candidates", "leaves no manoeuvre to rank",
-                   "list one, name a table, let the grid be made, or set add_straight_braking");
+                   "list one, name a table, or set grid or add_straight_braking to true");
     }
     return;
   }
@@ -218,8 +218,7 @@ void check_sum(const std::vector<Weighted>& weighted, const std::string& path, C
     sum += weighted[i].probability;
   }
   if (std::abs(sum - 1.0) > limits::probability_sum) {
-    check.refuse(path, "has probabilities that sum to " + number_text(sum),
-                 "let them sum to 1 within 1e-6");
+    check.refuse(path, "has probabilities that sum to " + number_text(sum), "let them sum to 1");
   }
 }
 

@@ -19,9 +19,10 @@ bool changes_nothing(const ImportTransform& transform) {
          transform.forward == none.forward && transform.origin_m == none.origin_m;
 }
 
-Error of_model(Error error, const ScenarioModel& wanted) {
+Error of_model(Error error, const ScenarioModel& wanted, const std::string& scenario) {
   if (error.file.empty()) error.file = wanted.path;
-  error.reason += " (it is models." + wanted.name + ".mesh of the scenario)";
+  error.reason += " (it is models." + wanted.name + ".mesh of " +
+                  (scenario.empty() ? "the scenario" : scenario) + ")";
   return error;
 }
 
@@ -107,7 +108,7 @@ Result<LoadedScenarioModel> load_scenario_model(const ScenarioModel& wanted,
     }
     Result<LoadedScenarioModel> read =
         is_model_file(wanted.path) ? load_compiled(wanted) : load_mesh(wanted, options);
-    if (!read) return of_model(read.error(), wanted);
+    if (!read) return of_model(read.error(), wanted, options.scenario);
     return read;
   });
 }
@@ -115,7 +116,7 @@ Result<LoadedScenarioModel> load_scenario_model(const ScenarioModel& wanted,
 Status check_model_mass(const LoadedScenarioModel& loaded, const ScenarioModel& wanted) {
   return detail::guarded([&]() -> Status {
     Status status = check_mass(loaded, wanted);
-    if (!status) return of_model(status.error(), wanted);
+    if (!status) return of_model(status.error(), wanted, {});
     return status;
   });
 }

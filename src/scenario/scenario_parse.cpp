@@ -278,6 +278,28 @@ detail::ParsedScenario read_scenario(const json& document, Status& status) {
   return parsed;
 }
 
+/// Divides probabilities that are rounded by their sum.
+template <class Weighted>
+void normalise(std::vector<Weighted>& weighted, const std::string& path, Scenario& scenario) {
+  double sum = 0.0;
+  for (const Weighted& each : weighted) sum += each.probability;
+  const double off = std::abs(sum - 1.0);
+  // A sum of 0.99 is written to two digits and stored with an error.
+  constexpr double stored = 1e-9;
+  if (off <= scenario_limits::probability_sum ||
+      off > scenario_limits::written_probability_sum + stored)
+    return;
+  for (Weighted& each : weighted) each.probability /= sum;
+  scenario.normalised.push_back(path);
+}
+
+void normalise(Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    normalise(scenario.actors[i].predictions, indexed("actors", i) + ".predictions", scenario);
+  }
+  normalise(scenario.futures, "futures", scenario);
+}
+
 Result<detail::ParsedScenario> parse(const std::string& text, const std::string& file) {
   if (text.size() > limits::file_bytes) {
     return Error{
@@ -288,6 +310,7 @@ Result<detail::ParsedScenario> parse(const std::string& text, const std::string&
   Status status = Success{};
   detail::ParsedScenario parsed = read_scenario(*document, status);
   Scenario& scenario = parsed.scenario;
+  if (status.ok()) normalise(scenario);
   if (status.ok()) status = detail::check_names(scenario);
   if (status.ok()) status = detail::check_probabilities(scenario);
   if (status.ok()) status = detail::check_road(scenario.road);

@@ -194,6 +194,60 @@ TEST(CApi, ContactsBetweenOthersAreTheLibrarys) {
   EXPECT_EQ(crashrank_ranking_further_count(nullptr, 0), 0U);
 }
 
+TEST(CApi, MotionsAreTheLibrarysWhereAskedFor) {
+  const auto [scenario, models] = load(CRASHRANK_SCENARIOS "/pushed_onto_crossing.json");
+  crashrank_error error{};
+  auto options = sized<crashrank_rank_options>();
+  options.json = 1;
+  options.motion = 1;
+  crashrank_ranking* answer = nullptr;
+  ASSERT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &answer, &error), CRASHRANK_OK)
+      << error.message;
+  const Ranking ranking(answer);
+  const auto json = nlohmann::json::parse(crashrank_ranking_json(answer));
+  size_t most = 0;
+  for (size_t place = 0; place < crashrank_ranking_size(answer); ++place) {
+    const auto& wanted = json["ranking"][place]["motion"];
+    const size_t count = crashrank_ranking_motion_count(answer, place);
+    ASSERT_EQ(count, wanted.size());
+    most = std::max(most, count);
+    auto motion = sized<crashrank_body_motion>();
+    for (size_t body = 0; body < count; ++body) {
+      ASSERT_EQ(crashrank_ranking_motion(answer, place, body, &motion, &error), CRASHRANK_OK);
+      EXPECT_EQ(wanted[body]["body"], motion.body);
+      const auto expect_equal = [&](const char* key, const double* values, double unit = 1.0) {
+        ASSERT_EQ(wanted[body][key].size(), motion.count);
+        for (size_t k = 0; k < motion.count; ++k) {
+          EXPECT_NEAR(wanted[body][key][k].get<double>(), values[k] * unit, 1e-9) << key;
+        }
+      };
+      constexpr double deg_per_rad = 57.29577951308232;
+      expect_equal("t_s", motion.t_s);
+      expect_equal("x_m", motion.x_m);
+      expect_equal("y_m", motion.y_m);
+      expect_equal("yaw_deg", motion.yaw_rad, deg_per_rad);
+      expect_equal("vx_mps", motion.vx_mps);
+      expect_equal("vy_mps", motion.vy_mps);
+      expect_equal("yaw_rate_dps", motion.yaw_rate_radps, deg_per_rad);
+      for (size_t k = 0; k < motion.count; ++k) {
+        EXPECT_EQ(wanted[body]["pressed"][k].get<bool>(), motion.pressed[k] == 1);
+      }
+    }
+    EXPECT_EQ(crashrank_ranking_motion(answer, place, count, &motion, &error), CRASHRANK_USAGE);
+  }
+  EXPECT_GE(most, 2U);
+  const size_t size = crashrank_ranking_size(answer);
+  EXPECT_EQ(crashrank_ranking_motion_count(answer, size), 0U);
+  EXPECT_EQ(crashrank_ranking_motion_count(nullptr, 0), 0U);
+  EXPECT_EQ(crashrank_ranking_motion(answer, 0, 0, nullptr, nullptr), CRASHRANK_USAGE);
+  EXPECT_EQ(crashrank_ranking_motion(nullptr, 0, 0, nullptr, nullptr), CRASHRANK_USAGE);
+
+  options.motion = 0;
+  ASSERT_EQ(crashrank_rank(scenario.get(), models.get(), &options, &answer, &error), CRASHRANK_OK);
+  const Ranking without(answer);
+  EXPECT_EQ(crashrank_ranking_motion_count(answer, 0), 0U);
+}
+
 /// The ego, 10 m/s, before a wall that stands still; scores by delta-v, which hangs on its
 /// mass. The other stands to the left, so that centre of mass and inertia count, too.
 double delta_v_of(double told_kg, double stored_kg, const crashrank::StatedMass& stated = {},

@@ -93,6 +93,13 @@ TEST(CApi, SizesThatNoStructHasAreRefused) {
   expect_sizes_are_checked("crashrank_choice", sized<crashrank_choice>(), [&](auto* c, auto* e) {
     return crashrank_ranking_get(ranking.get(), 0, c, e);
   });
+  auto asked = sized<crashrank_rank_options>();
+  asked.motion = 1;
+  ASSERT_EQ(crashrank_rank(s, m, &asked, &answer, nullptr), CRASHRANK_OK);
+  const Ranking moved(answer);
+  expect_sizes_are_checked(
+      "crashrank_body_motion", sized<crashrank_body_motion>(),
+      [&](auto* b, auto* e) { return crashrank_ranking_motion(moved.get(), 0, 0, b, e); });
   crashrank_ranker* no_ranker = nullptr;
   expect_sizes_are_checked(
       "crashrank_ranker_options", sized<crashrank_ranker_options>(),
@@ -117,7 +124,7 @@ TEST(CApi, MembersThatASmallerStructLacksTakeTheirDefaults) {
   body.surface = 77;
   EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_OK)
       << error.message;
-  crashrank_rank_options options{sizeof(std::size_t), 99, 1000, 1, 0, 99};
+  crashrank_rank_options options{sizeof(std::size_t), 99, 1000, 1, 0, 99, 1};
   const Models models = make_models();
   ASSERT_EQ(add_box(models.get()), CRASHRANK_OK);
   crashrank_ranking* answer = nullptr;
@@ -125,6 +132,7 @@ TEST(CApi, MembersThatASmallerStructLacksTakeTheirDefaults) {
       << error.message;
   const Ranking ranking(answer);
   EXPECT_EQ(crashrank_ranking_json(answer), nullptr);
+  EXPECT_EQ(crashrank_ranking_motion_count(answer, 0), 0U);
 
   // Of harm: what the scenario has.
   auto harm = sized<crashrank_harm>();

@@ -70,6 +70,34 @@ TEST(Inspect, DrawsOutlinesByHeightOfAMeshAndOfItsModel) {
   place.write("high.obj", cli_test::box_obj("sign", -1, -1, 5, 1, 1, 6));
   ASSERT_EQ(place.crashrank({"inspect", "high.obj", "--profile", "high.svg"}).code, 0);
   EXPECT_NE(place.read("high.svg").find("nothing between 0 and 4 m"), std::string::npos);
+  EXPECT_EQ(times(place.read("high.svg"), " m, forward to the right"), 0U);
+}
+
+TEST(Inspect, BodiesThatACrashDoesNotSeeAreTold) {
+  const Workplace place;
+  const std::string unseen = "no material between 0.1 and 4 m over the ground";
+  const std::string faces = "f 1 2 3\nf 1 3 4\n";
+  place.write("box.obj", cli_test::box_obj("body", -1, -0.9, 0, 3, 0.9, 1.5));
+  place.write("high.obj", cli_test::box_obj("sign", -1, -1, 5, 1, 1, 6));
+  place.write("plate.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n" + faces);
+  place.write("sheet.obj", "v 0 0 0\nv 0 2 0\nv 0 2 1\nv 0 0 1\n" + faces);
+  for (const auto& [mesh, told] : std::vector<std::pair<std::string, std::string>>{
+           {"box", ""},
+           {"high", unseen},
+           {"plate", "the mesh is flat, without extent along z: " + unseen},
+           {"sheet", "the mesh is flat, without extent along x: as a body it encloses nothing"}}) {
+    SCOPED_TRACE(mesh);
+    const Outcome compiled = place.crashrank({"compile", mesh + ".obj", "-o", mesh + ".crm"});
+    EXPECT_EQ(compiled.code, 0) << compiled.err;
+    EXPECT_EQ(compiled.err.empty(), told.empty()) << compiled.err;
+    EXPECT_NE(compiled.err.find(told), std::string::npos) << compiled.err;
+    for (const char* extension : {".obj", ".crm"}) {
+      const Json file = place.crashrank({"inspect", mesh + extension, "--json"}).json()["files"][0];
+      ASSERT_EQ(file["warnings"].size(), told.empty() ? 0U : 1U) << file["warnings"];
+      if (told.empty()) continue;
+      EXPECT_EQ(file["warnings"][0].get<std::string>().rfind(told, 0), 0U);
+    }
+  }
 }
 
 TEST(Inspect, TheMeshOptionsTurnAndScale) {

@@ -60,6 +60,18 @@ TEST(Output, AFileOfAnotherKindIsNeverReplaced) {
   }
 }
 
+TEST(Output, APictureOfAnotherProgramIsKeptAndTheRuleSaid) {
+  const Workplace place;
+  write_inputs(place);
+  const std::string picture =
+      "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\"/>\n";
+  place.write("drawing.svg", picture);
+  expect_refused(place.crashrank({"inspect", "ego.obj", "--profile", "drawing.svg"}),
+                 "drawing.svg: is kept, as it does not begin like an SVG picture that crashrank "
+                 "writes; remove it first, or name another file");
+  EXPECT_EQ(place.read("drawing.svg"), picture);
+}
+
 TEST(Output, AFileOfItsKindAnEmptyOneAndAPipeAreWritten) {
   const Workplace place;
   write_inputs(place);

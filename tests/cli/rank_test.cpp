@@ -103,6 +103,33 @@ TEST(Rank, WhatIsHitWhenAndHowFast) {
                 straight["damaged_triangles"]["other"].get<double>());
 }
 
+// It is part of the JSON answer, and the search within a budget does not record it.
+TEST(Rank, MotionIsToldOrRefused) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  const Json answer = ranked(place, {"--motion"});
+  const Json& motion = entry(answer, "straight").at("motion");
+  ASSERT_EQ(motion.size(), 1U);  // nothing moves the stone
+  EXPECT_EQ(motion[0]["body"], "ego");
+  EXPECT_EQ(motion[0]["t_s"].size(), motion[0]["vx_mps"].size());
+  EXPECT_TRUE(entry(answer, "swerve").at("motion").empty());
+  EXPECT_FALSE(ranked(place)["ranking"][0].contains("motion"));
+  for (const auto& [more, told] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{}, "add --json"},
+           {{"--report", "page.html"}, "add --json"},
+           {{"--json", "--deadline-ms", "1000"}, "leave out --deadline-ms"},
+           {{"--json", "--work-budget", "1000"}, "--work-budget"},
+           {{"--json", "--first-place"}, "--first-place"}}) {
+    std::vector<std::string> arguments{"rank", "scenario.json", "--motion"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = place.crashrank(arguments);
+    EXPECT_EQ(run.code, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+    EXPECT_NE(run.err.find(told), std::string::npos) << run.err;
+  }
+}
+
 TEST(Rank, TheMeasureCanBeChosen) {
   const Workplace place;
   cli_test::write_box_scenario(place);

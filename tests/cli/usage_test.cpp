@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -9,6 +10,8 @@
 #include <vector>
 
 namespace {
+
+namespace fs = std::filesystem;
 
 using cli_test::Outcome;
 using cli_test::Workplace;
@@ -110,6 +113,31 @@ TEST(Usage, AScenarioIsNoProfileAndAProfileNoScenario) {
   EXPECT_NE(profile.err.find("profile.json: is a profile, not a scenario; name a scenario"),
             std::string::npos)
       << profile.err;
+}
+
+TEST(Usage, ErrorsOfMeshesNameTheScenarioAndItsKey) {
+  const Workplace place;
+  cli_test::write_box_scenario(place);
+  fs::remove(place.path("block.obj"));
+  const Outcome missing = place.crashrank({"rank", "scenario.json"});
+  EXPECT_EQ(missing.code, 3);
+  EXPECT_NE(missing.err.find("block.obj: cannot open it: No such file or directory (it is "
+                             "models.block.mesh of scenario.json); check the path"),
+            std::string::npos)
+      << missing.err;
+  cli_test::write_box_scenario(place);
+  place.write("ego.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  for (const std::vector<std::string>& budget :
+       std::vector<std::vector<std::string>>{{}, {"--first-place"}}) {
+    std::vector<std::string> arguments{"rank", "scenario.json"};
+    arguments.insert(arguments.end(), budget.begin(), budget.end());
+    const Outcome flat = place.crashrank(arguments);
+    EXPECT_EQ(flat.code, 3);
+    EXPECT_EQ(flat.err.rfind("crashrank: scenario.json: models.ego.mesh: ", 0), 0U) << flat.err;
+    EXPECT_NE(flat.err.find("ego.obj has no material between 0.1 and 4 m over its ground"),
+              std::string::npos)
+        << flat.err;
+  }
 }
 
 TEST(Usage, AWrongCommandIsNamedBesideTheRightOnes) {

@@ -114,9 +114,10 @@ TEST(ContactWithoutForce, AnEgoWithoutOutlineIsRefused) {
   std::swap(scene.models[0], scene.models[1]);
   const Result<RankResult> result = rank(scene.scenario, scene.models);
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().message(),
-            "models.car: has no material between 0.1 and 4 m over its ground, but the ego needs "
-            "it; check its scale, its up axis and its origin on the ground");
+  EXPECT_EQ(
+      result.error().message(),
+      "models.car.mesh: has no material between 0.1 and 4 m over its ground, but the ego needs "
+      "it; check its scale, its up axis and its origin on the ground");
 }
 
 /// Contacts of the egos in the likeliest futures of rankings.

@@ -137,7 +137,7 @@ TEST(Fault, AnEgoWithoutAnOutlineIsRefusedByNameAndAnActorIsNoCrashPartner) {
     result = rank(scene.scenario, scene.models);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::bad_input);
-    EXPECT_EQ(result.error().place, "models.car");
+    EXPECT_EQ(result.error().place, "models.car.mesh");
     EXPECT_NE(result.error().reason.find("no material"), std::string::npos);
     EXPECT_FALSE(result.error().remedy.empty());
   }

@@ -40,7 +40,7 @@ TEST(Rank, ErrorsNameTheirPlace) {
   std::vector<Model> hollow(2);
   const Result<RankResult> empty = rank(scene.scenario, hollow);
   ASSERT_FALSE(empty.ok());
-  EXPECT_EQ(empty.error().place, "models.car");
+  EXPECT_EQ(empty.error().place, "models.car.mesh");
 
   scene.scenario.actors[0].model = 7;
   EXPECT_EQ(rank(scene.scenario, scene.models).error().code, ErrorCode::bad_input);

@@ -84,8 +84,9 @@ TEST(Doubts, ContactsBetweenOthersCountAndCrowdsAreTold) {
   told.result.ranking[1].crowded = true;
   ASSERT_EQ(told.doubts().size(), 1U);
   EXPECT_EQ(told.doubts()[0],
-            "1 candidate leads to more bodies or contacts than are simulated, so that scores "
-            "may be too low: 'hit', in place 2");
+            "1 candidate leads to more bodies or contacts than are simulated, or to contact forces "
+            "on a body for more than 4.8 s, after which scores count none, so that they may be too "
+            "low: 'hit', in place 2");
 }
 
 TEST(Doubts, BodiesThatOverlapAtTheStartAreNamedOnceInEveryAnswer) {
@@ -159,6 +160,14 @@ TEST(Doubts, KeysWithoutEffectAreNamed) {
   EXPECT_EQ(told.doubts()[0],
             "the scenario sets crush, harm.after_impact, which are without effect; leave them "
             "out");
+}
+
+TEST(Doubts, NormalisedProbabilitiesAreNamed) {
+  Sound told;
+  told.scenario.normalised = {"actors[0].predictions"};
+  ASSERT_EQ(told.doubts().size(), 1U);
+  EXPECT_EQ(told.doubts()[0],
+            "probabilities do not sum to 1 and were divided by their sum: actors[0].predictions");
 }
 
 TEST(Doubts, ManoeuvresBeyondTheGripAreCountedAndTheFirstThreeDescribed) {
@@ -352,7 +361,19 @@ TEST(Doubts, BodiesWithoutOutlineAreNamedAndMayHangOverTheRoad) {
   told.result.actors[1].has_outline = false;
   told.expect_one(
       "1 body has no material between 0.1 and 4 m over the ground of its model, so that nothing "
-      "presses on it and it adds no harm: 'second'");
+      "presses on it and it adds no harm: 'second'; if that is wrong");
+  // A contact with it has no force for that reason, and is told here alone.
+  told.result.ranking[1].contacts[1].contact_without_force = true;
+  told.expect_one(
+      "1 body has no material between 0.1 and 4 m over the ground of its model, so that nothing "
+      "presses on it and it adds no harm: 'second' (touched by 1 candidate); if that is wrong");
+  told.result.ranking[1].place = 1;
+  told.expect_one(
+      "1 body has no material between 0.1 and 4 m over the ground of its model, so that nothing "
+      "presses on it and it adds no harm: 'second' (touched by 1 candidate, the first place among "
+      "them); if that is wrong");
+  told.result.ranking[1].contacts[0].contact_without_force = true;
+  EXPECT_EQ(told.doubts().size(), 3U);
 }
 
 TEST(Doubts, TwoOthersThatOverlapAtTimeZeroAreTold) {

@@ -1,4 +1,5 @@
 #include "crashrank/report/ranking.hpp"
+#include "crashrank/internal/report/escape.hpp"
 
 #include "told_ranking.hpp"
 
@@ -6,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -113,6 +115,49 @@ TEST(RankingText, TellsNoDigitThatTheIntervalLeavesOpen) {
   const std::string exact = ranking_text(plain.scenario, plain.models, plain.result);
   EXPECT_NE(exact.find("0.2174"), std::string::npos) << exact;
   EXPECT_EQ(exact.find("separable"), std::string::npos) << exact;
+}
+
+TEST(RankingText, NeighboursInARowHaveOneLineForEachReason) {
+  Told told = by_harm();
+  std::vector<CandidateResult>& ranking = told.result.ranking;
+  const CandidateResult hit = ranking[1];
+  ranking.assign(6, hit);
+  const std::vector<double> overtaken{0.1, 0.38, 0.2, 0.0, 0.3, 0.0};
+  for (std::size_t i = 0; i < ranking.size(); ++i) {
+    ranking[i].place = i + 1;
+    ranking[i].score = 0.01 * static_cast<double>(i + 1);
+    ranking[i].overtaken = overtaken[i];
+  }
+  const std::string text = ranking_text(told.scenario, told.models, told.result);
+  EXPECT_NE(
+      text.find("rank 1 to 4 not separable from the next (the order reverses in 10 to 38 % of "
+                "129 samples)\n"
+                "rank 4 and 5 not separable (half the steps or 1 mm aside may turn their order)\n"
+                "rank 5 and 6 not separable (the order reverses in 30 % of 129 samples)\n"),
+      std::string::npos)
+      << text;
+}
+
+TEST(RankingText, LinesFitATerminal) {
+  Told told = by_harm();
+  for (Candidate& candidate : told.result.candidates) {
+    candidate.name += " with a name that says all that the manoeuvre does";
+  }
+  const std::string whole = ranking_text(told.scenario, told.models, told.result);
+  RankingTextOptions options;
+  for (const std::size_t width : {80U, 100U, 140U, 1000U}) {
+    options.width = width;
+    const std::string text = ranking_text(told.scenario, told.models, told.result, options);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(display_width(line), width) << line;
+      EXPECT_TRUE(line.empty() || line.back() != ' ') << line;
+    }
+    EXPECT_EQ(text == whole, width == 1000U);
+    for (const char* word : {"hit with a name", "harm", "0.2 ", "2-3", "exposure"}) {
+      EXPECT_NE(text.find(word), std::string::npos) << word << '\n' << text;
+    }
+  }
 }
 
 /// Three candidates by harm, the second and third tied.

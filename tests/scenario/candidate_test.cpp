@@ -89,9 +89,9 @@ TEST(CandidateGrid, HasFifteenByFifteenDistinctManoeuvres) {
   EXPECT_EQ(names.size(), 225U);
   EXPECT_EQ(manoeuvres.size(), 225U);
   // The middle of the grid does nothing; full braking straight ahead is a member.
-  EXPECT_EQ(candidates.front().name, "a07 s07 (+0.00 m/s2, +0.00 deg)");
+  EXPECT_EQ(candidates.front().name, "hold speed, straight (a07 s07)");
   const auto braking = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) {
-    return c.name == "a00 s07 (-7.85 m/s2, +0.00 deg)";
+    return c.name == "brake 7.85 m/s2, straight (a00 s07)";
   });
   ASSERT_NE(braking, candidates.end());
   EXPECT_EQ(braking->acceleration_mps2, -0.8 * standard_gravity_mps2);
@@ -103,17 +103,40 @@ TEST(CandidateGrid, IsTheSameEveryTimeAndGentlestFirst) {
   const std::vector<Candidate> once = candidates_of(scenario);
   const std::vector<Candidate> again = candidates_of(scenario);
   ASSERT_EQ(once.size(), again.size());
-  const auto level = [](const std::string& name, std::size_t at) {
-    return (std::stod(name.substr(at, 2)) - 7.0) / 7.0;
+  const auto level = [](const std::string& name, std::size_t from_end) {
+    return (std::stod(name.substr(name.size() - from_end, 2)) - 7.0) / 7.0;
   };
   double before = 0.0;
   for (std::size_t i = 0; i < once.size(); ++i) {
     EXPECT_EQ(once[i].name, again[i].name);
     EXPECT_EQ(once[i].motion.pose_at(1.0).translation, again[i].motion.pose_at(1.0).translation);
-    const double u = level(once[i].name, 1);
-    const double w = level(once[i].name, 5);
+    const double u = level(once[i].name, 7);
+    const double w = level(once[i].name, 3);
     EXPECT_GE(u * u + w * w, before - 1e-12);
     before = u * u + w * w;
+  }
+}
+
+TEST(CandidateGrid, NamesSayWhatTheVehicleDoes) {
+  for (const double speed : {25.0, -6.0, 0.0}) {
+    const double forward = speed < 0.0 ? -1.0 : 1.0;
+    for (const Candidate& c : candidates_of(scenario_at(speed))) {
+      if (c.origin != CandidateOrigin::grid) continue;
+      const double along_way = c.acceleration_mps2 * forward;
+      const std::string pace = along_way < -0.005  ? "brake "
+                               : along_way > 0.005 ? "speed up "
+                               : speed == 0.0      ? "stand, "
+                                                   : "hold speed, ";
+      EXPECT_EQ(c.name.rfind(pace, 0), 0U) << c.name;
+      const bool left = c.name.find(" deg left (a") != std::string::npos;
+      const bool right = c.name.find(" deg right (a") != std::string::npos;
+      const bool straight = c.name.find(", straight (a") != std::string::npos;
+      EXPECT_EQ(left, c.curvature_per_m > 1e-4) << c.name;
+      EXPECT_EQ(right, c.curvature_per_m < -1e-4) << c.name;
+      EXPECT_EQ(straight, c.curvature_per_m == 0.0) << c.name;
+      if (std::abs(along_way) < 0.005) continue;
+      EXPECT_NEAR(std::stod(c.name.substr(pace.size())), std::abs(along_way), 0.005001) << c.name;
+    }
   }
 }
 

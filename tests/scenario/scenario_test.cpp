@@ -163,6 +163,70 @@ TEST(Scenario, ErrorsOfStatesAreReadInTheirUnits) {
   EXPECT_FALSE(is_uncertain(likeliest_future(*s)));
 }
 
+TEST(Scenario, RoundedProbabilitiesAreDividedByTheirSum) {
+  const auto with = [](const std::vector<double>& probabilities) {
+    json document = sample();
+    document["scenario_version"] = 2;
+    json& actor = document["actors"][1];
+    actor = {{"name", "may turn"}, {"model", "car"}};
+    for (const double each : probabilities) {
+      actor["predictions"].push_back({{"probability", each}, {"speed_mps", 9}});
+    }
+    return parse_scenario(document.dump(), "f");
+  };
+  for (const auto& [written, read] :
+       std::vector<std::pair<std::vector<double>, std::vector<double>>>{
+           {{0.33, 0.33, 0.33}, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}},
+           {{0.51, 0.5}, {0.51 / 1.01, 0.5 / 1.01}},
+           {{0.99}, {1.0}},
+           {{0.25, 0.7499}, {0.25 / 0.9999, 0.7499 / 0.9999}}}) {
+    const Result<Scenario> s = with(written);
+    ASSERT_TRUE(s.ok()) << s.error().message();
+    EXPECT_EQ(s->normalised, std::vector<std::string>{"actors[1].predictions"});
+    for (std::size_t k = 0; k < read.size(); ++k) {
+      EXPECT_NEAR(s->actors[1].predictions[k].probability, read[k], 1e-15);
+    }
+  }
+  // What rounding of the last digit leaves is kept as it is written.
+  const Result<Scenario> exact = with({0.25, 0.7500001});
+  ASSERT_TRUE(exact.ok());
+  EXPECT_TRUE(exact->normalised.empty());
+  EXPECT_EQ(exact->actors[1].predictions[1].probability, 0.7500001);
+  EXPECT_EQ(with({0.5, 0.48}).error().place, "actors[1].predictions");
+
+  json document = sample();
+  document["scenario_version"] = 2;
+  document["futures"] = {{{"probability", 0.3}, {"motions", json::object()}},
+                         {{"probability", 0.695}, {"motions", json::object()}}};
+  const Result<Scenario> joint = parse_scenario(document.dump(), "f");
+  ASSERT_TRUE(joint.ok()) << joint.error().message();
+  EXPECT_EQ(joint->normalised, std::vector<std::string>{"futures"});
+  EXPECT_NEAR(joint->futures[0].probability, 0.3 / 0.995, 1e-15);
+}
+
+TEST(Scenario, PoseAndSpeedStandOnceBesidePredictions) {
+  json document = sample();
+  document["scenario_version"] = 2;
+  document["actors"][1] = {{"name", "may turn"},
+                           {"model", "car"},
+                           {"pose", {{"x_m", 40}, {"yaw_deg", 180}}},
+                           {"speed_mps", 11},
+                           {"predictions",
+                            {{{"probability", 0.5}, {"yaw_rate_dps", 20}},
+                             {{"probability", 0.25}, {"pose", {{"y_m", 3}}}, {"speed_mps", 0}},
+                             {{"probability", 0.25}, {"poses", {{{"t_s", 0}, {"x_m", 39}}}}}}}};
+  const Result<Scenario> s = parse_scenario(document.dump(), "f");
+  ASSERT_TRUE(s.ok()) << s.error().message();
+  const std::vector<Prediction>& predictions = s->actors[1].predictions;
+  EXPECT_EQ(predictions[0].pose.translation, Eigen::Vector3d(40.0, 0.0, 0.0));
+  EXPECT_NEAR(predictions[0].pose.rotation(0, 0), -1.0, 1e-15);
+  EXPECT_EQ(predictions[0].speed_mps, 11.0);
+  EXPECT_EQ(predictions[1].pose.translation, Eigen::Vector3d(0.0, 3.0, 0.0));
+  EXPECT_EQ(predictions[1].pose.rotation(0, 0), 1.0);
+  EXPECT_EQ(predictions[1].speed_mps, 0.0);
+  EXPECT_EQ(predictions[2].poses.front().pose.translation.x(), 39.0);
+}
+
 TEST(Scenario, KeysWithoutEffectAreListed) {
   json document = sample();
   EXPECT_EQ(parse_scenario(document.dump(), "f")->keys_without_effect,

@@ -31,8 +31,9 @@ CRASHRANK_API std::string ranking_json(const Scenario& scenario, View<const Mode
 
 /// What the table shows.
 struct RankingTextOptions {
-  std::size_t top = 0;   ///< most candidates shown, 0 for all
-  bool colours = false;  ///< ANSI codes for the titles
+  std::size_t top = 0;    ///< most candidates shown, 0 for all
+  bool colours = false;   ///< ANSI codes for the titles
+  std::size_t width = 0;  ///< most characters of a line, from 80; 0: any number
 };
 
 /// A table, best candidate first, and lines about what is not in it, such as

@@ -184,6 +184,9 @@ struct Scenario {
   /// Key paths of the text that are accepted but change nothing, as "crush"; `parse_scenario` fills
   /// it, in the order of the schema.
   std::vector<std::string> keys_without_effect;
+  /// Key paths of probabilities that the text lets sum to 1 within `written_probability_sum` only
+  /// and that `parse_scenario` divided by their sum, as "actors[0].predictions".
+  std::vector<std::string> normalised;
 };
 
 /// Whether an actor has predictions or may not exist, joint futures are listed, or the state of the
@@ -242,6 +245,8 @@ inline constexpr double max_scale = 1e6;                ///< metres per file uni
 inline constexpr double min_grip = 0.01;                ///< least friction
 inline constexpr double max_grip = 3.0;                 ///< most friction
 inline constexpr double probability_sum = 1e-6;         ///< probabilities sum to 1 within this
+/// those of a text within this: a planner rounds its confidences
+inline constexpr double written_probability_sum = 0.01;
 }  // namespace scenario_limits
 
 /// Reads a scenario from its text; `file` names it in errors and is its name if the scenario has

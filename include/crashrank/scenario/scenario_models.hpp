@@ -16,6 +16,7 @@ namespace crashrank {
 struct ScenarioModelOptions {
   ImportOptions import;  ///< limits and importer; the transform is the scenario's, model by model
   BuildOptions build;    ///< of the trees of meshes; a model file has its own
+  std::string scenario;  ///< the scenario's file, as errors name it; empty: they do not
 };
 
 /// Contents of the file of one model of a scenario.
