@@ -55,7 +55,7 @@ struct ExposureCell {
 /// The cells of one body in which a contact force acted on it, in constant memory.
 class ExposureRecord {
 public:
-  static constexpr std::size_t most_cells = 256;  ///< later forces are not recorded
+  static constexpr std::size_t most_cells = 512;  ///< later forces are not recorded
 
   void prepare() { cells_.reserve(most_cells); }
   void begin() { cells_.clear(); }
@@ -113,8 +113,8 @@ inline double mean_intrusion_m(double intruded_m3, double deepest_m) {
 void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
                   std::vector<ExposureWindow>& windows);
 
-/// Capacity for the windows of any record with up to 16 for every begin.
-inline constexpr std::size_t most_windows = 32 * ExposureRecord::most_cells;
+/// Capacity for the windows of any record with up to 8 for every begin.
+inline constexpr std::size_t most_windows = 16 * ExposureRecord::most_cells;
 
 /// Sum over separate impacts: the largest sum of `of_window` over windows in the order of time, in
 /// which each counts with the share clamp(d/T - 1, 0, 1), where d is the time from the begin of the
@@ -127,7 +127,7 @@ public:
   double sum() const noexcept { return most_; }
 
 private:
-  static constexpr std::size_t kept = 2 * cells_per_window;
+  static constexpr std::size_t kept = std::size_t{2} * cells_per_window;
   struct Begin {
     std::int32_t cell = 0;
     double best = 0.0;  ///< largest sum that ends with its window

@@ -227,13 +227,10 @@ ForceDirection force_direction(double pdof_deg) {
 }
 
 double injury_hazard(RiskModel model, const Exposure& exposure) {
-  constexpr double most_risk = 1.0 - 1e-15;
-  const double most = -std::log1p(-most_risk);
-  if (exposure.person == Person::occupant) return std::min(occupant_hazard(model, exposure), most);
+  if (exposure.person == Person::occupant) return occupant_hazard(model, exposure);
   const double edge_m = std::clamp(exposure.leading_edge_m, lowest_edge_m, highest_edge_m);
-  return std::min(hazard_over_zero(pedestrian_argument(model, pedestrian_speed_mps(exposure),
-                                                       edge_m, description_of(exposure))),
-                  most);
+  return hazard_over_zero(
+      pedestrian_argument(model, pedestrian_speed_mps(exposure), edge_m, description_of(exposure)));
 }
 
 double injury_risk(RiskModel model, const Exposure& exposure) {

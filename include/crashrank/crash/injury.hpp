@@ -115,8 +115,7 @@ struct Exposure {
 /// which is no logistic, it multiplies the odds alike, so that it counts beside a delta-v only.
 CRASHRANK_API double injury_risk(RiskModel model, const Exposure& exposure);
 
-/// -ln(1 - p) of that probability: hazards of independent impacts add up. At most 34.5, which is
-/// that of 1 - 1e-15.
+/// -ln(1 - p) of that probability: hazards of independent impacts add up. Infinite where it is 1.
 CRASHRANK_API double injury_hazard(RiskModel model, const Exposure& exposure);
 
 /// The largest `injury_risk` over all directions of force and all leading edges. Between the edges
