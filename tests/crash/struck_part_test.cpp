@@ -92,7 +92,8 @@ TEST(StruckPart, IsThatOfTheFirstForceBetweenTheBodies) {
   for (double y_m = half_m - 0.6; y_m < half_m + 0.4; y_m += 0.02) {
     const double now = struck(y_m);
     EXPECT_LE(now, before + 1e-6) << y_m;
-    EXPECT_GE(now, before - 1.0) << y_m;
+    // Pieces press from their middles on: the last centimetres of overlap exert no force.
+    EXPECT_GE(now, before - 2.0) << y_m;
     before = now;
   }
   EXPECT_LT(before, 1.0);
