@@ -1,6 +1,7 @@
 #include "crash/contact_run.hpp"
 
 #include "crash/pair_order.hpp"
+#include "crash/struck_part.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,7 @@ void BodyPair::begin(std::size_t a, std::size_t b) {
   in_first = {};
   in_second = {};
   earlier_first_m = earlier_second_m = 0.0;
+  struck = false;
   begin_further_contact(last_end_step = 0);
 }
 
@@ -229,6 +231,7 @@ void ContactRun::compute_forces(double step_s) {
   totals_ = {};
   on_first_ = {};
   step_first_ = step_second_ = {};
+  struck_first_mps_ = struck_second_mps_ = 0.0;
   PassSettings settings;
   settings.step_s = step_s_;
   settings.pass_interval_s = pass_interval_s_;
@@ -250,6 +253,7 @@ void ContactRun::apply_forces() {
   forceless_travel_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
   window_travel_m_ += step_s_ * std::max(speed_mps_, least_speed_mps);
   if (presses()) {
+    strike();
     acts_ = true;
     const double closing = totals_.closing / totals_.pressing;
     const double speed = totals_.speed / totals_.pressing;
@@ -277,18 +281,49 @@ void ContactRun::apply_forces() {
   speed_mps_ = relative_speed_bound();
 }
 
+/// Share by which the full hit of a car changes the velocity of the first or the second body more
+/// than that of the other body does, over 1.
+double ContactRun::light_share(bool of_first) const {
+  const PlanarBody& body = motion_of(of_first ? first_ : second());
+  const PlanarBody& other = motion_of(of_first ? second() : first_);
+  return std::min(other.inverse_mass, 1.0 / striking_car_kg) / body.inverse_mass;
+}
+
+/// See `ContactAction::struck_mps`.
+double ContactRun::struck_mps(bool of_first) const {
+  const PressedBody& body = state_->bodies[of_first ? first_ : second()];
+  if (body.vehicle->kind != BodyKind::pedestrian) return 0.0;
+  const PressedBody* const first = &state_->bodies[first_];
+  const View<const PressedBody* const> strikers =
+      of_first ? View<const PressedBody* const>{others_.data(), pair_count_}
+               : View<const PressedBody* const>{&first, 1};
+  return struck_part_mps(body, strikers) * (1.0 + light_share(of_first));
+}
+
+/// The part of a person that lies in the way is struck by the first force between the bodies; what
+/// is pushed or scraped later is not struck anew.
+void ContactRun::strike() {
+  bool struck = false;
+  for (const std::uint32_t k : pairs()) {
+    struck = struck || state_->pairs[k].struck;
+    state_->pairs[k].struck = true;
+  }
+  if (struck) return;
+  struck_first_mps_ = struck_mps(true);
+  struck_second_mps_ = struck_mps(false);
+}
+
 ContactAction ContactRun::step_action(bool of_first) const {
   ContactAction action;
   const PlanarBody& body = motion_of(of_first ? first_ : second());
-  const PlanarBody& other = motion_of(of_first ? second() : first_);
   const StepImpulse& impulse = of_first ? step_first_ : step_second_;
   action.dvx_mps = body.inverse_mass * impulse.whole.x;
   action.dvy_mps = body.inverse_mass * impulse.whole.y;
   action.rebound_x_mps = body.inverse_mass * impulse.rebound.x;
   action.rebound_y_mps = body.inverse_mass * impulse.rebound.y;
   action.path_mps = plane_length(action.dvx_mps, action.dvy_mps);
-  const double of_other = std::min(other.inverse_mass, 1.0 / striking_car_kg);
-  action.light_mps = action.path_mps * of_other / body.inverse_mass;
+  action.light_mps = action.path_mps * light_share(of_first);
+  action.struck_mps = of_first ? struck_first_mps_ : struck_second_mps_;
   const ContactBody& striker = of_first ? given_second_ : given_first_;
   action.edge_m2ps = action.path_mps * striker.vehicle->leading_edge_m;
   action.crush_j = applied_s_ * (of_first ? totals_.crush_first_w : totals_.crush_second_w);

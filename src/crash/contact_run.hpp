@@ -31,6 +31,7 @@ struct BodyPair {
   PlanarForce since_rebound;
   PlanarForce impulse_on_second;    ///< impulse of the contact, moment about its centre of mass
   bool pressed = false;             ///< a force acted in this contact
+  bool struck = false;              ///< a force acted in this or an earlier contact
   double earlier_first_m = 0.0;     ///< greatest intrusion into the first in earlier contacts
   double earlier_second_m = 0.0;    ///< greatest intrusion into the second in earlier contacts
   std::uint64_t last_end_step = 0;  ///< scene step in which their last contact ended
@@ -170,6 +171,9 @@ private:
   void apply_impulses();
   ForceVelocity velocity_at_force() const;
   void rebound(double speed_mps);
+  double light_share(bool of_first) const;
+  double struck_mps(bool of_first) const;
+  void strike();
   double kinetic_energy_j() const;
   double relative_speed_bound() const;
   double relative_speed() const;
@@ -202,6 +206,9 @@ private:
   double applied_s_ = 0.0;        ///< time for which the force of this step was applied
   StepImpulse step_first_;        ///< of this step
   StepImpulse step_second_;
+  /// In the step of the first force between the bodies, see `ContactAction::struck_mps`.
+  double struck_first_mps_ = 0.0;
+  double struck_second_mps_ = 0.0;
   double time_s_ = 0.0;
   double duration_s_ = 0.0;
   double step_s_ = 0.0;

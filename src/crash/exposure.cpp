@@ -13,6 +13,7 @@ void ContactAction::add(const ContactAction& more, double share) {
   cancelled_mps += share * more.cancelled_mps;
   crush_j += share * more.crush_j;
   light_mps += share * more.light_mps;
+  struck_mps = std::max(struck_mps, more.struck_mps);
   edge_m2ps += share * more.edge_m2ps;
   intruded_m3 += share * more.intruded_m3;
   deepest_m += share * more.deepest_m;
@@ -84,7 +85,7 @@ ExposureWindow window_of(const ExposedBody& body, const ExposureCell& first, std
   const double path_mps = std::max(sum.path_mps, 1e-12);
   w.edge_m = sum.edge_m2ps / path_mps;
   if (!body.is_vehicle) {
-    w.struck_mps = w.exposure_mps * (1.0 + sum.light_mps / path_mps);
+    w.struck_mps = std::max(w.exposure_mps * (1.0 + sum.light_mps / path_mps), sum.struck_mps);
     return w;
   }
   w.intrusion_m = mean_intrusion_m(sum.intruded_m3, sum.deepest_m);

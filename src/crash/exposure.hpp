@@ -24,7 +24,7 @@ inline constexpr double exposure_cell_s = exposure_window_s / cells_per_window;
 /// Mass of the vehicle whose full hits the injury curves of people outside cars describe, kg.
 inline constexpr double striking_car_kg = 1500.0;
 
-/// What contact forces did to a body in some time. All members are sums over its contacts.
+/// What contact forces did to a body in some time. All members but one are sums over its contacts.
 struct ContactAction {
   double dvx_mps = 0.0;  ///< change of its velocity, world axes
   double dvy_mps = 0.0;
@@ -36,6 +36,9 @@ struct ContactAction {
   /// `path_mps` weighted by the body's mass over that of the other body, or over
   /// `striking_car_kg` if that is larger.
   double light_mps = 0.0;
+  /// Person on foot: exposure by the part that is struck, see `struck_part_mps`, as a hit by a car
+  /// gives it to all of the body; the greatest.
+  double struck_mps = 0.0;
   double edge_m2ps = 0.0;    ///< `path_mps` weighted by the leading edge of the other body
   double intruded_m3 = 0.0;  ///< volume of its compartment that is crushed
   double deepest_m = 0.0;    ///< increase of its deepest intrusion
@@ -73,7 +76,8 @@ struct ExposureWindow {
   std::int32_t begin = 0;     ///< first cell
   std::int32_t end = 0;       ///< cell after the last
   double exposure_mps = 0.0;  ///< see `list_windows`
-  /// Speed at which a hit by a car gives that exposure to a person outside cars.
+  /// Speed at which a hit by a car gives that exposure to a person outside cars; of people on foot
+  /// at least `ContactAction::struck_mps`.
   double struck_mps = 0.0;
   double edge_m = 0.0;  ///< mean leading edge of what hits the body
   /// Of the change of velocity. The share of the exposure that exceeds it has none.

@@ -25,6 +25,22 @@ namespace crashrank::detail::HWY_NAMESPACE {
 /// Advance of a piece that never presses: so low that no step changes it.
 inline constexpr float never_presses = -1e9F;
 
+/// Depth of pieces, along their normals, below the side of the other body that they face most;
+/// negative outside it. Beside its silhouettes the bounds of the band count.
+HWY_INLINE F8 faced_depth(const Depths& d, const BandBounds& bounds, F8 x, F8 y, F8 nx, F8 ny) {
+  const auto known_or = [&](F8 depth, F8 to_bounds) {
+    constexpr float no_interval = -1e6F;
+    return select(less(all(no_interval), depth), depth, to_bounds);
+  };
+  const F8 end = select(less(nx, all(0.0F)), known_or(d.front, all(bounds.max_x) - x),
+                        known_or(d.rear, x - all(bounds.min_x)));
+  const F8 side = select(less(ny, all(0.0F)), known_or(d.left, all(bounds.max_y) - y),
+                         known_or(d.right, y - all(bounds.min_y)));
+  const F8 along = absolute(nx);
+  const F8 across = absolute(ny);
+  return select(less(along, across), across * side, along * end);
+}
+
 /// Starts to track pieces of a block, a bit for each in `which`. Pieces that lie too deep inside
 /// the other body never press. After an earlier contact of the two bodies, pieces press only beyond
 /// the depth that they have crushed: the smaller of their advance along the normal and their path
@@ -32,19 +48,29 @@ inline constexpr float never_presses = -1e9F;
 inline void start_tracking(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
                            float allowed_m, std::uint32_t which, PieceStates& states) {
   const Silhouettes& target = q.pressed->vehicle->silhouettes;
+  const std::size_t band = q.target_band[block.band];
   PieceStates begun;
   for (std::size_t h = 0; h < block_pieces; h += 8) {
+    const auto turn_x = [&](F8 x, F8 y) { return all(q.to.c) * x - all(q.to.s) * y; };
+    const auto turn_y = [&](F8 x, F8 y) { return all(q.to.s) * x + all(q.to.c) * y; };
     const F8 x = load(rows.x.data() + h);
     const F8 y = load(rows.y.data() + h);
-    const F8 at_x = all(q.to.c) * x - all(q.to.s) * y + all(q.to.x);
-    const F8 at_y = all(q.to.s) * x + all(q.to.c) * y + all(q.to.y);
-    const F8 least = depths_at(target, q.target_band[block.band], at_x, at_y).least();
+    const F8 normal_x = load(rows.normal_x.data() + h);
+    const F8 normal_y = load(rows.normal_y.data() + h);
+    const F8 at_x = turn_x(x, y) + all(q.to.x);
+    const F8 at_y = turn_y(x, y) + all(q.to.y);
+    const Depths depths = depths_at(target, band, at_x, at_y);
     const F8 crushed = minimum(load(states.path.data() + h), load(states.furthest.data() + h));
-    const M8 any = less(all(0.0F), crushed);
-    // Measured from the present position, outside the body: add the distance to the surface.
-    store(select(any, crushed + positive(-least), all(0.0F)), begun.furthest.data() + h);
-    const F8 s = select(less(all(allowed_m), least), all(never_presses), all(0.0F));
-    store(select(any, all(0.0F), s), begun.s.data() + h);
+    const F8 nx = turn_x(normal_x, normal_y);
+    const F8 ny = turn_y(normal_x, normal_y);
+    // Bodies stand in the middle of a step, and the advance counts from its begin.
+    const F8 advance =
+        (all(q.to.vx) - all(q.to.spin) * at_y) * nx + (all(q.to.vy) + all(q.to.spin) * at_x) * ny;
+    const F8 depth = faced_depth(depths, target.bands[band], at_x, at_y, nx, ny) -
+                     all(static_cast<float>(0.5 * q.settings->step_s)) * advance;
+    store(crushed, begun.furthest.data() + h);
+    const F8 fresh = select(less(all(allowed_m), depths.least()), all(never_presses), all(0.0F));
+    store(select(less(all(0.0F), crushed), minimum(depth, crushed), fresh), begun.s.data() + h);
   }
   const std::vector<std::uint8_t>& in_joint = q.pusher->vehicle->in_joint;
   for (std::size_t k = 0; k < block.count; ++k) {

@@ -43,7 +43,8 @@ RelativeMotion relative_motion(const PressedBody& from, const PressedBody& to) {
   return relative_motion;
 }
 
-/// Height of the ground of the pusher over that of the pressed body, m: near the smaller of both.
+}  // namespace
+
 double rise_of(const PressedBody& pusher, const PressedBody& pressed) {
   const PlanarBody& p = pusher.motion;
   const PlanarBody& q = pressed.motion;
@@ -55,7 +56,6 @@ double rise_of(const PressedBody& pusher, const PressedBody& pressed) {
   return p.ground_at(x, y) - q.ground_at(x, y);
 }
 
-/// By band of the pusher the band of the pressed body that shares most height with it.
 std::array<std::uint8_t, profile_bands> target_bands(double rise_m) {
   constexpr double level_m = 1e-3;
   std::array<std::uint8_t, profile_bands> target{};
@@ -74,8 +74,6 @@ std::array<std::uint8_t, profile_bands> target_bands(double rise_m) {
   }
   return target;
 }
-
-}  // namespace
 
 bool inside_outline(const Vehicle& vehicle, std::size_t band, float x, float y) {
   const Silhouettes& s = vehicle.silhouettes;

@@ -8,7 +8,9 @@
 #include "crashrank/base/view.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace crashrank::detail {
 
@@ -59,6 +61,13 @@ struct PassSettings {
   View<const PressedBody* const> neighbours;
   std::size_t self = 0;  ///< index of the pressing body in `neighbours`
 };
+
+/// Height of the ground of the pusher over that of the pressed body, m: near the smaller of both.
+double rise_of(const PressedBody& pusher, const PressedBody& pressed);
+
+/// By band of the pusher the band of the pressed body that shares most height with it, or
+/// `no_band`.
+std::array<std::uint8_t, profile_bands> target_bands(double rise_m);
 
 /// Returns true if a point (body axes, m) lies inside an outline of the height band. O(pieces of
 /// the band).

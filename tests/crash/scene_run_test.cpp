@@ -72,6 +72,43 @@ TEST(SceneRun, TwoBodiesWithoutRoadAreOneContact) {
   EXPECT_LT(percentile(changes, 1.0), 1e-3);
 }
 
+TEST(SceneRun, BodiesPressAgainWhereTheyWereCrushed) {
+  // A lorry pushes a car against a wall, from which it comes back.
+  const Vehicle& lorry = named("truck");
+  const Vehicle& car = named("hatch");
+  for (const double gap_m : {2.0, 3.0, 4.0}) {
+    for (const double speed_mps : {8.0, 9.0, 10.0, 12.0}) {
+      SceneSetup setup;
+      const double car_m = lorry.silhouettes.max_x - car.silhouettes.min_x + 0.1;
+      const double wall_m = car_m + car.silhouettes.max_x - named("wall").silhouettes.min_x;
+      setup.add(lorry, flat_pose(0, 0, 0), speed_mps);
+      setup.add(car, flat_pose(car_m, -0.24, 0), 0.0);
+      setup.add(named("wall"), flat_pose(wall_m + gap_m, 0, 0), 0.0);
+      SceneRun run;
+      run.begin(setup.make_bodies(false), 0, 1, 0.0, Vector3d::Zero(), {});
+      double least_m = 1e9;
+      double least_closing_mps = 1e9;
+      double returning_mps = 0.0;
+      bool returned = false;
+      while (run.advance(1)) {
+        const double apart_m = run.body(1).x - run.body(0).x;
+        const double closing_mps = run.body(0).vx - run.body(1).vx;
+        const bool parted = run.contacts().size() > 0;
+        if (!parted) least_m = std::min(least_m, apart_m);
+        if (parted && !returned && closing_mps > 1.0 && apart_m < least_m) {
+          returned = true;
+          returning_mps = closing_mps;
+        }
+        if (returned && apart_m > least_m - 0.15) {
+          least_closing_mps = std::min(least_closing_mps, closing_mps);
+        }
+      }
+      ASSERT_TRUE(returned) << gap_m << " m, " << speed_mps << " m/s";
+      EXPECT_LT(least_closing_mps, 0.8 * returning_mps) << gap_m << " m, " << speed_mps << " m/s";
+    }
+  }
+}
+
 struct Totals {
   Vector3d momentum = Vector3d::Zero();
   double moment = 0.0;

@@ -102,6 +102,7 @@ std::vector<ExposureCell> any_cells(Random& random) {
     cell.action.rebound_x_mps = 0.2 * cell.action.dvx_mps;
     cell.action.edge_m2ps = cell.action.path_mps * random.uniform(0.3, 1.5);
     cell.action.light_mps = cell.action.path_mps * random.uniform(0.0, 0.2);
+    cell.action.struck_mps = random.uniform(0.0, 12.0);
     cell.action.intruded_m3 = random.uniform(0.0, 0.01);
     cell.action.deepest_m = random.uniform(0.0, 0.05);
     cell.road_mps = static_cast<float>(random.uniform(0.0, 30.0));
