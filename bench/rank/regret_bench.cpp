@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <sched.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -24,6 +26,7 @@ struct Options {
   std::vector<std::uint64_t> works;
   std::size_t calls = 3;
   unsigned workers = 2;
+  bool fifo = false;
 };
 
 /// A limit of the time or of the work.
@@ -95,7 +98,7 @@ void try_cut(Ranker& ranker, const bench::Situations& s, const Truth& truth, Cut
     sum += chosen;
     most = std::max(most, chosen);
     std::printf("%s,%zu,%s,%zu,%.5f,%.5f,%.5f,%s,%.2f,%llu\n", s.name.c_str(), s.candidates.size(),
-                cut.name.c_str(), call, best, chosen, braking, answer.proved ? "proved" : "cut",
+                cut.name.c_str(), call, best, chosen, braking, basis_name(answer.basis),
                 1e3 * answer.elapsed_s, static_cast<unsigned long long>(answer.effort.work));
   }
   cut.regret += sum / static_cast<double>(cut.calls) - best;
@@ -105,24 +108,36 @@ void try_cut(Ranker& ranker, const bench::Situations& s, const Truth& truth, Cut
   std::fflush(stdout);
 }
 
+/// Gives this thread, and those that it starts from now on, real-time scheduling or takes it away.
+/// Full answers take long and do without.
+bool schedule(bool fifo) {
+  sched_param param{};
+  param.sched_priority = fifo ? 50 : 0;
+  return sched_setscheduler(0, fifo ? SCHED_FIFO : SCHED_OTHER, &param) == 0;
+}
+
 int run(const Options& options) {
   std::vector<Cut> cuts = cuts_of(options);
   double braking_regret = 0.0;
-  std::printf("scenario,candidates,cut,call,best,chosen,braking,state,elapsed_ms,work\n");
+  std::printf("scenario,candidates,cut,call,best,chosen,braking,basis,elapsed_ms,work\n");
   for (const std::string& file : options.scenarios) {
     const Result<bench::Situations> s = bench::make_situations(file, 0, 1, 7);
     if (!s) {
       std::fprintf(stderr, "%s\n", s.error().message().c_str());
       return 3;
     }
-    Result<Ranker> ranker = bench::prepare_ranker(*s, "harm", options.workers);
-    if (!ranker) {
-      std::fprintf(stderr, "%s\n", ranker.error().message().c_str());
+    Result<Ranker> full = bench::prepare_ranker(*s, "harm", options.workers);
+    if (!full) {
+      std::fprintf(stderr, "%s\n", full.error().message().c_str());
       return 3;
     }
-    const Truth truth = truth_of(*ranker, s->candidates);
+    const Truth truth = truth_of(*full, s->candidates);
     braking_regret += truth.score[truth.braking] - truth.score[truth.best];
+    if (options.fifo && !schedule(true)) std::printf("# SCHED_FIFO is not permitted here\n");
+    Result<Ranker> ranker = bench::prepare_ranker(*s, "harm", options.workers);
+    if (!ranker) return 3;
     for (Cut& cut : cuts) try_cut(*ranker, *s, truth, cut);
+    schedule(false);
   }
   const auto scenes = static_cast<double>(std::max<std::size_t>(options.scenarios.size(), 1));
   std::printf("\n| cut | scenes | mean regret, persons | largest | worse than braking |\n");
@@ -147,6 +162,7 @@ int main(int argc, char** argv) {
       ->delimiter(',');
   app.add_option("--calls", options.calls, "Calls for each deadline");
   app.add_option("--workers", options.workers, "Threads, the caller's included");
+  app.add_flag("--fifo", options.fifo, "Real-time scheduling of the cut answers");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }
