@@ -15,8 +15,10 @@ using detail::Deadline;
 using detail::seconds_between;
 using detail::StepRounds;
 
-/// Number of waiting candidates that are refined in one round.
-constexpr std::size_t refined_per_round = 8;
+/// Number of waiting candidates that are refined in the first round and at most in a later one. The
+/// rounds double: what the first ones find ends the steps of the later ones early.
+constexpr std::size_t refined_first = 2;
+constexpr std::size_t refined_per_round = 16;
 
 std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
   // FNV-1a over words, plus a shift so that high bits affect low ones.
@@ -74,11 +76,15 @@ void Ranker::State::refine_all(const RankBudget& budget, RankerEffort& effort) n
   }
   // Steps of candidates of which nothing is known, and steps of the most promising, in turn.
   bool looks = true;
+  std::size_t refined = refined_first;
   while (going) {
     const auto start = Deadline::Clock::now();
     std::size_t steps = looks ? queue.choose_unseen(StepRounds::max_steps, chosen.data()) : 0;
     bool looked = steps > 0;
-    if (!looked) steps = queue.choose(states, refined_per_round, chosen.data());
+    if (!looked) {
+      steps = queue.choose(states, refined, chosen.data());
+      refined = std::min(2 * refined, refined_per_round);
+    }
     if (steps == 0) {
       steps = queue.choose_unseen(StepRounds::max_steps, chosen.data());
       looked = steps > 0;
