@@ -712,6 +712,14 @@ typedef struct crashrank_ranked {
   int32_t contact_without_force;  ///< as in crashrank_choice; 0 where the score is not known
 } crashrank_ranked;
 
+/// What the first place of an answer rests on.
+enum {
+  CRASHRANK_BASIS_BRAKING = 1,    ///< nothing known shows a better one than braking hardest
+  CRASHRANK_BASIS_COARSE = 2,     ///< it keeps clear of everybody by an estimate
+  CRASHRANK_BASIS_SIMULATED = 3,  ///< its score is known, and no known one is better
+  CRASHRANK_BASIS_PROVED = 4      ///< no other candidate can take it
+};
+
 /// What was known in time. `ranking`, most promising first, is the ranker's until its next call.
 typedef struct crashrank_answer {
   size_t size;                      ///< sizeof(crashrank_answer)
@@ -722,6 +730,7 @@ typedef struct crashrank_answer {
   double elapsed_s;  ///< from the call on
   int32_t complete;  ///< every score is known
   int32_t proved;    ///< no other candidate can still take the first place
+  int32_t basis;     ///< of the first place: one of CRASHRANK_BASIS_...
 } crashrank_answer;
 
 /// Ranks within a budget; NULL: without end. The caller sets `answer->size`. Allocates nothing, and

@@ -146,6 +146,7 @@ void bind_answers(nb::module_& module) {
           "Bits: known, in race, collides, feasible, leaves road, contact without force.")
       .def_prop_ro("complete", [](const Answered& self) { return self.answer.complete; })
       .def_prop_ro("proved", [](const Answered& self) { return self.answer.proved; })
+      .def_prop_ro("basis", [](const Answered& self) { return basis_name(self.answer.basis); })
       .def_prop_ro("in_race", [](const Answered& self) { return self.answer.in_race; })
       .def_prop_ro("elapsed_s", [](const Answered& self) { return self.answer.elapsed_s; })
       .def_prop_ro("hash", [](const Answered& self) { return self.answer.hash; })

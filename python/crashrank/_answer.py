@@ -57,6 +57,8 @@ class Answer(Sequence[AnsweredCandidate]):
         Every score is known.
     proved : bool
         No other candidate can still be first.
+    basis : str
+        What the first place rests on: "proved", "simulated", "coarse" or "braking".
     in_race : int
         Number of candidates that can.
     elapsed_s : float
@@ -76,6 +78,7 @@ class Answer(Sequence[AnsweredCandidate]):
         "_session",
         "_speeds",
         "_times",
+        "basis",
         "complete",
         "elapsed_s",
         "hash",
@@ -100,6 +103,7 @@ class Answer(Sequence[AnsweredCandidate]):
         self.highest: NDArray[np.float64] = answered.highest()
         self.complete = answered.complete
         self.proved = answered.proved
+        self.basis = answered.basis
         self.in_race = answered.in_race
         self.elapsed_s = answered.elapsed_s
         self.hash = answered.hash
@@ -143,7 +147,7 @@ class Answer(Sequence[AnsweredCandidate]):
 
     @property
     def best(self) -> AnsweredCandidate:
-        """The most promising candidate: the one whose worst outcome is the best."""
+        """The candidate to choose by what is known; ``basis`` says what that is."""
         return self[0]
 
     def explain(self) -> Ranking:

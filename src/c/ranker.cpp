@@ -242,6 +242,9 @@ crashrank_status crashrank_ranker_rank(crashrank_ranker* ranker, const crashrank
     made.elapsed_s = ranked.elapsed_s;
     made.complete = ranked.complete ? 1 : 0;
     made.proved = ranked.proved ? 1 : 0;
+    static_assert(static_cast<int>(RankBasis::braking) + 1 == CRASHRANK_BASIS_BRAKING &&
+                  static_cast<int>(RankBasis::proved) + 1 == CRASHRANK_BASIS_PROVED);
+    made.basis = static_cast<std::int32_t>(ranked.basis) + 1;
     c::write_sized(made, *answer);
     return CRASHRANK_OK;
   });

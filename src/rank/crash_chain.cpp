@@ -54,6 +54,17 @@ ContactVariant variant_of(const HarmSample& sample) {
   return {sample.friction / panels, sample.strength, 1.0};
 }
 
+HeldControls controls_after(const Scene& scene, const Motion& plan, const Vehicle& vehicle,
+                            double contact_s) {
+  const HeldManoeuvre held = held_manoeuvre(plan, vehicle.center_m, contact_s);
+  HeldControls controls;
+  controls.brake = std::clamp(held.braking_mps2 / (scene.grip * standard_gravity_mps2),
+                              brake_after_contact, 1.0);
+  controls.steering_rad = std::clamp(std::atan(held.curvature_per_m * vehicle.wheelbase_m),
+                                     -most_steering_rad, most_steering_rad);
+  return controls;
+}
+
 void CrashChain::prepare(const Scene& scene) {
   bodies_.reserve(scene.actors.size() + 1);
   actors_.reserve(scene.actors.size() + 1);
@@ -83,11 +94,9 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
     body.vehicle = &vehicle;
     body.plan = &motion;
     if (vehicle.movable()) {
-      const HeldManoeuvre held = held_manoeuvre(motion, vehicle.center_m, first.time_of_impact_s);
-      body.brake = std::clamp(held.braking_mps2 / (scene.grip * standard_gravity_mps2),
-                              brake_after_contact, 1.0);
-      body.steering_rad = std::clamp(std::atan(held.curvature_per_m * vehicle.wheelbase_m),
-                                     -most_steering_rad, most_steering_rad);
+      const HeldControls held = controls_after(scene, motion, vehicle, first.time_of_impact_s);
+      body.brake = held.brake;
+      body.steering_rad = held.steering_rad;
       body.footing = &body_of(scene, index).footing;
     }
     body.number = static_cast<std::uint32_t>(number);

@@ -16,6 +16,14 @@ namespace crashrank::detail {
 /// keeps its braking. A design choice.
 inline constexpr double brake_after_contact = 0.45;
 
+/// What the driver of a vehicle holds after a contact: what the plan held at that time.
+struct HeldControls {
+  double steering_rad = 0.0;  ///< of the front wheels, left positive
+  double brake = 0.0;         ///< share of the grip, [0, 1]
+};
+HeldControls controls_after(const Scene& scene, const Motion& plan, const Vehicle& vehicle,
+                            double contact_s);
+
 /// Simulation of the scene that follows from the first contact of a candidate, a limited number of
 /// steps at a time. One object serves any number of candidates in sequence; each thread needs its
 /// own.

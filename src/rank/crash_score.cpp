@@ -90,6 +90,31 @@ double WindowReader::intrusion_m() const {
   return mean_intrusion_m(sum.intruded_m3, sum.deepest_m);
 }
 
+/// Lists windows that `list` lists, too, or that one of those exceeds: one at full length for every
+/// half of a window from the first force on. Linear in the number of cells.
+void CrashScore::list_some(const Scene& scene, const CrashEffects& effects,
+                           const CrashEffects::BodyCells& body) {
+  constexpr std::int32_t apart = cells_per_window / 2;
+  const Body& of = body_of(scene, body.body);
+  const View<const ExposureCell> cells = effects.cells_of(body);
+  some_.clear();
+  for (std::size_t first = 0; first < cells.size();) {
+    const std::int32_t begin = cells[first].index;
+    ExposureCell whole = cells[first];
+    std::size_t k = first + 1;
+    std::size_t next = cells.size();
+    for (; k < cells.size() && cells[k].index < begin + cells_per_window; ++k) {
+      whole.action.add(cells[k].action, 1.0);
+      if (cells[k].index >= begin + apart) next = std::min(next, k);
+    }
+    list_windows({&whole, 1}, {of.mass_kg, has_cage(of.vehicle.kind), 1.0}, windows_);
+    some_.push_back(windows_.back());
+    some_.back().begin = begin;
+    first = std::min(next, k);
+  }
+  windows_.assign(some_.begin(), some_.end());
+}
+
 void CrashScore::list(const Scene& scene, const CrashEffects& effects,
                       const CrashEffects::BodyCells& body, double restitution) {
   const Body& of = body_of(scene, body.body);
@@ -130,7 +155,9 @@ void CrashScore::add_scores(const Scene& scene, const CrashEffects& effects,
     std::size_t known = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const HarmSample& sample = samples[i];
-      if (i == 0 || sample.restitution != samples[i - 1].restitution) {
+      if (is_bound) {
+        list_some(scene, effects, body);
+      } else if (i == 0 || sample.restitution != samples[i - 1].restitution) {
         list(scene, effects, body, sample.restitution);
         known = 0;
       }

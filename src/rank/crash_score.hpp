@@ -87,7 +87,10 @@ HarmExposure exposure_of(const Scene& scene, std::size_t body, const ExposureWin
 class CrashScore {
 public:
   /// Allocates; the members for single samples do not allocate afterwards.
-  void prepare() { windows_.reserve(most_windows); }
+  void prepare() {
+    windows_.reserve(most_windows);
+    some_.reserve(ExposureRecord::most_cells);
+  }
   double score(const Scene& scene, const CrashEffects& effects, const HarmSample& sample);
   /// Lower bound on the score in the nominal sample of a simulation that goes on from `effects`.
   double lower_bound(const Scene& scene, const CrashEffects& effects);
@@ -102,7 +105,11 @@ private:
   void list(const Scene& scene, const CrashEffects& effects, const CrashEffects::BodyCells& body,
             double restitution);
 
+  void list_some(const Scene& scene, const CrashEffects& effects,
+                 const CrashEffects::BodyCells& body);
+
   std::vector<ExposureWindow> windows_;
+  std::vector<ExposureWindow> some_;
 };
 
 }  // namespace crashrank::detail

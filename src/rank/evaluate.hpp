@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rank/box_crash.hpp"
 #include "rank/crash_chain.hpp"
 #include "rank/crash_score.hpp"
 #include "rank/damage.hpp"
@@ -43,6 +44,7 @@ struct Scratch {
   Motion ego;                            ///< motion of the ego in a future that displaces it
   ImpactWorkspace impact;
   CrashChain chain;
+  BoxCrash boxes;
   std::vector<PlanarPose> ego_poses;  ///< sampled trajectory of the candidate
   CrashEffects effects;
   std::vector<std::size_t> order;

@@ -65,6 +65,20 @@ Result<Infeasible> infeasible_from_name(const std::string& name) {
                     "choose demote, drop or keep");
 }
 
+const char* basis_name(RankBasis basis) noexcept {
+  switch (basis) {
+    case RankBasis::braking:
+      return "braking";
+    case RankBasis::coarse:
+      return "coarse";
+    case RankBasis::simulated:
+      return "simulated";
+    case RankBasis::proved:
+      return "proved";
+  }
+  return "proved";
+}
+
 namespace detail {
 
 void OrderKey::set_collision_probability(double probability) noexcept {
@@ -173,6 +187,9 @@ void sort_ranking(RankResult& result) {
     if (!beaten && c.score_interval.lowest <= lowest_high) result.in_race.push_back(c.candidate);
   }
   result.proved = result.in_race.size() <= 1;
+  result.basis = result.proved           ? RankBasis::proved
+                 : ranking.front().score ? RankBasis::simulated
+                                         : RankBasis::coarse;
   compute_stability(result);
 }
 

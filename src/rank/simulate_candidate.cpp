@@ -198,6 +198,7 @@ void Scratch::prepare(const Scene& scene) {
   for (auto* const each : {&same, &remaining, &others}) each->reserve(futures.max_future_count());
   ego_poses.reserve(scene.trajectories.steps + 1);
   chain.prepare(scene);
+  boxes.prepare(scene.actors.size() + 1);
   effects.contacts.reserve(SceneRun::most_contacts + 1);
   effects.bodies.reserve(scene.actors.size() + 1);
   effects.cells.reserve(SceneRun::most_recorded * ExposureRecord::most_cells);

@@ -341,6 +341,7 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
                 {"dropped", std::move(dropped)},
                 {"complete", result.complete},
                 {"proved", result.proved},
+                {"basis", basis_name(result.basis)},
                 {"in_race", std::move(in_race)},
                 {"elapsed_s", result.elapsed_s},
                 {"warnings", std::move(all_warnings)},

@@ -191,8 +191,8 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
       result.elapsed_s * 1e3, result.complete ? "" : "; not every score is known");
   if (!result.complete) {
     text += result.proved ? "The first place is proved.\n"
-                          : fmt::format("The first place is not proved: {} are in the race.\n",
-                                        result.in_race.size());
+                          : fmt::format("The first place is not proved ({}): {} are in the race.\n",
+                                        basis_name(result.basis), result.in_race.size());
   }
   if (result.effort) {
     const RankerEffort& effort = *result.effort;

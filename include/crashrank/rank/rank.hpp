@@ -287,6 +287,17 @@ struct RankWork {
   }
 };
 
+/// What the first place of a ranking rests on.
+enum class RankBasis : std::uint8_t {
+  braking,    ///< nothing that is known shows a better one than braking hardest, turning least
+  coarse,     ///< it keeps clear of everybody by an estimate
+  simulated,  ///< its score is known, and no known one is better; an unknown one may be
+  proved,     ///< no other candidate can take the first place
+};
+
+/// "braking", "coarse", "simulated", "proved".
+CRASHRANK_API const char* basis_name(RankBasis basis) noexcept;
+
 /// Work and times of a call of a Ranker.
 struct RankerEffort {
   /// tests of boxes and triangles, and outline pieces: the unit of a work budget
@@ -298,8 +309,8 @@ struct RankerEffort {
   /// number of candidates that bounds proved not to be first, without full evaluation
   std::size_t left_early = 0;
   double prepare_s = 0.0;   ///< of Ranker::prepare, wall time, before the call
-  double bounds_s = 0.0;    ///< in the first round, with swept boxes
-  double refining_s = 0.0;  ///< in all later rounds
+  double bounds_s = 0.0;    ///< in first steps of candidates: swept boxes and estimates
+  double refining_s = 0.0;  ///< in all later steps
 };
 
 /// Result of a ranking, least harmful candidate first.
@@ -315,8 +326,9 @@ struct RankResult {
   bool has_motion = false;                     ///< RankOptions::records_motion was requested
   /// indices into `candidates`, ascending; Infeasible::drop only
   std::vector<std::size_t> dropped;
-  bool complete = true;  ///< every score is known
-  bool proved = true;    ///< no other candidate can still take the first place
+  bool complete = true;                 ///< every score is known
+  bool proved = true;                   ///< no other candidate can still take the first place
+  RankBasis basis = RankBasis::proved;  ///< of the first place
   /// Candidates that can be first, most promising first. Of tied candidates with known scores only
   /// the first in the ranking is listed.
   std::vector<std::size_t> in_race;

@@ -281,6 +281,7 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     result.infeasible = s.scene.infeasible;
     detail::drop_infeasible(result);
     result.proved = answer.proved;
+    result.basis = answer.basis;
     result.elapsed_s = answer.elapsed_s;
     result.effort = answer.effort;
     detail::compute_stability(result);

@@ -15,7 +15,9 @@ using detail::Deadline;
 using detail::seconds_between;
 using detail::StepRounds;
 
-/// Number of waiting candidates that are refined in one round.
+/// Number of waiting candidates that are refined in the first round and at most in a later one. The
+/// rounds double: what the first ones find ends the steps of the later ones early.
+constexpr std::size_t refined_first = 2;
 constexpr std::size_t refined_per_round = 16;
 
 std::uint64_t mix_hash(std::uint64_t hash, std::uint64_t word) {
@@ -62,10 +64,8 @@ bool Ranker::State::collect_results(std::size_t steps, const RankBudget& budget,
 }
 
 void Ranker::State::refine_all(const RankBudget& budget, RankerEffort& effort) noexcept {
-  const auto start = Deadline::Clock::now();
   const auto all = static_cast<std::uint32_t>(rounds.candidates().size());
   bool going = budget.work > 0;
-  std::uint32_t begin = 0;
   if (going && all > 1) {
     // Not valid if the ego can be displaced, because the swept boxes are those of its plans.
     if (!scene.futures.displaces_ego() &&
@@ -74,29 +74,33 @@ void Ranker::State::refine_all(const RankBudget& budget, RankerEffort& effort) n
     }
     going = effort.work < budget.work && !rounds.expired();
   }
-  while (begin < all && going) {
-    const std::size_t steps = std::min<std::size_t>(StepRounds::max_steps, all - begin);
-    for (std::size_t i = 0; i < steps; ++i) {
-      chosen[i] = begin + static_cast<std::uint32_t>(i);
-    }
-    rounds.run(states, chosen.data(), steps, std::numeric_limits<double>::infinity());
-    begin += static_cast<std::uint32_t>(steps);
-    going = collect_results(steps, budget, effort.work);
-  }
-  const auto seen = Deadline::Clock::now();
-  effort.bounds_s = seconds_between(start, seen);
+  // Steps of candidates of which nothing is known, and steps of the most promising, in turn.
+  bool looks = true;
+  std::size_t refined = refined_first;
   while (going) {
-    const bool deciding = !queue.decided();
-    const double limit = deciding ? queue.limit() : std::numeric_limits<double>::infinity();
-    const std::size_t steps = queue.choose(states, refined_per_round, chosen.data());
+    const auto start = Deadline::Clock::now();
+    std::size_t steps = looks ? queue.choose_unseen(StepRounds::max_steps, chosen.data()) : 0;
+    bool looked = steps > 0;
+    if (!looked) {
+      steps = queue.choose(states, refined, chosen.data());
+      refined = std::min(2 * refined, refined_per_round);
+    }
+    if (steps == 0) {
+      steps = queue.choose_unseen(StepRounds::max_steps, chosen.data());
+      looked = steps > 0;
+    }
     if (steps == 0) {
       if (budget.first_place_only || !queue.requeue_beaten(states)) break;
       continue;
     }
-    rounds.run(states, chosen.data(), steps, limit);
+    const bool deciding = !queue.decided();
+    const double limit = deciding ? queue.limit() : std::numeric_limits<double>::infinity();
+    rounds.run(states, chosen.data(), steps, limit, deciding);
     going = collect_results(steps, budget, effort.work);
+    looks = !looked;
+    (looked ? effort.bounds_s : effort.refining_s) +=
+        seconds_between(start, Deadline::Clock::now());
   }
-  effort.refining_s = seconds_between(seen, Deadline::Clock::now());
 }
 
 void Ranker::State::refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
@@ -115,7 +119,7 @@ void Ranker::State::begin(View<const Candidate> candidates) noexcept {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     detail::begin_refining(scene, bounds, candidates[i], i, displaced, states[i]);
   }
-  queue.begin(candidates.size());
+  queue.begin(states, candidates.size());
   known = 0;
   needs_left_out = false;
 }
@@ -149,17 +153,18 @@ void Ranker::State::explain_all(View<const Candidate> candidates, const RankerAn
 
 void Ranker::State::write_answer(RankerAnswer& answer, std::size_t all) noexcept {
   queue.mark_in_race(states);
-  bool searched = true;
-  for (std::size_t i = 0; i < all; ++i) {
-    ranking[i] = states[i].result;
-    searched = searched && (ranking[i].known || ranking[i].stage >= RankStage::searched);
-  }
-  // Estimates after a search cannot be compared with upper bounds before it: use estimates only
-  // if all candidates are searched.
-  std::sort(ranking.begin(), ranking.begin() + static_cast<std::ptrdiff_t>(all),
-            [searched](const RankedCandidate& a, const RankedCandidate& b) {
-              return detail::ranks_before(a, b, searched);
+  for (std::size_t i = 0; i < all; ++i) ranking[i] = states[i].result;
+  const auto begin = ranking.begin();
+  std::sort(begin, begin + static_cast<std::ptrdiff_t>(all),
+            [&](const RankedCandidate& a, const RankedCandidate& b) {
+              return detail::ranks_before(states[a.candidate], states[b.candidate]);
             });
+  if (all > 0) {
+    const std::uint32_t first = queue.choice(states, answer.basis);
+    const auto chosen_place = std::find_if(
+        begin, ranking.end(), [&](const RankedCandidate& c) { return c.candidate == first; });
+    std::rotate(begin, chosen_place, chosen_place + 1);
+  }
   answer.ranking = {ranking.data(), all};
   answer.complete = true;
   RankerEffort& effort = answer.effort;

@@ -101,6 +101,12 @@ void begin_refining(const Scene& scene, const ScoreBounds& bounds, const Candida
   if (scene.road.ends()) state.upper_bound += leaving_score(scene, RoadLeaving{}, no_contact_s);
   state.result.interval = {0.0, state.upper_bound};
   state.result.estimate = state.upper_bound;
+  constexpr int times = 4;
+  for (int k = 1; k <= times; ++k) {
+    const Velocity at = candidate.motion.velocity_at(scene.slice_s.back() * k / times);
+    state.speed2 += at.linear_mps.squaredNorm();
+    state.turn2 += at.angular_radps.squaredNorm();
+  }
 }
 
 void bound_as_clear(const Scene& scene, CandidateState& state) {
@@ -121,7 +127,8 @@ StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch)
       break;
     case RankStage::near:
       end.finished = search_contacts(q, state, scratch, work);
-      break;
+      if (!end.finished || !state.needs_refinement()) break;
+      [[fallthrough]];
     case RankStage::searched:
     case RankStage::scored:
       if (!scored_by_damage(q.scene.measure)) {
@@ -153,10 +160,10 @@ StepResult refine(const RefineQuery& q, CandidateState& state, Scratch& scratch)
   return end;
 }
 
-OrderKey key_of(const RankedCandidate& c, bool by_estimate) noexcept {
+OrderKey key_of(const RankedCandidate& c) noexcept {
   OrderKey key;
   key.demoted = !c.feasible;
-  key.score = c.known ? c.score : by_estimate ? c.estimate : c.interval.highest;
+  key.score = c.known ? c.score : c.estimate;
   key.known = c.known;
   key.set_collision_probability(c.collision_probability);
   key.collides = c.collides;
@@ -169,9 +176,16 @@ OrderKey key_of(const RankedCandidate& c, bool by_estimate) noexcept {
   return key;
 }
 
-bool ranks_before(const RankedCandidate& a, const RankedCandidate& b, bool by_estimate) noexcept {
-  const int compared = compare(key_of(a, by_estimate), key_of(b, by_estimate));
-  return compared != 0 ? compared < 0 : a.candidate < b.candidate;
+bool ranks_before(const CandidateState& a, const CandidateState& b) noexcept {
+  if (a.result.feasible != b.result.feasible) return a.result.feasible;
+  if (a.seen() != b.seen()) return a.seen();
+  if (a.seen()) {
+    const int compared = compare(key_of(a.result), key_of(b.result));
+    if (compared != 0) return compared < 0;
+    if (a.result.known && b.result.known) return a.result.candidate < b.result.candidate;
+  }
+  if (a.brakes_harder_than(b) != b.brakes_harder_than(a)) return a.brakes_harder_than(b);
+  return a.result.candidate < b.result.candidate;
 }
 
 }  // namespace crashrank::detail

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -22,7 +23,7 @@ struct FutureScore {
 
   double score = unknown;
   double lower_bound = 0.0;  ///< lower bound while the score is not known
-  double estimate = 0.0;     ///< estimate while the score is not known, see estimate_score
+  double estimate = 0.0;     ///< estimate while the score is not known, see BoxCrash
   /// Work of the longest simulation of its crash so far, in outline pieces moved.
   std::uint64_t simulated = 0;
   std::uint32_t first = no_contact;    ///< index of its first contact in CandidateState::first_hits
@@ -37,6 +38,11 @@ struct CandidateState {
   bool unresolved = false;    ///< a test stayed undecided: the candidate cannot be refined further
   double upper_bound = 0.0;   ///< upper bound on the score in any future
   bool demand_known = false;  ///< `result.feasible` is final
+  double coarse = 0.0;        ///< estimate in the likeliest future; valid from the stage `near` on
+  /// How hard its plan brakes and how little it turns: the sums of the squared speeds and yaw rates
+  /// at a few times. The least is the hardest braking with the least steering.
+  double speed2 = 0.0;
+  double turn2 = 0.0;
   /// Actors that were left out of the futures and that its crash reaches; further ones follow when
   /// these are included.
   std::array<std::uint32_t, 16> needed{};
@@ -58,6 +64,11 @@ struct CandidateState {
   }
 
   bool needs_refinement() const noexcept { return !result.known && !unresolved; }
+  /// An estimate is known, or the score.
+  bool seen() const noexcept { return result.known || result.stage > RankStage::unseen; }
+  bool brakes_harder_than(const CandidateState& other) const noexcept {
+    return speed2 != other.speed2 ? speed2 < other.speed2 : turn2 < other.turn2;
+  }
 };
 
 /// Inputs of a refinement step.
@@ -65,10 +76,11 @@ struct RefineQuery {
   const Scene& scene;
   const ScoreBounds& bounds;
   const Candidate& candidate;
-  /// The step may stop once the score is proved to exceed this. If it is finite, the first place is
-  /// still to be decided, and a crash is simulated in limited portions.
-  double stop_above;
+  /// The step may stop once the score is proved to exceed this. Other threads may lower it.
+  const std::atomic<double>& limit;
   const Deadline& deadline;
+
+  double stop_above() const noexcept { return limit.load(std::memory_order_relaxed); }
 };
 
 /// Result of a refinement step.
@@ -90,10 +102,11 @@ void bound_as_clear(const Scene& scene, CandidateState& state);
 /// interval never widens. Requires `needs_refinement`.
 StepResult refine(const RefineQuery& query, CandidateState& state, Scratch& scratch);
 
-/// Sort key from what is known of a candidate. If its score is not known, the estimate or the upper
-/// bound takes its place.
-OrderKey key_of(const RankedCandidate& candidate, bool by_estimate) noexcept;
-/// Returns true if `a` precedes `b` by what is known of both.
-bool ranks_before(const RankedCandidate& a, const RankedCandidate& b, bool by_estimate) noexcept;
+/// Sort key from what is known of a candidate. If its score is not known, the estimate takes its
+/// place.
+OrderKey key_of(const RankedCandidate& candidate) noexcept;
+/// Returns true if `a` precedes `b` by what is known of both: those that cannot be followed and
+/// those of which nothing is known come last, these the hardest braking first.
+bool ranks_before(const CandidateState& a, const CandidateState& b) noexcept;
 
 }  // namespace crashrank::detail

@@ -35,10 +35,9 @@ bool search_contacts(const RefineQuery& q, CandidateState& state, Scratch& scrat
 /// Third step: simulates the scene after the first contact in one future. Returns false if time was
 /// up.
 ///
-/// While the first place is open, candidates and their futures alternate, each time with a multiple
-/// of the work before, because first contacts alone suffice to reject most candidates. A simulation
-/// starts anew each time, since there is no memory for one simulation per future; all runs before
-/// the last cost half as much as the last together.
+/// It ends once the candidate is beaten. Of several futures each is left once its own score exceeds
+/// what is sought, since all have to be worse on average; if that does not suffice, it starts anew
+/// and goes twice as far, because there is no memory for one simulation per future.
 bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work);
 
 }  // namespace crashrank::detail

@@ -1,4 +1,3 @@
-#include "rank/anytime/estimate.hpp"
 #include "rank/anytime/refine_steps.hpp"
 #include "rank/combine_futures.hpp"
 #include "rank/ego_motion.hpp"
@@ -60,46 +59,49 @@ bool settle_without_contact(const RefineQuery& q, CandidateState& state, Scratch
   return true;
 }
 
-/// Estimate of the score of the crash that begins with a contact; `upper_bound` if the first
-/// contact alone says nothing about the measure.
-double estimate_of(const RefineQuery& q, const Motion& ego, const Scratch::Hit& hit,
-                   double upper_bound, Scratch& scratch) {
-  if (scored_by_damage(q.scene.measure)) return upper_bound;
-  const double estimate =
-      estimate_score(q.scene, ego, q.scene.futures.plans[hit.plan].motion,
-                     first_contact_of(q, ego, hit), scratch.effects, scratch.score);
-  const bool says_nothing = !(estimate > 0.0) && !measure_row(q.scene.measure).counts_people;
-  return says_nothing ? upper_bound : estimate;
+/// Estimate of the score in a future, without leaving the road; the upper bound under measures that
+/// count triangles. Nothing if time was up.
+std::optional<double> estimate_of(const RefineQuery& q, const CandidateState& state,
+                                  const Motion& ego, std::size_t future, Scratch& scratch,
+                                  RankWork& work) {
+  if (scored_by_damage(q.scene.measure)) return state.upper_bound;
+  const std::optional<double> estimate =
+      scratch.boxes.score(q.scene, ego, future, scratch.stop, scratch.effects, scratch.score);
+  work.box_tests += scratch.boxes.tests();
+  return estimate;
 }
 
 /// Stores the hits of the last search that are the first contact of a future of the group, in their
-/// order, and the estimates of their crashes.
-void store_first_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
-                      CandidateState& state, Scratch& scratch) {
+/// order, and the estimates of their crashes. Returns false if time was up.
+bool store_first_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
+                      CandidateState& state, Scratch& scratch, RankWork& work) {
   const Futures& futures = q.scene.futures;
   for (const Scratch::Hit& hit : scratch.hits) {
     if (!hit.impact.hit()) continue;
     const auto index = static_cast<std::uint32_t>(state.first_hits.size());
-    double estimate = FutureScore::unknown;
+    std::optional<double> estimate;
     for (std::size_t f = group.begin; f < group.end; ++f) {
       FutureScore& future = state.futures[f];
       if (future.first != FutureScore::no_contact || !futures.follows(f, hit.plan)) continue;
-      if (estimate < 0.0) {
-        estimate = estimate_of(q, ego, hit, state.upper_bound, scratch);
+      if (!estimate) {
+        estimate =
+            f == futures.likeliest() ? state.coarse : estimate_of(q, state, ego, f, scratch, work);
+        if (!estimate) return false;
         state.first_hits.push_back(hit);
       }
       future.first = index;
-      future.estimate = estimate;
+      future.estimate = *estimate;
     }
   }
+  return true;
 }
 
-/// Stores the results of the search in a group of futures.
-void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
-                CandidateState& state, FollowedPlan& followed, Scratch& scratch) {
+/// Stores the results of the search in a group of futures. Returns false if time was up.
+bool store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& ego,
+                CandidateState& state, FollowedPlan& followed, Scratch& scratch, RankWork& work) {
   const std::size_t likeliest = q.scene.futures.likeliest();
   const auto leaving = leaving_of(q, state, ego, scratch);
-  store_first_hits(q, group, ego, state, scratch);
+  if (!store_first_hits(q, group, ego, state, scratch, work)) return false;
   for (std::size_t f = group.begin; f < group.end; ++f) {
     FutureScore& future = state.futures[f];
     const bool touches = future.first != FutureScore::no_contact;
@@ -125,6 +127,7 @@ void store_hits(const RefineQuery& q, const FutureGroup& group, const Motion& eg
     result.time_of_impact_s = first.time_of_impact_s;
     result.closing_speed_mps = first.closing_speed_mps;
   }
+  return true;
 }
 
 }  // namespace
@@ -155,6 +158,14 @@ bool find_nearby(const RefineQuery& q, CandidateState& state, Scratch& scratch, 
     state.result.stage = RankStage::near;
     return true;
   }
+  const std::size_t likeliest = q.scene.futures.likeliest();
+  const std::optional<double> estimate =
+      estimate_of(q, state, q.candidate.motion, likeliest, scratch, work);
+  if (!estimate) return false;
+  state.coarse = *estimate;
+  const ScoreInterval& interval = state.result.interval;
+  state.result.estimate = std::clamp(state.coarse + leaving_score(q.scene, leaving, no_contact_s),
+                                     interval.lowest, interval.highest);
   state.result.stage = RankStage::near;
   // A plan that is feasible until the horizon is feasible until any contact.
   state.demand_known =
@@ -183,8 +194,8 @@ bool search_contacts(const RefineQuery& q, CandidateState& state, Scratch& scrat
     if (!in_time && scratch.stopped()) return restore();
     decided = decided && known;
     probability = collision_probability(q.scene, group, scratch, probability);
-    store_hits(q, group, ego, state, followed, scratch);
-    if (!in_time && scratch.stopped()) return restore();
+    const bool stored = store_hits(q, group, ego, state, followed, scratch, work);
+    if (!stored || (!in_time && scratch.stopped())) return restore();
   }
   state.unresolved = !decided;
   if (!decided) {

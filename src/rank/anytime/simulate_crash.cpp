@@ -5,14 +5,9 @@
 #include "rank/road_leaving.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace crashrank::detail {
 namespace {
-
-/// Limit for the first simulation of a crash while the first place is open, in outline pieces
-/// moved: about the first contact of two cars.
-constexpr std::uint64_t first_quota = 20'000;
 
 /// Selects the future to simulate next: the one with the least simulated work relative to its
 /// probability.
@@ -22,7 +17,7 @@ std::size_t next_future(const Futures& futures, const CandidateState& state) {
   for (std::size_t f = 0; f < futures.size(); ++f) {
     const double probability = futures.probability(f);
     if (state.futures[f].known() || !(probability > 0.0)) continue;
-    const double simulated = static_cast<double>(first_quota + state.futures[f].simulated);
+    const double simulated = static_cast<double>(1 + state.futures[f].simulated);
     if (next < futures.size() && simulated >= least * probability) continue;
     next = f;
     least = simulated / probability;
@@ -63,13 +58,14 @@ bool share_score(const Scene& scene, std::size_t future, CandidateState& state, 
 
 bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratch, RankWork& work) {
   constexpr int steps_at_a_time = 4;
-  constexpr std::uint64_t quota_growth = 3;
+  constexpr std::int32_t cells_per_bound = cells_per_window / 2;
   const std::size_t index = next_future(q.scene.futures, state);
   FutureScore& future = state.futures[index];
   const FutureScore before = future;
   const RankedCandidate result_before = state.result;
-  const bool is_limited = q.stop_above < std::numeric_limits<double>::infinity();
-  const std::uint64_t quota = std::max(first_quota, quota_growth * future.simulated);
+  // A future that is worse than what is sought gives way to the others, until it has to be known
+  // better.
+  const double shown = 2.0 * future.lower_bound;
   const HarmSample& nominal = q.scene.nominal;
   CrashChain& chain = scratch.chain;
   const Motion& ego = ego_motion(q.scene, q.candidate, index, scratch.ego);
@@ -86,7 +82,7 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
     going = chain.advance(steps_at_a_time);
     if (!going) break;
     // A bound from time to time, and after every contact.
-    const std::int32_t period = chain.run().current_cell() / cells_per_window;
+    const std::int32_t period = chain.run().current_cell() / cells_per_bound;
     if (bounded_contacts != chain.contacts().size() || bounded_period != period) {
       bounded_contacts = chain.contacts().size();
       bounded_period = period;
@@ -96,8 +92,9 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
       combine(q, state, scratch);
     }
     in_time = !q.deadline.expired();
-    if (!in_time || state.result.interval.lowest > q.stop_above) break;
-    if (is_limited && chain.run().work() > quota) break;
+    const double limit = q.stop_above();
+    if (!in_time || state.result.interval.lowest > limit) break;
+    if (q.scene.futures.size() > 1 && future.lower_bound > std::max(limit, shown)) break;
   }
   future.simulated = std::max(future.simulated, chain.run().work());
   work.crash_steps += chain.run().steps();

@@ -65,8 +65,9 @@ void StepRounds::begin(View<const Candidate> candidates, const Deadline& deadlin
 }
 
 void StepRounds::run(const std::vector<CandidateState>& states, const std::uint32_t* chosen,
-                     std::size_t steps, double stop_above) noexcept {
-  stop_above_ = stop_above;
+                     std::size_t steps, double stop_above, bool lowers) noexcept {
+  stop_above_.store(stop_above, std::memory_order_relaxed);
+  lowers_ = lowers && deadline_.is_set();
   count_ = steps;
   next_.store(0, std::memory_order_relaxed);
   for (std::size_t i = 0; i < steps; ++i) {
@@ -107,6 +108,11 @@ void StepRounds::run_steps(Scratch& own, const Deadline& deadline) noexcept {
     Slot& slot = slots_[i];
     const RefineQuery query{scene_, bounds_, candidates_[chosen_[i]], stop_above_, deadline};
     slot.end = refine(query, slot.state, own);
+    const RankedCandidate& result = slot.state.result;
+    double limit = stop_above_.load(std::memory_order_relaxed);
+    while (lowers_ && result.known && result.feasible && result.score < limit &&
+           !stop_above_.compare_exchange_weak(limit, result.score, std::memory_order_relaxed)) {
+    }
     slot.done.store(true, std::memory_order_release);
   }
 }

@@ -48,9 +48,11 @@ public:
   const Deadline& deadline() const noexcept { return deadline_; }
 
   /// Refines the chosen candidates by one stage, on all threads. A step may stop once the score is
-  /// proved to exceed `stop_above`.
+  /// proved to exceed `stop_above`. If the call has a deadline and `lowers`, scores that become
+  /// known lower that limit for all steps at once: without a deadline answers must not depend on
+  /// which thread is faster.
   void run(const std::vector<CandidateState>& states, const std::uint32_t* chosen,
-           std::size_t steps, double stop_above) noexcept;
+           std::size_t steps, double stop_above, bool lowers) noexcept;
 
   /// Result of a step of the last round; null state if it was not finished. Valid until the next
   /// round.
@@ -88,7 +90,8 @@ private:
   View<const Candidate> candidates_;
   Deadline deadline_;
   Deadline workers_deadline_;
-  double stop_above_ = 0.0;
+  std::atomic<double> stop_above_{0.0};
+  bool lowers_ = false;
   std::size_t count_ = 0;
   std::array<std::uint32_t, max_steps> chosen_{};
   std::atomic<std::size_t> next_{0};

@@ -69,11 +69,10 @@ struct RankedCandidate {
   bool in_race = true;                  ///< can still be first
   double score = 0.0;                   ///< valid if `known`
   ScoreInterval interval;               ///< contains the final score at every stage
-  /// Estimate of a score that is not known, within the interval. Futures that are not simulated yet
-  /// count as their first contact would if both bodies were point masses that stop each other along
-  /// its normal. Before the stage `searched` it is the upper bound. Not a bound itself. Candidates
-  /// with unknown scores are ordered by it once all candidates are searched, before that by the
-  /// upper bound.
+  /// Estimate of a score that is not known, within the interval, but not a bound itself: futures
+  /// that are not simulated yet count as a crash of the boxes around the bodies, before the stage
+  /// `searched` the likeliest one alone. At the stage `unseen` it is the upper bound. Candidates
+  /// are ordered by scores and estimates, those of the stage `unseen` after all others.
   double estimate = 0.0;
   /// From the stage `searched` on: probability that the ego has a contact.
   double collision_probability = 0.0;
@@ -104,6 +103,7 @@ struct RankedCandidate {
 struct RankerAnswer {
   Status status = Success{};            ///< error if the call was rejected; then nothing is ranked
   View<const RankedCandidate> ranking;  ///< every candidate once
+  RankBasis basis = RankBasis::proved;  ///< of the first place
   bool complete = false;                ///< every score is known
   bool proved = false;                  ///< no other candidate can still take the first place
   std::size_t in_race = 0;              ///< number of candidates that can be first
