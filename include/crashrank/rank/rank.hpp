@@ -161,7 +161,7 @@ struct CandidateResult {
   std::vector<BodyMotion> motion;
   /// The simulation reached a limit: 64 contacts in all, 64 pairs of bodies, 40 simultaneous
   /// contacts, for each body the 32 nearest within 5 m; or its exposure counts no more of what acts
-  /// on a body after 4.8 s of contact forces.
+  /// on a body after 9.6 s of contact forces.
   bool crowded = false;
   std::vector<Graze> grazes;  ///< before the first contact, in time order
   /// Damage of the ego from all contacts together; a triangle that is hit twice counts once.
