@@ -70,13 +70,11 @@ constexpr OccupantCurve tum_occupant{-4.457, 0.177, 0.244, -0.431};
 constexpr OccupantCurve malliaris_mais3{-5.820, 0.202 / mph, 0.556, -2.170};
 constexpr OccupantCurve malliaris_fatal{-9.032, 0.198 / mph, 1.462, -1.921};
 
-double occupant_hazard(const OccupantCurve& curve, const Exposure& e) {
-  Argument z;
-  z.at_zero =
-      curve.intercept + curve.side * e.direction.from_side + curve.rear * e.direction.from_behind;
-  z.gain = curve.per_mps * std::max(e.delta_v_mps, 0.0) +
-           intrusion_gain_per_m * std::max(e.intrusion_m, 0.0);
-  return hazard_over_zero(z);
+Argument occupant_argument(const OccupantCurve& curve, const Exposure& e) {
+  return {
+      curve.intercept + curve.side * e.direction.from_side + curve.rear * e.direction.from_behind,
+      curve.per_mps * std::max(e.delta_v_mps, 0.0) +
+          intrusion_gain_per_m * std::max(e.intrusion_m, 0.0)};
 }
 
 /// Not a logistic curve; intrusion multiplies the odds by exp(gain), as it does in a logistic
@@ -89,18 +87,19 @@ double joksch(const Exposure& e) {
          (risk + (1.0 - risk) * std::exp(-intrusion_gain_per_m * std::max(e.intrusion_m, 0.0)));
 }
 
-double occupant_hazard(RiskModel model, const Exposure& e) {
+/// The logistic curve of occupants; null in the model that has none.
+const OccupantCurve* occupant_curve(RiskModel model) {
   switch (model) {
     case RiskModel::tum:
-      return occupant_hazard(tum_occupant, e);
+      return &tum_occupant;
     case RiskModel::malliaris_monfort:
-      return occupant_hazard(malliaris_mais3, e);
+      return &malliaris_mais3;
     case RiskModel::malliaris_rosen:
-      return occupant_hazard(malliaris_fatal, e);
+      return &malliaris_fatal;
     case RiskModel::joksch_monfort:
       break;
   }
-  return -std::log1p(-joksch(e));
+  return nullptr;
 }
 
 /// Monfort & Mueller, centred on the means of their sample. The coefficient of the leading edge in
@@ -226,15 +225,29 @@ ForceDirection force_direction(double pdof_deg) {
   return {1.0 - along * along, along < 0.0 ? along * along : 0.0};
 }
 
+namespace {
+
+/// Value of a logistic curve's argument, or of the risk by the curve that is none.
+template <typename OfArgument, typename OfRisk>
+double read_curve(RiskModel model, const Exposure& e, OfArgument&& of_argument, OfRisk&& of_risk) {
+  if (e.person == Person::occupant) {
+    const OccupantCurve* const curve = occupant_curve(model);
+    return curve != nullptr ? of_argument(occupant_argument(*curve, e)) : of_risk(joksch(e));
+  }
+  const double edge_m = std::clamp(e.leading_edge_m, lowest_edge_m, highest_edge_m);
+  return of_argument(
+      pedestrian_argument(model, pedestrian_speed_mps(e), edge_m, description_of(e)));
+}
+
+}  // namespace
+
 double injury_hazard(RiskModel model, const Exposure& exposure) {
-  if (exposure.person == Person::occupant) return occupant_hazard(model, exposure);
-  const double edge_m = std::clamp(exposure.leading_edge_m, lowest_edge_m, highest_edge_m);
-  return hazard_over_zero(
-      pedestrian_argument(model, pedestrian_speed_mps(exposure), edge_m, description_of(exposure)));
+  return read_curve(model, exposure, hazard_over_zero,
+                    [](double risk) { return -std::log1p(-risk); });
 }
 
 double injury_risk(RiskModel model, const Exposure& exposure) {
-  return -std::expm1(-injury_hazard(model, exposure));
+  return read_curve(model, exposure, risk_over_zero, [](double risk) { return risk; });
 }
 
 double most_injury_risk(RiskModel model, const Exposure& exposure) {

@@ -25,8 +25,16 @@ namespace crashrank::detail::HWY_NAMESPACE {
 /// Advance of a piece that never presses: so low that no step changes it.
 inline constexpr float never_presses = -1e9F;
 
-/// Depth of pieces, along their normals, below the side of the other body that they face most;
-/// negative outside it. Beside its silhouettes the bounds of the band count.
+/// Lengths along the other body's x and y axes, as lengths along the normals of pieces that face
+/// its ends or its flanks.
+HWY_INLINE F8 along_normal(F8 along_x, F8 along_y, F8 nx, F8 ny) {
+  const F8 x_share = absolute(nx);
+  const F8 y_share = absolute(ny);
+  return select(less(x_share, y_share), y_share * along_y, x_share * along_x);
+}
+
+/// Depth of pieces, along their normals, below the side of the other body that they face; negative
+/// outside it. Beside its silhouettes the bounds of the band count.
 HWY_INLINE F8 faced_depth(const Depths& d, const BandBounds& bounds, F8 x, F8 y, F8 nx, F8 ny) {
   const auto known_or = [&](F8 depth, F8 to_bounds) {
     constexpr float no_interval = -1e6F;
@@ -36,15 +44,12 @@ HWY_INLINE F8 faced_depth(const Depths& d, const BandBounds& bounds, F8 x, F8 y,
                         known_or(d.rear, x - all(bounds.min_x)));
   const F8 side = select(less(ny, all(0.0F)), known_or(d.left, all(bounds.max_y) - y),
                          known_or(d.right, y - all(bounds.min_y)));
-  const F8 along = absolute(nx);
-  const F8 across = absolute(ny);
-  return select(less(along, across), across * side, along * end);
+  return along_normal(end, side, nx, ny);
 }
 
 /// Starts to track pieces of a block, a bit for each in `which`. Pieces that lie too deep inside
 /// the other body never press. After an earlier contact of the two bodies, pieces press only beyond
-/// the depth that they have crushed: the smaller of their advance along the normal and their path
-/// inside.
+/// the depth that they have crushed: their path inside, along the normal.
 inline void start_tracking(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
                            float allowed_m, std::uint32_t which, PieceStates& states) {
   const Silhouettes& target = q.pressed->vehicle->silhouettes;
@@ -60,9 +65,12 @@ inline void start_tracking(const PressQuery& q, const PieceBlock& block, const P
     const F8 at_x = turn_x(x, y) + all(q.to.x);
     const F8 at_y = turn_y(x, y) + all(q.to.y);
     const Depths depths = depths_at(target, band, at_x, at_y);
-    const F8 crushed = minimum(load(states.path.data() + h), load(states.furthest.data() + h));
     const F8 nx = turn_x(normal_x, normal_y);
     const F8 ny = turn_y(normal_x, normal_y);
+    const F8 path = load(states.path.data() + h);
+    const F8 path_x = absolute(load(states.path_x.data() + h));
+    const F8 path_y = square_root(positive(path * path - path_x * path_x));
+    const F8 crushed = along_normal(path_x, path_y, nx, ny);
     // Bodies stand in the middle of a step, and the advance counts from its begin.
     const F8 advance =
         (all(q.to.vx) - all(q.to.spin) * at_y) * nx + (all(q.to.vy) + all(q.to.spin) * at_x) * ny;
@@ -70,7 +78,7 @@ inline void start_tracking(const PressQuery& q, const PieceBlock& block, const P
                      all(static_cast<float>(0.5 * q.settings->step_s)) * advance;
     store(crushed, begun.furthest.data() + h);
     const F8 fresh = select(less(all(allowed_m), depths.least()), all(never_presses), all(0.0F));
-    store(select(less(all(0.0F), crushed), minimum(depth, crushed), fresh), begun.s.data() + h);
+    store(select(less(all(0.0F), path), minimum(depth, crushed), fresh), begun.s.data() + h);
   }
   const std::vector<std::uint8_t>& in_joint = q.pusher->vehicle->in_joint;
   for (std::size_t k = 0; k < block.count; ++k) {

@@ -119,7 +119,9 @@ double hazard_of(const HarmExposure& exposure, const HarmOptions& options,
 }
 
 double risk_of(const HarmExposure& exposure, const HarmOptions& options, const HarmSample& sample) {
-  return -std::expm1(-hazard_of(exposure, options, sample));
+  Person person = Person::occupant;
+  if (!carries_people(exposure.kind, person)) return 0.0;
+  return injury_risk(sample.model, person_exposure(exposure, person, options, sample));
 }
 
 double people_weight(const HarmExposure& exposure, const HarmWeights& weights) {

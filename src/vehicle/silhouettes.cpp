@@ -253,63 +253,13 @@ float thickness(const Silhouettes& s, std::size_t band, const OutlinePiece& p) {
                       flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x, p.y));
 }
 
-/// Where a piece acts, m along it from its middle. At a corner of the outline that is its end,
-/// which comes first to whatever the corner enters.
-class ActingPoints {
-public:
-  ActingPoints(const Profile& profile, std::size_t band)
-      : pieces_(profile.pieces.data() + profile.first[band]),
-        count_(profile.first[band + 1] - profile.first[band]),
-        along_m_(count_) {
-    for (std::size_t first = 0; first < count_;) {
-      std::size_t last = first;
-      while (last + 1 < count_ && (follows(last + 1, last) || follows(last, last + 1))) ++last;
-      for (std::size_t k = first; k <= last; ++k) {
-        float to_end = 0.0F;
-        for (const std::size_t other : {k > first ? k - 1 : last, k < last ? k + 1 : first}) {
-          if (follows(other, k)) to_end += sharpness(k, other);
-          if (follows(k, other)) to_end -= sharpness(other, k);
-        }
-        along_m_[k] = end_share * pieces_[k].length_m * to_end;
-      }
-      first = last + 1;
-    }
-  }
-  float along_m(std::size_t piece) const { return along_m_[piece]; }
-
-private:
-  static constexpr float end_share = 0.3F;
-
-  bool follows(std::size_t next, std::size_t piece) const {
-    constexpr float same_m = 1e-3F;
-    const OutlinePiece& a = pieces_[piece];
-    const OutlinePiece& b = pieces_[next];
-    const float x = a.x - 0.5F * (a.length_m * a.normal_y + b.length_m * b.normal_y) - b.x;
-    const float y = a.y + 0.5F * (a.length_m * a.normal_x + b.length_m * b.normal_x) - b.y;
-    return std::abs(x) < same_m && std::abs(y) < same_m;
-  }
-  /// Of the corner between two pieces: 0 where the outline turns inwards, 1 from 30 degrees
-  /// outwards on.
-  float sharpness(std::size_t piece, std::size_t next) const {
-    const OutlinePiece& a = pieces_[piece];
-    const OutlinePiece& b = pieces_[next];
-    return std::clamp(2.0F * (a.normal_x * b.normal_y - a.normal_y * b.normal_x), 0.0F, 1.0F);
-  }
-
-  const OutlinePiece* pieces_;
-  std::size_t count_;
-  std::vector<float> along_m_;
-};
-
-PieceRows make_rows(const Profile& profile, const Silhouettes& s, const PieceBlock& block,
-                    const ActingPoints& acting) {
+PieceRows make_rows(const Profile& profile, const Silhouettes& s, const PieceBlock& block) {
   PieceRows rows;
   for (std::size_t k = 0; k < block_pieces; ++k) {
     const std::size_t in_block = std::min<std::size_t>(k, block.count - 1U);
     const OutlinePiece& piece = profile.pieces[block.first + in_block];
-    const float along_m = acting.along_m(block.first - profile.first[block.band] + in_block);
-    rows.x[k] = piece.x - along_m * piece.normal_y;
-    rows.y[k] = piece.y + along_m * piece.normal_x;
+    rows.x[k] = piece.x;
+    rows.y[k] = piece.y;
     rows.normal_x[k] = piece.normal_x;
     rows.normal_y[k] = piece.normal_y;
     rows.length_m[k] = piece.length_m;
@@ -325,7 +275,7 @@ PieceRows make_rows(const Profile& profile, const Silhouettes& s, const PieceBlo
 }  // namespace
 
 Silhouettes make_silhouettes(const Profile& profile) {
-  constexpr float coarsest_m = 0.02F;
+  constexpr float coarsest_m = 0.018F;
   constexpr float finest_m = 0.005F;
   constexpr float nodes_across = 20.0F;
   constexpr float most_nodes = 4096.0F;
@@ -352,11 +302,10 @@ Silhouettes make_silhouettes(const Profile& profile) {
     s.first_height_y[band] = sample_heights(profile, band, true, s);
     constexpr auto most = static_cast<std::uint32_t>(block_pieces);
     const std::size_t first_block = s.blocks.size();
-    const ActingPoints acting(profile, band);
     for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += most) {
       const std::uint32_t count = std::min(most, profile.first[band + 1] - i);
       s.blocks.push_back({i, static_cast<std::uint16_t>(count), static_cast<std::uint16_t>(band)});
-      s.rows.push_back(make_rows(profile, s, s.blocks.back(), acting));
+      s.rows.push_back(make_rows(profile, s, s.blocks.back()));
     }
     add_groups(profile, first_block, s);
   }
