@@ -113,7 +113,8 @@ class Ranking(Sequence[RankedCandidate]):
     """The candidates of a scenario, least harmful first.
 
     A sequence of `RankedCandidate`. The members of the JSON answer are attributes: ``measure``,
-    ``measure_unit``, ``complete``, ``proved``, ``basis``, ``in_race``, ``warnings``, ``stability``, ...
+    ``measure_unit``, ``complete``, ``proved``, ``basis``, ``in_race``, ``warnings``,
+    ``stability``, ...
     """
 
     __slots__ = ("__weakref__", "_document", "_ranked")

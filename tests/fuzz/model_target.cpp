@@ -200,8 +200,8 @@ bool take(const Bytes& bytes) {
   }
   const StoredModel& stored = loaded->stored;
   const Profile* const profile = stored.model.profile.get();
-  require(profile == nullptr || (profile->pieces.size() == profile->first.back() &&
-                                 profile->volume_m3() >= 0.0),
+  require(profile == nullptr ||
+              (profile->pieces.size() == profile->first.back() && profile->volume_m3() >= 0.0),
           "a profile is unsound");
   const Result<std::vector<unsigned char>> again = encode_model(stored);
   require(again.ok() && again->size() == bytes.size(), "what loads cannot be written");

@@ -85,7 +85,7 @@ TEST(Doubts, ContactsBetweenOthersCountAndCrowdsAreTold) {
   ASSERT_EQ(told.doubts().size(), 1U);
   EXPECT_EQ(told.doubts()[0],
             "1 candidate leads to more bodies or contacts than are simulated, or to contact forces "
-            "on a body for more than 4.8 s, after which scores count none, so that they may be too "
+            "on a body for more than 9.6 s, after which scores count none, so that they may be too "
             "low: 'hit', in place 2");
 }
 
