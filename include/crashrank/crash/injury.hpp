@@ -87,8 +87,8 @@ inline constexpr double intrusion_gain_per_m = 4.62098;
 /// weight of the front. The share of a delta-v that is crush between several bodies has no
 /// direction and counts as from ahead.
 struct ForceDirection {
-  double from_side = 0.0;
-  double from_behind = 0.0;
+  double from_side = 0.0;    ///< weight of the coefficient of a force from a side
+  double from_behind = 0.0;  ///< weight of that of a force from behind
 };
 
 /// The weights of a PDOF in degrees clockwise from ahead; see above.
