@@ -158,8 +158,8 @@ CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 /// beyond its greatest depth so far: crushed structure stays crushed. The structure of the core
 /// hardens and is never used up; the mass of the material pushed aside adds 4·density·speed². At
 /// greatest compression the bodies rebound once, by `restitution_at` times the impulse so far.
-/// docs/guide/crash-model.md has the formulas, the parameters with their reasons, and the limits of
-/// the model.
+/// docs/guide/crash-model.md has the formulas and the limits of the model, docs/crash-parameters.md
+/// the parameters with their reasons.
 ///
 /// Momentum and angular momentum of movable bodies are conserved to rounding; energy never grows.
 /// `fixed` lists further fixed bodies that press together with a fixed B; pieces inside another of
@@ -167,8 +167,7 @@ CRASHRANK_API double restitution_at(double closing_mps) noexcept;
 /// the bodies separate or come to relative rest. No force acts between two fixed bodies, between
 /// two rigid bodies, or from pieces that overlap deeply at the start.
 ///
-/// Cost: half a millisecond in the median, several in long slides; docs/guide/crash-model.md has
-/// measured figures. Safe from any thread with its own workspace.
+/// Cost: see docs/evidence/contact-times.md. Safe from any thread with its own workspace.
 CRASHRANK_API ContactOutcome simulate_contact(const ContactBody& a, const ContactBody& b,
                                               View<const ContactBody> fixed,
                                               const Eigen::Vector3d& point_m,

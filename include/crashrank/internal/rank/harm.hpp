@@ -19,22 +19,24 @@ namespace crashrank {
 //
 // people_weight is the number of people in or on the body times their weight, risk_of the
 // probability of one of them in [0, 1], property_harm a weight times the crush energy. All terms
-// are at least 0. The people on one body in several contacts are injured with the probability
-// 1 - prod(1 - p_i), see `combined_risk`, which is at least the largest p_i and at most their sum:
-// each further contact raises it or leaves it, so the first few contacts give a lower bound.
+// are at least 0. The people on one body are injured with the probability 1 - exp(-H), where H sums
+// `hazard_of` over separate impacts (`SpacedSum` in src/crash/exposure.hpp): each further impact
+// raises it or leaves it, so the first few contacts give a lower bound.
 //
 // risk_of is continuous, 0 at zero exposure, and never falls when delta-v (occupants and riders),
 // intrusion (occupants), struck speed (people outside cars) or road speed (riders) rise. It depends
 // on the PDOF by a coefficient between those of front, side and rear, and on the striker's leading
 // edge in the models that have it, in which it need not be monotonic; `most_harm` takes the worst
-// of both. For the struck speed see `struck_speed_mps`.
+// of both. The struck speed is the closing speed at which the full hit of a car gives the exposure
+// (ExposureWindow::struck_mps); the curves are read at `hurting_speed_mps` of it, or at the speed
+// of a fall if that is larger.
 //
 // Bounds on the inputs, for two bodies of masses m1, m2 with the relative velocity v of their
 // centres of mass and the yaw rates w1, w2 (inertias I1, I2), since a contact conserves momentum
 // and never gains energy, with M = m1·m2/(m1 + m2), or the movable body's mass:
 //   delta_v of body i  <=  M/m_i · (|v| + sqrt(v² + (I1·w1² + I2·w2²)/M))
 //   both crush energies together  <=  (M·v² + I1·w1² + I2·w2²)/2
-// A sample's factor f on the restitution e multiplies delta-v by (1 + f·e)/(1 + e).
+// A sample's factor on the restitution multiplies the part of delta-v by the rebound.
 
 /// Inputs of the harm model for one body in one contact.
 struct HarmExposure {

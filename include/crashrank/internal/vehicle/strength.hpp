@@ -97,7 +97,7 @@ struct CarShape {
 /// (56 km/h, about what mid-size cars show in the NCAP barrier test), so yield = m·b0·b1/w and
 /// slope = m·b1²/w with b1 = 26.8 1/s. The side yields at a part of that force with the same slope,
 /// the rear at the same force with 0.8 of the slope: about the ratios between the classes that
-/// CRASH3 tabulates. docs/guide/crash-model.md lists every parameter with its reason.
+/// CRASH3 tabulates. docs/crash-parameters.md lists every parameter with its reason.
 CRASHRANK_API CrushStrength car_strength(const CarShape& shape);
 
 }  // namespace crashrank
