@@ -13,7 +13,7 @@ void ContactAction::add(const ContactAction& more, double share) {
   cancelled_mps += share * more.cancelled_mps;
   crush_j += share * more.crush_j;
   light_mps += share * more.light_mps;
-  struck_mps = std::max(struck_mps, more.struck_mps);
+  struck_mps = std::max(struck_mps, share * more.struck_mps);
   edge_m2ps += share * more.edge_m2ps;
   intruded_m3 += share * more.intruded_m3;
   deepest_m += share * more.deepest_m;
@@ -39,6 +39,7 @@ bool ExposureRecord::add(double begin_s, double end_s, const ExposureCell& state
       cells_.back().action = {};
     }
     cells_.back().action.add(action, (until_s - from_s) / duration_s);
+    cells_.back().action.struck_mps = std::max(cells_.back().action.struck_mps, action.struck_mps);
   }
   return true;
 }
@@ -48,7 +49,7 @@ namespace {
 /// Windows with one begin, and the direction of each: forces from the side are at least as harmful
 /// as those from ahead, and these as those from behind.
 struct WindowSet {
-  std::array<ExposureWindow, cells_per_window> windows;
+  std::array<ExposureWindow, most_cells_of_window> windows;
   std::size_t count = 0;
 
   static bool exceeds(const ExposureWindow& w, const ExposureWindow& v) {
@@ -102,16 +103,15 @@ ExposureWindow window_of(const ExposedBody& body, const ExposureCell& first, std
 void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
                   std::vector<ExposureWindow>& windows) {
   windows.clear();
-  // A window begins with a cell, or ends with one at its full length.
   std::size_t to_begin = 0;
   std::size_t to_end = 0;
   std::size_t first = 0;
   std::int32_t last_begin = 0;
   while (to_begin < cells.size()) {
     std::int32_t begin = cells[to_begin].index;
-    const bool ends = to_end < cells.size() && cells[to_end].index + 1 - cells_per_window < begin;
+    const bool ends = to_end < cells.size() && cells[to_end].index + 1 - whole_cells < begin;
     if (ends) {
-      begin = cells[to_end++].index + 1 - cells_per_window;
+      begin = cells[to_end++].index + 1 - whole_cells;
     } else {
       ++to_begin;
     }
@@ -120,9 +120,10 @@ void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
     while (cells[first].index < begin) ++first;
     WindowSet set;
     ContactAction sum;
-    for (std::size_t k = first; k < cells.size() && cells[k].index < begin + cells_per_window;
-         ++k) {
-      sum.add(cells[k].action, 1.0);
+    for (std::size_t k = first; k < cells.size(); ++k) {
+      const double share = share_in_window(cells[k].index - begin);
+      if (!(share > 0.0)) break;
+      sum.add(cells[k].action, share);
       set.add(window_of(body, cells[first], cells[k].index + 1, sum));
     }
     for (std::size_t k = 0; k < set.count; ++k) {

@@ -103,8 +103,10 @@ void CrashScore::list_some(const Scene& scene, const CrashEffects& effects,
     ExposureCell whole = cells[first];
     std::size_t k = first + 1;
     std::size_t next = cells.size();
-    for (; k < cells.size() && cells[k].index < begin + cells_per_window; ++k) {
-      whole.action.add(cells[k].action, 1.0);
+    for (; k < cells.size(); ++k) {
+      const double share = share_in_window(cells[k].index - begin);
+      if (!(share > 0.0)) break;
+      whole.action.add(cells[k].action, share);
       if (cells[k].index >= begin + apart) next = std::min(next, k);
     }
     list_windows({&whole, 1}, {of.mass_kg, has_cage(of.vehicle.kind), 1.0}, windows_);

@@ -48,25 +48,30 @@ double value_of(const ExposureWindow& w) {
 }
 
 /// The sum over separate impacts by its definition: over all begins and ends of windows that begin
-/// with a cell or end with one at their full length, with time quadratic in the record's length.
+/// with a cell or in which one is the last that counts whole, with time quadratic in the record's
+/// length.
 double sum_by_definition(View<const ExposureCell> cells, const ExposedBody& body) {
   constexpr int n = cells_per_window;
+  constexpr int fading = 6;
+  const auto share = [](int k) {
+    return std::clamp((n + fading / 2 - k - 0.5) / fading, 0.0, 1.0);
+  };
   const std::int32_t from = cells[0].index - n;
   const std::int32_t until = cells[cells.size() - 1].index + 1;
   std::vector<double> best;
   double most = 0.0;
   for (std::int32_t begin = from; begin < until; ++begin) {
     const bool counts = std::any_of(cells.begin(), cells.end(), [&](const ExposureCell& cell) {
-      return cell.index == begin || cell.index + 1 - n == begin;
+      return cell.index == begin || cell.index + 1 - (n - fading / 2) == begin;
     });
     double value = 0.0;
-    for (std::int32_t end = begin + 1; counts && end <= begin + n; ++end) {
+    for (std::int32_t end = begin + 1; counts && end <= begin + n + fading / 2; ++end) {
       ContactAction sum;
       const ExposureCell* first = nullptr;
       for (const ExposureCell& cell : cells) {
         if (cell.index < begin || cell.index >= end) continue;
         if (first == nullptr) first = &cell;
-        sum.add(cell.action, 1.0);
+        sum.add(cell.action, share(cell.index - begin));
       }
       if (first == nullptr) continue;
       ExposureWindow w;
@@ -118,7 +123,7 @@ ExposureRecord any_record(Random& random, int steps) {
 
 TEST(Exposure, OfASteadyPushIsItsAccelerationTimesTheWindow) {
   constexpr double acceleration = 20.0;
-  for (const double duration_s : {0.05, 0.2, 0.299, 0.3, 0.5, 2.0}) {
+  for (const double duration_s : {0.05, 0.2, 0.27, 0.3, 0.33, 0.5, 2.0}) {
     ExposureRecord record;
     record.prepare();
     constexpr double step_s = 0.004;
@@ -126,9 +131,16 @@ TEST(Exposure, OfASteadyPushIsItsAccelerationTimesTheWindow) {
       const double end_s = std::min(t + step_s, duration_s);
       record.add(t, end_s, {}, push(acceleration * (end_s - t)));
     }
-    EXPECT_NEAR(exposure_of(record.cells()), acceleration * std::min(duration_s, exposure_window_s),
-                1e-9)
-        << duration_s;
+    // The shares fall in a straight line from 0.24375 to 0.35625 s; cells take their mean.
+    const double faded_s = std::clamp(duration_s - 0.24375, 0.0, 0.1125);
+    const double counted_s = std::min(duration_s, 0.35625) - faded_s * faded_s / (2.0 * 0.1125);
+    EXPECT_NEAR(exposure_of(record.cells()), acceleration * counted_s, 0.01) << duration_s;
+    if (duration_s < 0.24) {
+      EXPECT_NEAR(exposure_of(record.cells()), acceleration * duration_s, 1e-9);
+    }
+    if (duration_s > 0.4) {
+      EXPECT_NEAR(exposure_of(record.cells()), acceleration * exposure_window_s, 1e-9);
+    }
   }
 }
 
@@ -238,18 +250,23 @@ TEST(Exposure, AFullRecordSaysSo) {
   EXPECT_EQ(record.cells().size(), ExposureRecord::most_cells);
 }
 
+/// Share of a force at some time after the begin of a window.
+double share_after(double time_s) { return std::clamp((0.35625 - time_s) / 0.1125, 0.0, 1.0); }
+
 /// The velocity of every body after each step of a scene without road forces.
 struct Velocities {
   std::vector<double> time_s;
   std::vector<std::vector<Eigen::Vector2d>> mps;
 
-  /// Greatest change within a window by comparing all pairs of times.
+  /// Greatest change from any time on to any time, with the share of each step by its middle.
   double greatest_change_mps(std::size_t body) const {
     double most = 0.0;
     for (std::size_t i = 0; i < time_s.size(); ++i) {
+      Eigen::Vector2d change = Eigen::Vector2d::Zero();
       for (std::size_t k = i + 1; k < time_s.size(); ++k) {
-        if (time_s[k] - time_s[i] > exposure_window_s) break;
-        most = std::max(most, (mps[k][body] - mps[i][body]).norm());
+        const double share = share_after(0.5 * (time_s[k - 1] + time_s[k]) - time_s[i]);
+        change += share * (mps[k][body] - mps[k - 1][body]);
+        most = std::max(most, change.norm());
       }
     }
     return most;

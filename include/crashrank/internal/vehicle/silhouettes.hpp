@@ -109,7 +109,7 @@ struct Silhouettes {
   double width_m() const { return static_cast<double>(std::min(max_x - min_x, max_y - min_y)); }
 };
 
-/// Samples a profile: nodes every 50 mm, every twentieth of the width of narrow bodies. O(pieces
+/// Samples a profile: nodes every 18 mm, every twentieth of the width of narrow bodies. O(pieces
 /// log pieces).
 CRASHRANK_API Silhouettes make_silhouettes(const Profile& profile);
 
