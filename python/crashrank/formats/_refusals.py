@@ -107,8 +107,12 @@ def guarded_parse(file: str, what: str, parse: Callable[[], T]) -> T:
     """Return what `parse` returns; whatever another package raises is one refusal."""
     try:
         return parse()
-    except (Error, MemoryError, KeyboardInterrupt):
+    except Error:
         raise
+    except (
+        MemoryError
+    ):  # packages allocate the sizes that a file states, whether it has them or not
+        refuse_size(file, "", "does not fit into memory", "write the file again, or cut it")
     except Exception as error:
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         refuse(file, "", f"is no {what}: {reason}", "write the file again")
