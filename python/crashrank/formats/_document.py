@@ -244,7 +244,9 @@ def _actor(
         return {**actor, "pose": _pose(found[0].start, body, shift)}
     if len(found) == 1:
         return {**actor, **_written(found[0], body, shift)}
-    likely = sorted(found, key=lambda each: -each.probability)[:MAX_PREDICTIONS]
+    likely = found
+    if len(found) > MAX_PREDICTIONS:
+        likely = sorted(found, key=lambda each: -each.probability)[:MAX_PREDICTIONS]
     total = sum(each.probability for each in likely)
     actor["predictions"] = [
         {"probability": round(each.probability / total, 9), **_written(each, body, shift)}
