@@ -14,7 +14,14 @@ from crashrank.formats._boxes import (
     write_box,
 )
 from crashrank.formats._commonroad_shapes import corners_of
-from crashrank.formats._road import between_lines, contains, is_simple, near_areas, simplified
+from crashrank.formats._road import (
+    areas_between,
+    between_lines,
+    contains,
+    is_simple,
+    near_areas,
+    simplified,
+)
 from crashrank.formats._scene import (
     ORIGIN_SHARE,
     Body,
@@ -141,12 +148,22 @@ def test_an_ego_beside_all_areas_has_no_road():
     report = Report("x", "y")
     ring = [(0.0, 0.0), (10.0, 0.0), (10.0, 4.0), (0.0, 4.0)]
     inside, outside = Pose(5, 2, 0), Pose(5, 5, 0)
-    assert near_areas([ring], inside, [inside], 50, report) == [ring]
+    assert near_areas([ring], inside, [inside], report) == [ring]
     assert not report.warnings
-    assert near_areas([ring], inside, [inside, outside], 50, report) == []
+    assert near_areas([ring], inside, [inside, outside], report) == []
     assert "beside" in report.warnings[0]
-    far = [(x + 1000, y) for x, y in ring]
-    assert near_areas([ring, far], inside, [inside], 50, report) == [ring]
+
+
+def test_only_lanes_within_reach_are_read():
+    report = Report("x", "y")
+    near = ([(0.0, 4.0), (10.0, 4.0)], [(0.0, 0.0), (10.0, 0.0)])
+    far = ([(x + 1000, y) for x, y in near[0]], [(x + 1000, y) for x, y in near[1]])
+    found = areas_between([far, near], Pose(5, 2, 0), 50, report)
+    assert [sorted(ring) for ring in found] == [[(0, 0), (0, 4), (10, 0), (10, 4)]]
+    long = [(0.01 * i, 0.0) for i in range(20_000)]
+    many = [(long, [(x, 3.0) for x, _ in long])] * 10
+    assert len(areas_between(many, Pose(5, 2, 0), 50, report)) < 10
+    assert "nearest lanes" in report.warnings[0]
 
 
 def body(states, **more):

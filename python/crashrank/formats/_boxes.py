@@ -31,21 +31,20 @@ def least_box(points: Sequence[tuple[float, float]]) -> Box:
     """Return the rectangle of least area around points, its length not below its width.
 
     Among the rectangles around a set of points one of least area shares a side with the convex
-    hull (Freeman and Shapira, 1975). Cost: points times edges of the hull.
+    hull (Freeman and Shapira, 1975). Cost: the square of the number of corners of the hull.
     """
-    hull = convex_hull(points)
-    best = oriented_box(points, 0.0)
-    for i, (x, y) in enumerate(hull):
-        nx, ny = hull[(i + 1) % len(hull)]
-        if (nx, ny) == (x, y):
-            continue
-        found = oriented_box(hull, math.atan2(ny - y, nx - x))
-        if found[1] * found[2] < best[1] * best[2] * (1 - 1e-12):
-            best = found
-    pose, length, width = best
+    hull = np.array(convex_hull(points), dtype=float)
+    edges = np.roll(hull, -1, axis=0) - hull
+    yaws = np.concatenate([[0.0], np.arctan2(edges[:, 1], edges[:, 0])])
+    # Extents of the hull along and across each edge.
+    ahead = np.outer(np.cos(yaws), hull[:, 0]) + np.outer(np.sin(yaws), hull[:, 1])
+    left = np.outer(np.cos(yaws), hull[:, 1]) - np.outer(np.sin(yaws), hull[:, 0])
+    areas = np.ptp(ahead, axis=1) * np.ptp(left, axis=1)
+    yaw = float(yaws[int(np.argmin(areas * np.where(yaws == 0.0, 1 - 1e-12, 1.0)))])
+    pose, length, width = oriented_box(list(map(tuple, hull.tolist())), yaw)
     if length < width:
         return Pose(pose.x_m, pose.y_m, pose.yaw_rad + math.pi / 2), width, length
-    return best
+    return pose, length, width
 
 
 def convex_hull(points: Sequence[tuple[float, float]]) -> Ring:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ._boxes import Box
 from ._commonroad_shapes import (
+    MAX_POINTS,
     Outline,
     placed,
     read_outline,
@@ -14,7 +15,7 @@ from ._commonroad_shapes import (
 )
 from ._document import Imported, make_document
 from ._refusals import checked_ego, checked_horizon, checked_time, choice_error, number, refuse
-from ._road import between_lines
+from ._road import areas_between, reach_of
 from ._scene import (
     DEFAULT_SIZE_M,
     LONGEST_CAR_M,
@@ -29,7 +30,7 @@ from ._scene import (
     kind_by_size,
 )
 from ._sets import paths_through_sets
-from ._tracks import checked_track
+from ._tracks import checked_track, forward_speed, state_at
 from ._xml import Node, read_xml
 
 VERSIONS = ("2018b", "2020a")
@@ -104,6 +105,7 @@ def read_commonroad(
     if at_s is None and time_step is not None:
         at_s = step_s * number(time_step, root.file, "time_step", -1e6, 1e6)
     report = Report(f"CommonRoad {version}", root.file)
+    report.assume(f"between states, {step_s:g} s apart, bodies move evenly")
     reader = _Reader(root, step_s, report)
     found = reader.ego(chosen)
     if at_s is None:
@@ -116,7 +118,8 @@ def read_commonroad(
         )  # fmt: skip
     name = root.get("benchmarkID") or "CommonRoad scenario"
     bodies = reader.bodies(found, horizon)
-    areas = reader.areas()
+    at = state_at(found.tracks[0], at_s)
+    areas = reader.areas(at.pose, reach_of(forward_speed(at), horizon))
     return make_document(Scene(name, at_s, found, bodies, report, areas, horizon))
 
 
@@ -256,24 +259,22 @@ class _Reader:
             self._report.assume(f"longer than {LONGEST_CAR_M:g} m, so it is a truck", _name(node))
         return kind
 
-    def areas(self) -> list[Ring]:
-        """Return the lanelets but those for walking."""
-        rings: list[Ring] = []
-        unread = walked = 0
+    def areas(self, ego: Pose, reach_m: float) -> list[Ring]:
+        """Return the lanelets within reach of the ego, but those for walking."""
+        lines: list[tuple[Ring, Ring]] = []
+        walked = 0
         for node in self._root.children("lanelet"):
             types = {child.text() for child in node.children("laneletType")}
             if types and types <= {"sidewalk", "crosswalk"}:
                 walked += 1
                 continue
-            left, right = (read_points(node.need(side)) for side in ("leftBound", "rightBound"))
-            found = between_lines(left, right)
-            rings += found
-            unread += not found
+            left, right = (
+                read_points(node.need(side), MAX_POINTS) for side in ("leftBound", "rightBound")
+            )
+            lines.append((left, right))
         if walked:
             self._report.leave_out(f"{walked} lanelets for walking: no drivable areas")
-        if unread:
-            self._report.leave_out(f"{unread} lanelets whose bounds cross")
-        return rings
+        return areas_between(lines, ego, reach_m, self._report)
 
 
 def _name(node: Node) -> str:

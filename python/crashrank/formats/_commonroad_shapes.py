@@ -15,7 +15,8 @@ from ._refusals import refuse, refuse_size
 from ._scene import Pose, Report, Ring, State, moved
 from ._xml import Node
 
-MAX_CORNERS = 2_000
+MAX_CORNERS = 1_000
+MAX_POINTS = 20_000
 SHAPES = ("rectangle", "circle", "polygon", "truckShape", "semiTrailerTruckShape")
 
 
@@ -62,7 +63,7 @@ def _outline(node: Node, report: Report, name: str) -> Outline:
         middle = _offset(node)
         return Outline((middle, across, across), corners_of((middle, across, across)), round=True)
     if node.tag == "polygon":
-        corners = read_points(node)
+        corners = read_points(node, MAX_CORNERS)
         box = oriented_box(corners, 0.0)
         if box[1] <= 0 or box[2] <= 0:
             refuse(node.file, node.place, "has no area", "give three corners that span one")
@@ -117,12 +118,12 @@ def corners_of(box: Box) -> Ring:
     return [moved(pose, a * length / 2, b * width / 2)[:2] for a, b in signs]
 
 
-def read_points(node: Node) -> Ring:
+def read_points(node: Node, most: int) -> Ring:
     """Return the corners of a polygon or a line; the last one is not the first again."""
     points = node.children("point")
-    if len(points) > MAX_CORNERS:
+    if len(points) > most:
         refuse_size(
-            node.file, node.place, f"has {len(points)} corners, at most {MAX_CORNERS} are read",
+            node.file, node.place, f"has {len(points)} points, at most {most} are read",
             "simplify it",
         )  # fmt: skip
     corners = [

@@ -38,6 +38,7 @@ LEAST_SIDE_M = 0.02
 LEVEL_M = 3.0
 _GRADE = 0.1
 _MOST_WARNINGS = 20
+_MOST_PAIRS = 50_000
 
 
 @dataclass
@@ -100,8 +101,7 @@ def make_document(scene: Scene) -> Imported:
         name = _unique(_name(body.name) or "body", taken)
         document["actors"].append(_actor(name, body, body_motions, models, shift))
     document["models"] = models.entries()
-    reach_m = abs(own.speed_mps) * scene.horizon_s + 5.0 * scene.horizon_s**2 + 50.0
-    areas = near_areas(scene.areas, own.start, _wheels(ego, own.start), reach_m, report)
+    areas = near_areas(scene.areas, own.start, _wheels(ego, own.start), report)
     if areas:
         document["road"] = {
             "drivable": [
@@ -318,12 +318,16 @@ def _report_overlaps(
     highs = np.array(
         [path[:, :2].max(0) + half for (_, _, path), half in zip(paths, halves, strict=True)]
     )
-    found = 0
+    found = pairs = 0
     for i, (name, size, path) in enumerate(paths):
         meeting = ((lows <= highs[i]) & (lows[i] <= highs)).all(axis=1)
         for j in np.flatnonzero(meeting[i + 1 :]) + i + 1:
             if i and stands[i] and stands[j]:
                 continue
+            pairs += 1
+            if pairs > _MOST_PAIRS:
+                report.warn(f"overlaps were searched for in {_MOST_PAIRS} pairs of bodies only")
+                return
             other_name, other_size, other = paths[j]
             count = min(len(path), len(other))
             depths = overlap_depths(path[:count], size[:2], other[:count], other_size[:2])

@@ -13,6 +13,7 @@ from ._scene import Report, completed_size, kind_by_size
 from ._xml import Node, read_xml
 
 MAX_CATALOGUES = 200
+MAX_FOLDERS = 1_000
 MAX_DEPTH = 4
 MAX_ENTITIES = 1_000
 _OBJECTS = ("Vehicle", "Pedestrian", "MiscObject")
@@ -168,7 +169,10 @@ class _Catalogues:
         """Return the catalogues by name; files that are none are passed over."""
         base = os.path.realpath(self._folder)
         count = 0
-        for at, folders, files in os.walk(base):
+        for visited, (at, folders, files) in enumerate(os.walk(base)):
+            if visited >= MAX_FOLDERS:
+                self._report.warn(f"only {MAX_FOLDERS} folders were searched for catalogues")
+                return
             if os.path.relpath(at, base).count(os.sep) >= MAX_DEPTH:
                 folders.clear()
             folders.sort()

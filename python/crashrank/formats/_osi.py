@@ -19,7 +19,7 @@ from ._refusals import (
     refuse_size,
     required_module,
 )
-from ._road import between_lines
+from ._road import areas_between, reach_of
 from ._scene import (
     LONGEST_CAR_M,
     VEHICLES,
@@ -33,7 +33,7 @@ from ._scene import (
     completed_size,
     kind_by_size,
 )
-from ._tracks import checked_track
+from ._tracks import checked_track, forward_speed, state_at
 
 MAX_BYTES = 2**30
 MAX_STATES = 3_000_000
@@ -114,7 +114,8 @@ def read_osi(
         body for each in trace.standing.values() if (body := _standing(each, report)) is not None
     ]
     others = [body for key, body in bodies.items() if key != name] + standing
-    areas = _areas(trace, report)
+    start = state_at(bodies[name].tracks[0], at_s)
+    areas = _areas(trace, start, horizon, report)
     return make_document(
         Scene(os.path.basename(file), at_s, bodies[name], others, report, areas, horizon)
     )
@@ -266,9 +267,9 @@ def _ego_name(bodies: dict[str, Body], chosen: str | None, trace: _Trace, report
     return chosen
 
 
-def _areas(trace: _Trace, report: Report) -> list[Ring]:
+def _areas(trace: _Trace, ego: State, horizon_s: float, report: Report) -> list[Ring]:
     """Return lanes between their boundaries; lanes without both are left out."""
-    rings: list[Ring] = []
+    lines: list[tuple[Ring, Ring]] = []
     open_lanes = 0
     for lane in trace.lanes:
         classification = lane.classification
@@ -281,10 +282,10 @@ def _areas(trace: _Trace, report: Report) -> list[Ring]:
             continue
         same = math.dist(left[0], right[0]) + math.dist(left[-1], right[-1])
         crossed = math.dist(left[0], right[-1]) + math.dist(left[-1], right[0])
-        rings += between_lines(left, right if same <= crossed else right[::-1])
+        lines.append((left, right if same <= crossed else right[::-1]))
     if open_lanes:
         report.leave_out(f"{open_lanes} lanes without boundaries on both sides")
-    return rings
+    return areas_between(lines, ego.pose, reach_of(forward_speed(ego), horizon_s), report)
 
 
 def _line(trace: _Trace, ids: Any) -> Ring:

@@ -13,10 +13,44 @@ from ._scene import Pose, Report, Ring
 
 MAX_AREAS = 1_000
 MAX_CORNERS = 10_000
-MAX_RING = 1_000
+MAX_RING = 500
+MAX_POINTS = 60_000
 _LEAST_STEP_M = 0.01
 _LEAST_AREA_M2 = 0.01
 _STRAIGHT_M = 0.005
+
+
+def reach_of(speed_mps: float, horizon_s: float) -> float:
+    """Return how far from the ego areas are read, m: what it can reach, and 50 m more."""
+    return abs(speed_mps) * horizon_s + 5.0 * horizon_s**2 + 50.0
+
+
+def areas_between(
+    lines: Sequence[tuple[Ring, Ring]], ego: Pose, reach_m: float, report: Report
+) -> list[Ring]:
+    """Return the areas between pairs of lines within reach of the ego, nearest first.
+
+    At most `MAX_POINTS` points of lines are looked at.
+    """
+    near = sorted(
+        (distance, i)
+        for i, (left, right) in enumerate(lines)
+        if (distance := _distance(left + right, ego.x_m, ego.y_m)) <= reach_m
+    )
+    rings: list[Ring] = []
+    points = unread = 0
+    for _, i in near:
+        left, right = lines[i]
+        points += len(left) + len(right)
+        if points > MAX_POINTS or len(rings) > MAX_AREAS:
+            report.warn("the road has more points than are read: only the nearest lanes are read")
+            break
+        found = between_lines(left, right)
+        rings += found
+        unread += not found
+    if unread:
+        report.leave_out(f"{unread} lanes whose bounds cross")
+    return rings
 
 
 def between_lines(left: Ring, right: Ring) -> list[Ring]:
@@ -130,7 +164,7 @@ def contains(ring: Ring, x_m: float, y_m: float) -> bool:
 
 
 def near_areas(
-    rings: Sequence[Ring], ego: Pose, wheels: Sequence[Pose], reach_m: float, report: Report
+    rings: Sequence[Ring], ego: Pose, wheels: Sequence[Pose], report: Report
 ) -> list[Ring]:
     """Return the rings that matter to the ego: none where a wheel stands beside all of them.
 
@@ -146,8 +180,6 @@ def near_areas(
     kept: list[Ring] = []
     corners = 0
     for ring in ordered:
-        if _distance(ring, x_m, y_m) > reach_m:
-            break
         corners += len(ring)
         if corners > MAX_CORNERS or len(kept) == MAX_AREAS:
             report.warn(f"only the {len(kept)} nearest drivable areas are read")
