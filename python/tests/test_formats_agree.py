@@ -2,13 +2,14 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
 import crashrank
 import format_scenes as scenes
 import pytest
-from conftest import DATA, program
+from conftest import DATA, ROOT, program
 from crashrank import formats
 from crashrank.formats._document import with_mesh_files
 
@@ -135,6 +136,17 @@ def test_the_program_says_where_readers_are():
     )
     assert done.returncode == 2
     assert "import" in done.stderr
+
+
+def test_code_of_the_guide_runs():
+    text = (ROOT / "docs/guide/scenarios.md").read_text(encoding="utf-8")
+    code = "\n".join(re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL))
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=ROOT
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("15.0 2\n")
+    assert len(text.split()) <= 1200
 
 
 def test_public_names_are_documented():
