@@ -82,6 +82,12 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
     text += "; choose " + listed(commands);
     if (word != nullptr) text += meant(word, commands);
   }
+  if (named == &app && word != nullptr && std::string(word) == "import") {
+    return fail(make_error(ErrorCode::usage,
+                           "the readers of other formats are in the Python package",
+                           "pip install 'crashrank[formats]', then python -m crashrank import "
+                           "FORMAT FILE -o SCENARIO.json"));
+  }
   if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
     text = "not expected:";
     bool numbers = false;

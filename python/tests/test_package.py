@@ -109,11 +109,13 @@ def test_the_console_script_offers_every_subcommand():
     assert program()
 
 
-def test_import_is_a_place_for_readers():
-    assert run_script("import", "--help").returncode == 0
-    done = run_script("import", "commonroad", "x.xml")
-    assert done.returncode == 2
-    assert "commonroad" in done.stderr
+def test_import_names_its_readers():
+    done = run_script("import", "--help")
+    assert done.returncode == 0
+    assert "commonroad" in done.stdout
+    done = run_script("import", "commonroad", "x.xml", "-o", "y.json")
+    assert done.returncode == 3
+    assert "x.xml" in done.stderr or "lxml" in done.stderr
 
 
 def test_versions_agree():

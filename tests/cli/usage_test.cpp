@@ -49,6 +49,14 @@ TEST(Usage, HelpIsACommandToo) {
   EXPECT_NE(wrong.err.find("did you mean 'rank'?"), std::string::npos) << wrong.err;
 }
 
+TEST(Usage, ImportNamesThePackageThatHasTheReaders) {
+  const Workplace place;
+  const Outcome readers = place.crashrank({"import", "commonroad", "scene.xml"});
+  EXPECT_EQ(readers.code, 2);
+  EXPECT_NE(readers.err.find("pip install 'crashrank[formats]'"), std::string::npos) << readers.err;
+  EXPECT_NE(readers.err.find("python -m crashrank import"), std::string::npos) << readers.err;
+}
+
 TEST(Usage, HelpShowsRangesDefaultsAndKnownWords) {
   const Workplace place;
   const std::string sweep = place.crashrank({"sweep", "--help"}).out;

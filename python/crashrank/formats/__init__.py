@@ -1,0 +1,27 @@
+"""Readers of scenarios of other tools; each returns a scenario and a report.
+
+``python -m crashrank import FORMAT FILE -o SCENARIO.json`` is the same as a command.
+`read_commonroad` and `read_openscenario` need ``crashrank[formats]``, `read_osi` needs
+``crashrank[osi]``, `read_bag` needs ``crashrank[ros]``; tables need nothing.
+"""
+
+from __future__ import annotations
+
+from ._bag import read_bag
+from ._commonroad import read_commonroad
+from ._document import Imported
+from ._openscenario import read_openscenario
+from ._osi import read_osi
+from ._scene import Report
+from ._tables import read_esmini_csv, read_poses_csv
+
+__all__ = [
+    "Imported",
+    "Report",
+    "read_bag",
+    "read_commonroad",
+    "read_esmini_csv",
+    "read_openscenario",
+    "read_osi",
+    "read_poses_csv",
+]

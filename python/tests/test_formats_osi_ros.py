@@ -1,0 +1,170 @@
+"""OSI traces and ROS 2 bags: what the shared scene does not have."""
+
+import struct
+
+import crashrank
+import format_scenes as scenes
+import pytest
+from crashrank.formats import read_bag, read_osi
+
+
+def write(tmp_path, messages, name="a.osi"):
+    path = tmp_path / name
+    data = [message.SerializeToString() for message in messages]
+    path.write_bytes(b"".join(struct.pack("<I", len(each)) + each for each in data))
+    return path
+
+
+class TestOsi:
+    @pytest.fixture(autouse=True)
+    def _needs(self):
+        pytest.importorskip("osi3")
+
+    def test_the_ego_has_to_be_known(self, tmp_path):
+        messages = scenes.osi_messages()
+        for message in messages:
+            message.ClearField("host_vehicle_id")
+        path = write(tmp_path, messages)
+        with pytest.raises(crashrank.UsageError, match="choose of 1, 3"):
+            read_osi(path)
+        assert read_osi(path, ego=1).report.ego == "car 1"
+        with pytest.raises(crashrank.UsageError, match="no moving object '9'"):
+            read_osi(path, ego="9")
+        with pytest.raises(crashrank.BadInputError, match="not a vehicle"):
+            read_osi(path, ego=2)
+
+    def test_seconds_count_from_the_first_message(self, tmp_path):
+        messages = scenes.osi_messages()
+        for message in messages:
+            message.timestamp.seconds += 1_700_000_000
+        found = read_osi(write(tmp_path, messages), 1.0)
+        x, y, _ = scenes.rear_axle(scenes.ego(2))
+        assert found.scenario["ego"]["pose"]["x_m"] == pytest.approx(x, abs=2e-3)
+        assert found.scenario["ego"]["pose"]["y_m"] == pytest.approx(y, abs=2e-3)
+        assert "road" in found.scenario  # of the first message
+        with pytest.raises(crashrank.BadInputError, match="0 to 4 s"):
+            read_osi(write(tmp_path, messages), 20.0)
+
+    def test_standing_objects_hold_for_all_times(self, tmp_path):
+        from osi3.osi_object_pb2 import StationaryObject
+
+        messages = scenes.osi_messages()
+        tree = messages[0].stationary_object.add()
+        tree.id.value = 50
+        tree.classification.type = StationaryObject.Classification.TYPE_TREE
+        base = tree.base
+        base.dimension.length = base.dimension.width = 0.4
+        base.dimension.height, base.position.x, base.position.z = 8.0, 140.0, 4.0
+        found = read_osi(write(tmp_path, messages), 2.0)
+        each = found.scenario["actors"][-1]
+        assert each["name"] == "stationary object 50"
+        assert found.scenario["models"][each["model"]] == {"box": [0.4, 0.4, 8.0], "kind": "pole"}
+
+    def test_bodies_on_a_bridge_are_left_out(self, tmp_path):
+        messages = scenes.osi_messages()
+        for message in messages:
+            message.moving_object[2].base.position.z += 8.0
+        found = read_osi(write(tmp_path, messages))
+        assert len(found.scenario["actors"]) == 1
+        assert any("another level" in each for each in found.report.left_out)
+
+    def test_types_that_are_not_known_are_read_by_size(self, tmp_path):
+        messages = scenes.osi_messages()
+        for message in messages:
+            message.moving_object[2].ClearField("vehicle_classification")
+        found = read_osi(write(tmp_path, messages))
+        assert found.scenario["models"][found.scenario["actors"][1]["model"]]["kind"] == "car"
+        assert any("by its size" in each for each in found.report.assumed)
+
+    @pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e300])
+    def test_poses_that_are_not_finite_are_refused(self, tmp_path, value):
+        messages = scenes.osi_messages()
+        messages[3].moving_object[1].base.position.x = value
+        with pytest.raises(crashrank.BadInputError, match="message 4, moving object 2"):
+            read_osi(write(tmp_path, messages))
+
+    def test_traces_that_are_cut_off_are_refused(self, tmp_path):
+        path = write(tmp_path, scenes.osi_messages())
+        data = path.read_bytes()
+        path.write_bytes(data[:-3])
+        with pytest.raises(crashrank.BadInputError, match="message 9: is cut off"):
+            read_osi(path)
+        path.write_bytes(data + b"\1\0")
+        with pytest.raises(crashrank.BadInputError, match="message 10: is cut off"):
+            read_osi(path)
+
+    def test_sensor_views_hold_ground_truth(self, tmp_path):
+        from osi3.osi_sensorview_pb2 import SensorView
+
+        views = []
+        for message in scenes.osi_messages():
+            view = SensorView()
+            view.global_ground_truth.CopyFrom(message)
+            views.append(view)
+        found = read_osi(write(tmp_path, views, "a_sv_371.osi"))
+        assert len(found.scenario["actors"]) == 2
+
+
+class TestBag:
+    @pytest.fixture(autouse=True)
+    def _needs(self):
+        pytest.importorskip("rosbags")
+
+    def test_several_paths_are_predictions(self, tmp_path):
+        import dataclasses
+
+        def change(objects, _types):
+            paths = objects.objects[0].kinematics.predicted_paths
+            stopping = dataclasses.replace(paths[0], path=[paths[0].path[0]] * 9, confidence=3.0)
+            paths.append(stopping)
+            return objects
+
+        found = read_bag(scenes.write_bag(tmp_path / "bag", change))
+        each = found.scenario["actors"][0]
+        assert [p["probability"] for p in each["predictions"]] == pytest.approx([0.25, 0.75])
+        assert each["existence_probability"] == 0.75
+        assert "poses" in each["predictions"][0]
+        assert "poses" not in each["predictions"][1]
+
+    def test_what_is_missing_is_said(self, tmp_path):
+        folder = scenes.write_bag(tmp_path / "bag")
+        with pytest.raises(crashrank.UsageError, match="choose of /localization/kinematic_state"):
+            read_bag(folder, ego="/odometry")
+        with pytest.raises(crashrank.NotFoundError):
+            read_bag(tmp_path / "none")
+        (tmp_path / "empty").mkdir()
+        with pytest.raises(crashrank.BadInputError):
+            read_bag(tmp_path / "empty")
+
+    def test_cylinders_and_footprints(self, tmp_path):
+        def change(objects, types):
+            point = types["geometry_msgs/msg/Point32"]
+            objects.objects[0].shape.type = 1
+            objects.objects[1].shape.type = 2
+            objects.objects[1].shape.footprint.points = [
+                point(x=x, y=y, z=0.0) for x, y in ((-1, -1), (3, -1), (3, 1), (-1, 1))
+            ]
+            return objects
+
+        found = read_bag(scenes.write_bag(tmp_path / "bag", change))
+        boxes = [found.scenario["models"][a["model"]]["box"] for a in found.scenario["actors"]]
+        assert boxes == [[0.5, 0.5, 1.75], [4.0, 2.0, 1.5]]
+
+
+@pytest.mark.parametrize(
+    ("reader", "file", "module", "extra"),
+    [
+        ("read_commonroad", "crossing.xml", "lxml.etree", "formats"),
+        ("read_osi", "crossing.osi", "osi3", "osi"),
+        ("read_bag", "", "rosbags.highlevel", "ros"),
+    ],
+)
+def test_missing_packages_name_the_extra(monkeypatch, reader, file, module, extra):
+    import sys
+
+    from conftest import DATA
+    from crashrank import formats
+
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(crashrank.NotFoundError, match=rf"crashrank\[{extra}\]"):
+        getattr(formats, reader)(DATA / "formats" / file)
