@@ -60,6 +60,11 @@ CRASHRANK_API std::string why_partial(const RankResult& result, bool bounded);
 /// Progress of an interrupted ranking, as a warning: the number of candidates with a score.
 CRASHRANK_API std::string ranking_progress(const RankResult& result);
 
+/// An SVG picture of a scenario from above at time 0, with all bodies, the ways of the actors (in
+/// all their predictions) until the horizon, and the road. A model for each of the scenario's, as
+/// for `rank`.
+CRASHRANK_API std::string scenario_plan(const Scenario& scenario, View<const Model> models);
+
 /// What the page shows.
 struct HtmlReportOptions {
   /// Candidates drawn in plan and in 3-D, best first, and the worst one; 0 for all. Every candidate
