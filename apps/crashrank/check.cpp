@@ -78,8 +78,8 @@ void rank_once(const Scenario& scenario, const std::vector<Model>& models, const
     return;
   }
   found.candidates = ranked->candidates.size();
-  for (std::string& doubt : ranking_doubts(scenario, models, *ranked)) {
-    found.warnings.push_back(file + ": " + doubt);
+  for (const std::string& doubt : ranking_doubts(scenario, models, *ranked)) {
+    found.warnings.push_back(fmt::format("{}: {}", file, doubt));
   }
 }
 

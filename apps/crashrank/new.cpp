@@ -51,10 +51,9 @@ struct Placed {
   std::vector<double> place;
 };
 
-/// A shape with what is guessed of it.
+/// A shape of the scenario.
 struct Shape {
   std::string name;                   ///< of its model
-  Json entry;                         ///< of the scenario's models
   std::optional<double> wheelbase_m;  ///< where the mesh shows its axles
 };
 
@@ -125,7 +124,7 @@ bool has_axles(BodyKind kind) { return box_axles(kind).wheelbase > 0.0; }
 
 double rounded(double value) { return std::round(1e3 * value) / 1e3; }
 
-/// Turns a mesh as its size suggests, and finds its origin. Returns what it did.
+/// Scales and turns a mesh as its size suggests. Returns that and where its origin should be.
 Result<ImportTransform> guess_transform(TriangleMesh& mesh, BodyKind kind,
                                         std::optional<double>& wheelbase_m) {
   ImportTransform guess;
@@ -139,12 +138,12 @@ Result<ImportTransform> guess_transform(TriangleMesh& mesh, BodyKind kind,
   }
   if (Status moved = transform_mesh(mesh, guess); !moved) return moved.error();
   const Box box = mesh.bounds();
-  VehicleFacts facts;
-  facts.kind = kind;
-  const Result<Vehicle> vehicle = describe_vehicle(mesh, facts);
-  const double length_m = static_cast<double>(box.extent().x());
   Vector3d origin = box.center().cast<double>();
   if (has_axles(kind)) {
+    VehicleFacts facts;
+    facts.kind = kind;
+    const Result<Vehicle> vehicle = describe_vehicle(mesh, facts);
+    const double length_m = static_cast<double>(box.extent().x());
     const BoxAxles usual = box_axles(kind);
     const bool seen = vehicle && vehicle->wheelbase_m > 0.0;
     origin.x() = seen ? vehicle->rear_axle_x_m
@@ -160,7 +159,9 @@ Result<ImportTransform> guess_transform(TriangleMesh& mesh, BodyKind kind,
   return guess;
 }
 
-Result<Shape> box_shape(const std::string& text, BodyKind kind, const std::vector<double>& size) {
+/// `entry` becomes that of the scenario's models, as below.
+Result<Shape> box_shape(const std::string& text, BodyKind kind, const std::vector<double>& size,
+                        Json& entry) {
   if (Result<TriangleMesh> made = make_box_body(kind, {size[0], size[1], size[2]}); !made) {
     made.error().place = text;
     made.error().code = ErrorCode::usage;
@@ -168,19 +169,18 @@ Result<Shape> box_shape(const std::string& text, BodyKind kind, const std::vecto
   }
   Shape shape;
   shape.name = body_kind_name(kind);
-  shape.entry = {
-      {"note",
-       "No mesh: the usual shape of its kind, stretched to length, width and height. Name "
-       "a mesh in place of box where there is one. Other keys: mass_kg, origin_m."},
-      {"box", size},
-      {"kind", body_kind_name(kind)}};
+  entry = {{"note",
+            "No mesh: the usual shape of its kind, stretched to length, width and height. Name "
+            "a mesh in place of box where there is one. Other keys: mass_kg, origin_m."},
+           {"box", size},
+           {"kind", body_kind_name(kind)}};
   say(fmt::format("{}: a {} of {:g} x {:g} x {:g} m without mesh", text, body_kind_name(kind),
                   size[0], size[1], size[2]));
   return shape;
 }
 
 Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated,
-                         const fs::path& folder) {
+                         const fs::path& folder, Json& entry) {
   if (is_standard(file)) {
     return make_error(ErrorCode::usage, "a scenario names its meshes, and - is no name",
                       "give the mesh's file");
@@ -201,26 +201,25 @@ Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated
   std::error_code ignored;
   fs::path path = fs::relative(file, folder, ignored);
   if (path.empty()) path = fs::absolute(file, ignored);
-  shape.entry = {
-      {"note",
-       "kind decides mass, strength and risk curves unless mass_kg and others state them. "
-       "scale, up, forward and origin_m say how the file is read: metres per unit, its "
-       "axes, and the point that becomes the origin (for vehicles on the ground below the "
-       "rear axle). They are guessed from the size, which does not show which end is the "
-       "front."},
-      {"mesh", path.string()},
-      {"kind", body_kind_name(kind)}};
+  entry = {{"note",
+            "kind decides mass, strength and risk curves unless mass_kg and others state them. "
+            "scale, up, forward and origin_m say how the file is read: metres per unit, its "
+            "axes, and the point that becomes the origin (for vehicles on the ground below the "
+            "rear axle). They are guessed from the size, which does not show which end is the "
+            "front."},
+           {"mesh", path.string()},
+           {"kind", body_kind_name(kind)}};
   const Vector3d extent = mesh.bounds().extent().cast<double>();
   std::string said =
       fmt::format("a {}{} of {:.4g} x {:.4g} x {:.4g} m", stated ? "" : "probably a ",
                   body_kind_name(kind), extent.x(), extent.y(), extent.z());
   said.erase(0, stated ? 0 : 2);
   if (!read->model) {
-    shape.entry["scale"] = guess.scale;
-    shape.entry["up"] = axis_name(guess.up);
-    shape.entry["forward"] = axis_name(guess.forward);
+    entry["scale"] = guess.scale;
+    entry["up"] = axis_name(guess.up);
+    entry["forward"] = axis_name(guess.forward);
     const Vector3d& o = guess.origin_m;
-    shape.entry["origin_m"] = {o.x(), o.y(), o.z()};
+    entry["origin_m"] = {o.x(), o.y(), o.z()};
     said += fmt::format(", read with --scale {:g} --up {} --forward {} --origin {:g},{:g},{:g}",
                         guess.scale, axis_name(guess.up), axis_name(guess.forward), o.x(), o.y(),
                         o.z());
@@ -246,12 +245,13 @@ public:
       return make_error(ErrorCode::usage, text + ": has no length, width and height",
                         "write KIND:L,W,H in m, such as car:4.5,1.8,1.5, or KIND:FILE");
     }
+    Json entry;
     Result<Shape> shape =
-        numbers ? box_shape(text, *kind, *numbers) : mesh_shape(rest, kind, folder_);
+        numbers ? box_shape(text, *kind, *numbers, entry) : mesh_shape(rest, kind, folder_, entry);
     if (!shape) return shape.error();
     const std::string wish = shape->name;
     for (int i = 2; models_.contains(shape->name); ++i) shape->name = wish + fmt::format(" {}", i);
-    models_[shape->name] = shape->entry;
+    models_[shape->name] = std::move(entry);
     by_text_[text] = *shape;
     return shape;
   }
