@@ -137,6 +137,8 @@ int run(int argc, char** argv) {
   add_compile(app, action);
   add_collide(app, action);
   add_rank(app, action);
+  add_new(app, action);
+  add_check(app, action);
   add_sweep(app, action);
   add_validate(app, action);
   add_completion(app, action);

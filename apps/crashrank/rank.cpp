@@ -5,6 +5,7 @@
 #include "interrupt.hpp"
 #include "mesh_arguments.hpp"
 #include "options.hpp"
+#include "scenario_file.hpp"
 #include "streams.hpp"
 #include "tree_arguments.hpp"
 
@@ -20,12 +21,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -83,17 +82,6 @@ Result<Scenario> read_scenario(const RankArguments& options) {
   const Result<std::string> text = read_text("-", scenario_limits::file_bytes);
   if (!text) return text.error();
   return load_scenario(*text, "standard input", paths);
-}
-
-/// A file outside its scenario's folder: the library's remedy, with the option for what a caller
-/// can do.
-Error name_allow(Error error) {
-  const std::string call = "allow its folder when calling";
-  const std::size_t at = error.remedy.find(call);
-  if (at != std::string::npos) {
-    error.remedy.replace(at, call.size(), "allow its folder with --allow FOLDER");
-  }
-  return error;
 }
 
 bool is_scenario(const std::string& path) {
@@ -250,8 +238,7 @@ int run(const RankArguments& options) {
   if (!options.damage_folder.empty()) {
     if (const Status sound = check_damage_folder(damage); !sound) return fail(sound.error());
   }
-  const std::string scenario_file =
-      is_standard(options.scenario) ? "standard input" : options.scenario;
+  const std::string scenario_file = shown_name(options.scenario);
   std::vector<std::string> warnings;
   const Result<std::vector<Model>> models =
       load_models(*scenario, scenario_file, options.tree, warnings);
@@ -406,21 +393,7 @@ void add_rank(CLI::App& app, Action& action) {
       });
   add_count(*command, "--damage-top", options->damage_top,
             "Colliding candidates written there, best first, 0 for all", 0, 1'000'000);
-  const CLI::Validator folder(
-      [](const std::string& text) {
-        std::error_code ignored;
-        return std::filesystem::is_directory(text, ignored)
-                   ? std::string()
-                   : "'" + text + "' is no folder: name one that is there";
-      },
-      "", "folder");
-  command
-      ->add_option("--allow", options->allowed_folders,
-                   "Another folder that meshes may be read from; may be repeated")
-      ->check(folder)
-      ->type_name("FOLDER")
-      ->type_size(1)
-      ->allow_extra_args(false);
+  add_allowed_folders(*command, options->allowed_folders);
   options->tree.add_to(*command);
   command->footer(rank_epilogue);
   command->callback([options, policy, depth, workers, &action] {

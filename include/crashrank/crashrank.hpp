@@ -38,4 +38,5 @@
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/tree/aabb_tree.hpp"
 #include "crashrank/tree/build.hpp"
+#include "crashrank/vehicle/box_body.hpp"
 #include "crashrank/vehicle/vehicle.hpp"

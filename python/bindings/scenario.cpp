@@ -52,7 +52,7 @@ std::vector<std::tuple<std::string, std::string>> Situation::model_files() const
   std::vector<std::tuple<std::string, std::string>> files;
   for (std::size_t i = 0; i < scenario_.models.size(); ++i) {
     const ScenarioModel& model = scenario_.models[i];
-    if (bodies_[i] == nullptr) files.emplace_back(model.name, model.path);
+    if (bodies_[i] == nullptr && !model.path.empty()) files.emplace_back(model.name, model.path);
   }
   return files;
 }

@@ -52,12 +52,12 @@ class TimedPose(Pose):
 
 @dataclass(frozen=True)
 class Body:
-    """A shape: mesh, kind and what is stated of its mass."""
+    """A shape: mesh or box, kind and what is stated of its mass."""
 
-    mesh: str | PathLike[str] | Model
+    mesh: str | PathLike[str] | Model | None = None
     """Mesh or model file, relative to the scenario's base; or a `Model`."""
-    kind: Kind
-    """What it is; decides mass, strength and risk curves."""
+    kind: Kind | None = None
+    """What it is; decides mass, strength and risk curves. Has to be given."""
     mass_kg: float | None = None
     """With all aboard, kg."""
     scale: float | None = None
@@ -78,6 +78,10 @@ class Body:
     """Outer material; decides friction."""
     honeycomb: Mapping[str, float] | None = None
     """Crushable layer: ``pressure_pa``, ``depth_m``, ``low_m``, ``high_m``."""
+    box: Sequence[float] | None = None
+    """Length, width and height in place of a mesh, m: the usual shape of its kind."""
+    note: str | None = None
+    """For people; not read."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +110,8 @@ class Ego:
     """Persons in it."""
     uncertainty: Mapping[str, float] | None = None
     """Standard deviations ``position_m``, ``heading_deg``, ``speed_mps``."""
+    note: str | None = None
+    """For people; not read."""
 
 
 @dataclass(frozen=True)
@@ -135,6 +141,8 @@ class Actor:
     """Persons in or on it."""
     perception: Mapping[str, float] | None = None
     """Standard deviations ``position_m``, ``heading_deg``, ``speed_mps``."""
+    note: str | None = None
+    """For people; not read."""
 
 
 @dataclass(frozen=True)

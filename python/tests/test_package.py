@@ -99,7 +99,8 @@ def run_script(*words):
 
 def test_the_console_script_offers_every_subcommand():
     text = run_script("--help").stdout
-    for command in ("inspect", "compile", "collide", "rank", "sweep", "validate", "completion"):
+    commands = "inspect compile collide rank new check sweep validate completion"
+    for command in commands.split():
         assert re.search(rf"^\s+{command}\b", text, re.MULTILINE)
     assert run_script("--version").stdout == f"crashrank {crashrank.__version__}\n"
     done = run_script("rank", str(DATA / "scenarios/oncoming_truck.json"))

@@ -86,6 +86,30 @@ def test_a_scenario_built_in_code_is_that_of_its_file():
     assert mine["ranking"] == want["ranking"]
 
 
+def test_a_body_may_be_a_box_of_a_kind():
+    def scene(**body):
+        return crashrank.Scenario.build(
+            models={"seen": crashrank.Body(**body)},
+            ego=crashrank.Ego(model="seen", speed_mps=15.0),
+            actors=[crashrank.Actor("ahead", model="seen", pose=crashrank.Pose(x_m=12.0))],
+            candidates=[crashrank.Candidate("on", acceleration_mps2=0.0)],
+        )
+
+    ranking = crashrank.rank(scene(kind="car", box=(4.6, 1.8, 1.5)))
+    assert ranking.named("on").score > 0.0
+    assert any("models.seen is a car of 4.6 x 1.8 x 1.5 m" in w for w in ranking.warnings)
+    for body, key in (
+        ({"box": [4.6, 1.8, 1.5]}, "kind"),
+        ({"kind": "car"}, "mesh"),
+        ({"kind": "car", "box": [4.6, 0, 1.5]}, "box[1]"),
+        ({"kind": "car", "box": [4.6, 1.8, 1.5], "mesh": "car.obj"}, "mesh"),
+    ):
+        with pytest.raises(crashrank.BadInputError) as error:
+            scene(**body)
+        assert error.value.place == f"models.seen.{key}"
+        assert error.value.remedy
+
+
 def test_members_of_a_scenario_are_those_of_its_schema():
     import dataclasses
 

@@ -42,7 +42,7 @@ Body make_body(const Model& model, double mass_kg) {
 
 /// Adds to an error of a mesh the key that names it.
 Error error_of_mesh(Error error, const ScenarioModel& model) {
-  error.place = "models." + model.name + ".mesh";
+  error.place = "models." + model.name + (model.box_m ? ".box" : ".mesh");
   if (!model.path.empty()) error.reason = model.path + " " + error.reason;
   return error;
 }

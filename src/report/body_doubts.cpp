@@ -124,6 +124,23 @@ void doubt_shapes(const Scenario& scenario, View<const Model> models, const Rank
   }
 }
 
+/// Says that the shape of a body is a guess.
+void doubt_boxes(const Scenario& scenario, const RankResult& result,
+                 std::vector<std::string>& doubts) {
+  Counted boxes;
+  for (const std::size_t i : used_models(result)) {
+    const ScenarioModel& model = scenario.models[i];
+    if (!model.box_m) continue;
+    boxes.add(fmt::format("models.{} is a {} of {}", model.name, body_kind_name(model.kind),
+                          size_text(*model.box_m)));
+  }
+  if (boxes.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} no mesh but a box, and the usual shape of its kind stretched to it: {}; name its mesh "
+      "where there is one",
+      boxes.many("body has", "bodies have"), boxes.examples()));
+}
+
 void doubt_masses(const Scenario& scenario, const RankResult& result,
                   std::vector<std::string>& doubts) {
   std::vector<std::size_t> seen;
@@ -269,6 +286,7 @@ std::string Counted::many(const char* one, const char* more) const {
 
 void doubt_bodies(const Scenario& scenario, View<const Model> models, const RankResult& result,
                   std::vector<std::string>& doubts) {
+  doubt_boxes(scenario, result, doubts);
   doubt_shapes(scenario, models, result, doubts);
   doubt_masses(scenario, result, doubts);
   const ScenarioEgo& own = scenario.ego;

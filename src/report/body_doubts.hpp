@@ -22,9 +22,10 @@ struct Counted {
   std::string many(const char* one, const char* more) const;
 };
 
-/// Adds one sentence for each kind of body that is improbable: meshes that seem turned or are too
-/// large or small for their kind, stated masses that no body of the kind has, bodies that float,
-/// and two that are not the ego and overlap at time 0. At most the squared number of bodies.
+/// Adds one sentence for each kind of body that is improbable: boxes in place of meshes, meshes
+/// that seem turned or are too large or small for their kind, stated masses that no body of the
+/// kind has, bodies that float, and two that are not the ego and overlap at time 0. At most the
+/// squared number of bodies.
 void doubt_bodies(const Scenario& scenario, View<const Model> models, const RankResult& result,
                   std::vector<std::string>& doubts);
 

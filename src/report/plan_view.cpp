@@ -1,6 +1,8 @@
 #include "report/plan_view.hpp"
 
 #include "crashrank/internal/report/escape.hpp"
+#include "crashrank/report/ranking.hpp"
+#include "crashrank/scenario/candidate.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -30,14 +32,28 @@ Eigen::Vector2d ground(const Pose& pose, const Eigen::Vector2d& point) {
   return (pose.rotation * Eigen::Vector3d(point.x(), point.y(), 0.0) + pose.translation).head<2>();
 }
 
-// World to page: x right, y up.
+// World to page: x right, y up. As wide a page for any part of the world.
 class Canvas {
 public:
-  explicit Canvas(const Eigen::Vector2d& middle) : middle_(middle) {}
+  explicit Canvas(const Eigen::Vector2d& middle,
+                  const Eigen::Vector2d& half_m = {half_width_m, half_height_m})
+      : middle_(middle), half_m_(half_m), scale_(half_width_m * pixels_per_m / half_m.x()) {}
 
   Eigen::Vector2d operator()(const Eigen::Vector2d& world) const {
-    return {(world.x() - middle_.x() + half_width_m) * pixels_per_m,
-            (middle_.y() - world.y() + half_height_m) * pixels_per_m};
+    return {(world.x() - middle_.x() + half_m_.x()) * scale_,
+            (middle_.y() - world.y() + half_m_.y()) * scale_};
+  }
+
+  std::string scale_bar() const {
+    const double y = 2.0 * half_m_.y() * scale_ - 14.0;
+    return fmt::format(
+        "<path class='scale' d='M14 {0:.0f} H{1:.0f}'/><text x='14' y='{2:.0f}'>5 m</text>\n", y,
+        14.0 + 5.0 * scale_, y - 6.0);
+  }
+
+  std::string label(const Eigen::Vector2d& world, const std::string& name) const {
+    const Eigen::Vector2d p = (*this)(world);
+    return fmt::format("<text x='{:.0f}' y='{:.0f}'>{}</text>\n", p.x(), p.y(), escape_xml(name));
   }
 
   bool shows(const Eigen::Vector2d& world, double reach) const {
@@ -77,6 +93,8 @@ public:
 
 private:
   Eigen::Vector2d middle_;
+  Eigen::Vector2d half_m_;  ///< what is drawn to each side
+  double scale_;            ///< pixels per metre
 };
 
 Outline hull_of_damage(const TriangleMesh& mesh, const BodyDamage& damage) {
@@ -183,9 +201,7 @@ std::string PlanView::draw(std::size_t place) const {
     if (kind != BodyKind::barrier && kind != BodyKind::pole && kind != BodyKind::building) {
       svg += canvas.nose(outline_of_actor(i), pose);
     }
-    const Eigen::Vector2d p = canvas(at);
-    labels += fmt::format("<text x='{:.0f}' y='{:.0f}'>{}</text>\n", p.x(), p.y(),
-                          escape_xml(scenario_.actors[i].name));
+    labels += canvas.label(at, scenario_.actors[i].name);
   }
   const Outline& own = outlines_[scenario_.ego.model];
   svg += canvas.body(own, ego.pose_at(0.0), "start");
@@ -212,13 +228,79 @@ std::string PlanView::draw(std::size_t place) const {
         p.x(), p.y(), escape_xml(scenario_.actors[contact.a].name),
         escape_xml(scenario_.actors[contact.b].name), contact.time_s);
   }
-  svg += labels;
-  const double y = 2.0 * half_height_m * pixels_per_m - 14.0;
-  svg += fmt::format(
-      "<path class='scale' d='M14 {0:.0f} H{1:.0f}'/><text x='14' y='{2:.0f}'>5 m"
-      "</text>\n</svg>\n",
-      y, 14.0 + 5.0 * pixels_per_m, y - 6.0);
-  return svg;
+  return svg + labels + canvas.scale_bar() + "</svg>\n";
 }
 
 }  // namespace crashrank::detail
+
+namespace crashrank {
+namespace {
+
+/// Of a plan that stands alone; the page of a report has its own.
+constexpr const char* plan_style =
+    "<style>svg{background:#eceef0}text{font:12px sans-serif;fill:#4a5057}.ground{fill:#dfe6d8}"
+    ".road{fill:#eceef0;fill-rule:evenodd;stroke:#aab29f}.ego{fill:#4a7ab8;stroke:#24466f}"
+    ".bystander{fill:#cdd1d6;stroke:#8d949c}.nose{fill:#fff}"
+    ".way{fill:none;stroke:#24466f;stroke-dasharray:6 5}.scale{fill:none;stroke:#4a5057}</style>\n";
+
+/// The likeliest or only motion, and all others that an actor may follow.
+std::vector<Motion> motions_of(const Scenario& scenario, std::size_t actor) {
+  std::vector<Motion> motions;
+  const auto add = [&](const ActorMotion& stated) {
+    if (Result<Motion> motion = make_motion(stated, {})) motions.push_back(std::move(*motion));
+  };
+  for (const Prediction& prediction : scenario.actors[actor].predictions) add(prediction);
+  for (const JointFuture& future : scenario.futures) {
+    for (const FutureMotion& moved : future.motions) {
+      if (moved.actor == actor) add(moved.motion);
+    }
+  }
+  if (motions.empty()) add(scenario.actors[actor]);
+  return motions;
+}
+
+}  // namespace
+
+std::string scenario_plan(const Scenario& scenario, View<const Model> models) {
+  constexpr double margin_m = 4.0;
+  std::vector<detail::Outline> outlines;
+  for (const Model& model : models) outlines.push_back(detail::outline_of(model.mesh));
+  std::vector<std::vector<Motion>> motions;
+  Eigen::AlignedBox2d shown;
+  const auto show = [&](std::size_t model, const Pose& pose) {
+    for (const Eigen::Vector2d& point : outlines[model]) shown.extend(detail::ground(pose, point));
+  };
+  show(scenario.ego.model, scenario.ego.pose);
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    motions.push_back(motions_of(scenario, i));
+    for (const Motion& motion : motions[i]) show(scenario.actors[i].model, motion.pose_at(0.0));
+  }
+  const Eigen::Vector2d half =
+      (0.5 * shown.sizes().array() + margin_m)
+          .max(Eigen::Array2d(detail::half_width_m, detail::half_height_m));
+  const detail::Canvas canvas(shown.center(), half);
+  const Eigen::Vector2d page = 2.0 * detail::half_width_m * detail::pixels_per_m / half.x() * half;
+  std::string svg = fmt::format(
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {:.0f} {:.0f}'>\n<title>{}, from above "
+      "at time 0</title>\n",
+      page.x(), page.y(), escape_xml(scenario.name));
+  svg += plan_style + detail::road(canvas, scenario.road);
+  std::string labels = canvas.label(scenario.ego.pose.translation.head<2>(), "ego");
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const ScenarioActor& actor = scenario.actors[i];
+    for (const Motion& motion : motions[i]) {
+      const Pose pose = motion.pose_at(0.0);
+      svg += canvas.body(outlines[actor.model], pose, "bystander");
+      if (motion.velocity_at(0.0).linear_mps.norm() == 0.0 && !motion.holds_poses()) continue;
+      svg += canvas.nose(outlines[actor.model], pose);
+      svg += detail::way(canvas, motion, scenario.horizon_s);
+    }
+    if (motions[i].empty()) continue;
+    labels += canvas.label(motions[i].front().pose_at(0.0).translation.head<2>(), actor.name);
+  }
+  svg += canvas.body(outlines[scenario.ego.model], scenario.ego.pose, "ego");
+  svg += canvas.nose(outlines[scenario.ego.model], scenario.ego.pose);
+  return svg + labels + canvas.scale_bar() + "</svg>\n";
+}
+
+}  // namespace crashrank

@@ -103,15 +103,15 @@ public:
 
   Status read() {
     read_header();
-    while (status_.ok() && !fields_.at_end()) read_row();
-    if (status_.ok() && !any_) refuse(name_column, "holds no pose", "give one pose a line");
-    return status_;
+    while (refusals_.ok() && !fields_.at_end()) read_row();
+    if (refusals_.ok() && !any_) refuse(name_column, "holds no pose", "give one pose a line");
+    return refusals_.status();
   }
 
 private:
   void refuse(std::size_t column, const std::string& reason, const std::string& remedy,
               ErrorCode code = ErrorCode::bad_input) {
-    refuse_at(status_, place_of(column), reason, remedy, code);
+    refuse_at(refusals_, place_of(column), reason, remedy, code);
   }
 
   std::string place_of(std::size_t column) const {
@@ -157,7 +157,7 @@ private:
       } else {
         values[column] = number(column);
       }
-      if (!status_.ok()) return;
+      if (!refusals_.ok()) return;
       if (fields_.line_ended() != (i + 1 == order_.size())) {
         refuse(absent,
                std::string("has ") + (fields_.line_ended() ? "fewer" : "more") +
@@ -189,7 +189,7 @@ private:
 
   void add(const std::string& name, const std::array<double, column_count>& values) {
     if (!any_ || listed_.back().name != name) begin(name);
-    if (!status_.ok()) return;
+    if (!refusals_.ok()) return;
     any_ = true;
     std::vector<TimedPose>& poses = listed_.back().poses;
     if (poses.empty() ? values[time] != 0.0 : values[time] <= poses.back().time_s) {
@@ -208,7 +208,7 @@ private:
 
   void begin(const std::string& name) {
     if (!is_utf8(name)) refuse(name_column, "is not UTF-8", "write the table in UTF-8");
-    check_name(name, place_of(name_column), limits::name_characters, status_);
+    check_name(name, place_of(name_column), limits::name_characters, refusals_);
     if (!names_.insert(name).second) {
       refuse(name_column, "'" + name + "' was there before",
              "put the poses of a candidate one after the other, and give each its own name");
@@ -227,7 +227,7 @@ private:
   std::set<std::string> names_;
   std::vector<std::size_t> order_;  ///< by place in a line
   std::string field_;
-  Status status_ = Success{};
+  Refusals refusals_;
   bool any_ = false;
 };
 

@@ -279,7 +279,12 @@ EgoLimits ego_limits(const Scenario& scenario, double ego_length_m, const Eigen:
   limits.max_steering_rad = ego.max_steering_rad;
   limits.max_steering_rate_radps = ego.max_steering_rate_radps;
   const double length = std::max(ego_length_m, scenario_limits::min_wheelbase_m);
-  limits.wheelbase_m = ego.wheelbase_m.value_or(wheelbase_per_length * length);
+  double share = wheelbase_per_length;
+  if (ego.model < scenario.models.size() && scenario.models[ego.model].box_m) {
+    const double of_kind = box_axles(scenario.models[ego.model].kind).wheelbase;
+    if (of_kind > 0.0) share = of_kind;
+  }
+  limits.wheelbase_m = ego.wheelbase_m.value_or(share * length);
   limits.speed_mps = ego.speed_mps;
   limits.yaw_rate_radps = ego.yaw_rate_radps;
   limits.center_m = center_m;

@@ -2,6 +2,7 @@
 
 #include "base/nearest_word.hpp"
 #include "base/utf8.hpp"
+#include "crashrank/scenario/scenario.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,9 +35,9 @@ std::string printable(std::string_view text, std::size_t most_bytes) {
 
 }  // namespace
 
-void refuse_at(Status& status, const std::string& path, const std::string& reason,
+void refuse_at(Refusals& refusals, const std::string& path, const std::string& reason,
                const std::string& remedy, ErrorCode code) {
-  if (status.ok()) status = Error{code, {}, path, reason, remedy};
+  refusals.add(Error{code, {}, path, reason, remedy});
 }
 
 Error error_in_file(const std::string& file, Error error) {
@@ -48,41 +49,41 @@ Error error_in_file(const std::string& file, Error error) {
 }
 
 double checked_number(const nlohmann::json& value, const std::string& path, NumberRange range,
-                      Status& status, double otherwise) {
+                      Refusals& refusals, double otherwise) {
   if (!value.is_number()) {
-    refuse_at(status, path, std::string("is ") + value.type_name() + ", not a number",
+    refuse_at(refusals, path, std::string("is ") + value.type_name() + ", not a number",
               give_one_in(range));
     return otherwise;
   }
   const double number = value.get<double>();
   if (!range.holds(number)) {
-    refuse_at(status, path, out_of_range(number), give_one_in(range));
+    refuse_at(refusals, path, out_of_range(number), give_one_in(range));
     return otherwise;
   }
   return number;
 }
 
 void check_name(const std::string& text, const std::string& path, std::size_t max_characters,
-                Status& status) {
-  if (text.empty()) refuse_at(status, path, "is empty", "give it a name");
+                Refusals& refusals) {
+  if (text.empty()) refuse_at(refusals, path, "is empty", "give it a name");
   if (characters(text) > max_characters) {
-    refuse_at(status, path, "is longer than " + std::to_string(max_characters) + " characters",
+    refuse_at(refusals, path, "is longer than " + std::to_string(max_characters) + " characters",
               "shorten it", ErrorCode::limit_exceeded);
   }
   const bool control = std::any_of(text.begin(), text.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte < 0x20 || byte == 0x7F;
   });
-  if (control) refuse_at(status, path, "holds a control character", "remove it");
+  if (control) refuse_at(refusals, path, "holds a control character", "remove it");
 }
 
-JsonObject::JsonObject(const nlohmann::json& value, std::string path, Status& status,
+JsonObject::JsonObject(const nlohmann::json& value, std::string path, Refusals& refusals,
                        std::initializer_list<const char*> known)
-    : value_(&value), path_(std::move(path)), status_(&status) {
+    : value_(&value), path_(std::move(path)), refusals_(&refusals) {
   if (!value.is_object()) {
     static const nlohmann::json empty = nlohmann::json::object();
     value_ = &empty;
-    refuse_at(status, path_, std::string("is ") + value.type_name() + ", not an object",
+    refuse_at(refusals, path_, std::string("is ") + value.type_name() + ", not an object",
               "write it as {...}");
     return;
   }
@@ -95,9 +96,9 @@ JsonObject::JsonObject(const nlohmann::json& value, std::string path, Status& st
     const std::string meant = nearest_word(item.key(), {known.begin(), known.end()});
     std::string remedy = meant.empty() ? "the" : "did you mean '" + meant + "'? The";
     remedy.append(" keys here are ").append(list);
-    refuse_at(status, path_of(printable(item.key(), 64).c_str()), "there is no such key", remedy);
-    return;
+    refuse_at(refusals, path_of(printable(item.key(), 64).c_str()), "there is no such key", remedy);
   }
+  text("note", scenario_limits::description_characters);
 }
 
 std::string JsonObject::path_of(const char* key) const {
@@ -106,7 +107,7 @@ std::string JsonObject::path_of(const char* key) const {
 
 void JsonObject::refuse(const char* key, const std::string& reason,
                         const std::string& remedy) const {
-  refuse_at(*status_, path_of(key), reason, remedy);
+  refuse_at(*refusals_, path_of(key), reason, remedy);
 }
 
 const nlohmann::json* JsonObject::find(const char* key) const {
@@ -129,7 +130,7 @@ std::string JsonObject::text(const char* key, std::size_t max_characters) const 
   }
   std::string text = value->get<std::string>();
   if (characters(text) > max_characters) {
-    refuse_at(*status_, path_of(key),
+    refuse_at(*refusals_, path_of(key),
               "is longer than " + std::to_string(max_characters) + " characters", "shorten it",
               ErrorCode::limit_exceeded);
   }
@@ -138,14 +139,14 @@ std::string JsonObject::text(const char* key, std::size_t max_characters) const 
 
 std::string JsonObject::name(const char* key, std::size_t max_characters) const {
   std::string name = text(key, max_characters);
-  if (has(key)) check_name(name, path_of(key), max_characters, *status_);
+  if (has(key)) check_name(name, path_of(key), max_characters, *refusals_);
   return name;
 }
 
 double JsonObject::number(const char* key, NumberRange range, double otherwise) const {
   const nlohmann::json* value = find(key);
   return value == nullptr ? otherwise
-                          : checked_number(*value, path_of(key), range, *status_, otherwise);
+                          : checked_number(*value, path_of(key), range, *refusals_, otherwise);
 }
 
 std::optional<double> JsonObject::optional_number(const char* key, NumberRange range) const {
@@ -182,7 +183,7 @@ const nlohmann::json* JsonObject::array(const char* key, std::size_t lowest,
     return nullptr;
   }
   if (value->size() < lowest || value->size() > highest) {
-    refuse_at(*status_, path_of(key), "has " + std::to_string(value->size()) + " elements",
+    refuse_at(*refusals_, path_of(key), "has " + std::to_string(value->size()) + " elements",
               "give " + std::to_string(lowest) + " to " + std::to_string(highest),
               value->size() > highest ? ErrorCode::limit_exceeded : ErrorCode::bad_input);
     return nullptr;

@@ -2,6 +2,7 @@
 
 #include "crashrank/base/result.hpp"
 #include "scenario/number_range.hpp"
+#include "scenario/refusals.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -12,13 +13,14 @@
 
 namespace crashrank::detail {
 
-/// Reads one JSON object and refuses unknown keys. The first error stays in the Status
-/// shared by a whole document; once it is there, reads return what they were given as default, so
-/// that callers need to look once, at the end.
+/// Reads one JSON object and refuses unknown keys. Errors go to the Refusals shared by a whole
+/// document; after one, reads return what they were given as default, so that callers need to
+/// look once, at the end.
 class JsonObject {
 public:
-  /// Refuses a value that is no object and keys that are not in `known`.
-  JsonObject(const nlohmann::json& value, std::string path, Status& status,
+  /// Refuses a value that is no object and keys that are not in `known`; of those, "note" is text
+  /// for people.
+  JsonObject(const nlohmann::json& value, std::string path, Refusals& refusals,
              std::initializer_list<const char*> known);
 
   bool has(const char* key) const;
@@ -40,7 +42,7 @@ public:
 
   std::string path_of(const char* key) const;
   const std::string& path() const { return path_; }
-  Status& status() const { return *status_; }
+  Refusals& refusals() const { return *refusals_; }
   void refuse(const char* key, const std::string& reason, const std::string& remedy) const;
 
 private:
@@ -48,22 +50,22 @@ private:
 
   const nlohmann::json* value_;
   std::string path_;
-  Status* status_;
+  Refusals* refusals_;
 };
 
 /// The error as callers get it: with its file, and with nothing in its texts, some of which quote
 /// the document, that a terminal or a log would obey.
 Error error_in_file(const std::string& file, Error error);
 
-/// Puts an error into a status that has none yet.
-void refuse_at(Status& status, const std::string& path, const std::string& reason,
+/// Adds an error to those of a document.
+void refuse_at(Refusals& refusals, const std::string& path, const std::string& reason,
                const std::string& remedy, ErrorCode code = ErrorCode::bad_input);
 
 double checked_number(const nlohmann::json& value, const std::string& path, NumberRange range,
-                      Status& status, double otherwise);
+                      Refusals& refusals, double otherwise);
 
 /// Whether text is a name: not empty, at most that many characters, no control characters.
 void check_name(const std::string& text, const std::string& path, std::size_t max_characters,
-                Status& status);
+                Refusals& refusals);
 
 }  // namespace crashrank::detail

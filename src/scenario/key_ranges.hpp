@@ -34,6 +34,7 @@ inline constexpr NumberRange occupants = up_to(harm_limits::people);
 inline constexpr NumberRange mass{limits::min_mass_kg, limits::max_mass_kg};
 inline constexpr NumberRange yaw_inertia = above_zero_to(limits::yaw_inertia_kgm2);
 inline constexpr NumberRange scale{limits::min_scale, limits::max_scale};
+inline constexpr NumberRange box_side = above_zero_to(limits::box_m);
 inline constexpr NumberRange stiffness{limits::min_stiffness, limits::max_stiffness};
 inline constexpr NumberRange honeycomb_pressure = above_zero_to(limits::honeycomb_pa);
 inline constexpr NumberRange honeycomb_size = above_zero_to(limits::honeycomb_m);
@@ -93,6 +94,7 @@ inline constexpr std::array fields{
     Field{"/$defs/existence_probability", existence},
     Field{"/$defs/model/properties/mass_kg", mass},
     Field{"/$defs/model/properties/scale", scale},
+    Field{"/$defs/model/properties/box/items", box_side},
     Field{"/$defs/model/properties/yaw_inertia_kgm2", yaw_inertia},
     Field{"/$defs/model/properties/stiffness", stiffness},
     Field{"/$defs/model/properties/honeycomb/properties/pressure_pa", honeycomb_pressure},
@@ -149,6 +151,7 @@ inline constexpr std::array sizes{
     Size{"/properties/models", "maxProperties", limits::models},
     Size{"/properties/actors", "maxItems", limits::actors},
     Size{"/properties/futures", "maxItems", limits::futures},
+    Size{"/$defs/note", "maxLength", limits::description_characters},
     Size{"/$defs/name", "maxLength", limits::name_characters},
     Size{"/$defs/model/properties/mesh", "maxLength", limits::path_characters},
     Size{"/$defs/poses", "maxItems", limits::poses},

@@ -19,9 +19,9 @@ Result<HarmOptions> parse(const std::string& text, const std::string& file,
   }
   Result<nlohmann::json> document = detail::parse_json(text);
   if (!document) return detail::error_in_file(file, document.error());
-  Status status = Success{};
+  detail::Refusals refusals;
   const detail::JsonObject root(
-      *document, {}, status,
+      *document, {}, refusals,
       {"$schema", "profile_version", "name", "description", "risk_model", "weights", "people",
        "pedestrian", "friction", "ranges", "after_contact", "after_impact", "least_struck_share"});
   root.require("profile_version");
@@ -32,8 +32,8 @@ Result<HarmOptions> parse(const std::string& text, const std::string& file,
   root.name("name", name_characters);
   root.text("description", text_characters);
   HarmOptions harm = otherwise;
-  if (status.ok()) detail::read_harm(root, harm);
-  if (!status.ok()) return detail::error_in_file(file, status.error());
+  if (refusals.ok()) detail::read_harm(root, harm);
+  if (!refusals.ok()) return detail::error_in_file(file, refusals.errors().front());
   return harm;
 }
 

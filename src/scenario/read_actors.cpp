@@ -51,9 +51,9 @@ void read_predictions(const JsonObject& object, ScenarioActor& actor) {
                     "keep one of them; pose and speed_mps may stand beside predictions");
     }
   }
-  for (std::size_t i = 0; i < predictions->size() && object.status().ok(); ++i) {
+  for (std::size_t i = 0; i < predictions->size() && object.refusals().goes_on(); ++i) {
     const JsonObject each(
-        (*predictions)[i], object.path_of(indexed("predictions", i).c_str()), object.status(),
+        (*predictions)[i], object.path_of(indexed("predictions", i).c_str()), object.refusals(),
         {"probability", "pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses"});
     Prediction prediction;
     static_cast<ActorMotion&>(prediction) = read_motion(each, actor);
@@ -65,9 +65,9 @@ void read_predictions(const JsonObject& object, ScenarioActor& actor) {
 ScenarioActor read_actor(const JsonObject& root, const json& value, const std::string& path,
                          const std::vector<ScenarioModel>& models) {
   const JsonObject object(
-      value, path, root.status(),
+      value, path, root.refusals(),
       {"name", "model", "pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses",
-       "occupants", "predictions", "existence_probability", "perception"});
+       "occupants", "predictions", "existence_probability", "perception", "note"});
   require_version_2(root, object, {"predictions", "existence_probability", "perception"});
   ScenarioActor actor;
   object.require("name");
@@ -103,7 +103,7 @@ void read_absent(const JsonObject& object, const std::vector<ScenarioActor>& act
     }
     future.absent.push_back(
         actor_named(object, "absent", name.get_ref<const std::string&>(), actors));
-    if (!object.status().ok()) return;
+    if (!object.refusals().goes_on()) return;
   }
 }
 
@@ -120,7 +120,7 @@ JointFuture read_future(const JsonObject& object, const std::vector<ScenarioActo
   for (const auto& [name, value] : motions.items()) {
     const std::size_t actor = actor_named(object, "motions", name, actors);
     if (actor == actors.size()) return future;
-    const JsonObject motion(value, object.path_of(("motions." + name).c_str()), object.status(),
+    const JsonObject motion(value, object.path_of(("motions." + name).c_str()), object.refusals(),
                             {"pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps", "poses"});
     future.motions.push_back({actor, read_motion(motion)});
   }
@@ -132,7 +132,7 @@ JointFuture read_future(const JsonObject& object, const std::vector<ScenarioActo
 
 Pose read_pose(const JsonObject& parent) {
   if (!parent.has("pose")) return {};
-  const JsonObject object(parent.at("pose"), parent.path_of("pose"), parent.status(),
+  const JsonObject object(parent.at("pose"), parent.path_of("pose"), parent.refusals(),
                           {"x_m", "y_m", "z_m", "yaw_deg", "pitch_deg", "roll_deg"});
   return read_pose_members(object);
 }
@@ -144,7 +144,7 @@ std::vector<TimedPose> read_poses(const JsonObject& parent) {
   poses.reserve(array->size());
   for (std::size_t i = 0; i < array->size(); ++i) {
     const JsonObject object((*array)[i], parent.path_of(indexed("poses", i).c_str()),
-                            parent.status(),
+                            parent.refusals(),
                             {"t_s", "x_m", "y_m", "z_m", "yaw_deg", "pitch_deg", "roll_deg"});
     object.require("t_s");
     const double time = object.number("t_s", pose_time, 0.0);
@@ -153,7 +153,7 @@ std::vector<TimedPose> read_poses(const JsonObject& parent) {
                     "start at 0 and let times rise from pose to pose");
     }
     poses.push_back({time, read_pose_members(object)});
-    if (!parent.status().ok()) break;
+    if (!parent.refusals().goes_on()) break;
   }
   return poses;
 }
@@ -161,6 +161,7 @@ std::vector<TimedPose> read_poses(const JsonObject& parent) {
 std::size_t read_model_name(const JsonObject& object, const std::vector<ScenarioModel>& models) {
   object.require("model");
   const std::string name = object.name("model", limits::name_characters);
+  if (models.empty()) return 0;  // which is an error of its own
   std::string known;
   for (std::size_t i = 0; i < models.size(); ++i) {
     if (models[i].name == name) return i;
@@ -172,7 +173,7 @@ std::size_t read_model_name(const JsonObject& object, const std::vector<Scenario
 
 StateUncertainty read_uncertainty(const JsonObject& parent, const char* key) {
   if (!parent.has(key)) return {};
-  const JsonObject object(parent.at(key), parent.path_of(key), parent.status(),
+  const JsonObject object(parent.at(key), parent.path_of(key), parent.refusals(),
                           {"position_m", "heading_deg", "speed_mps"});
   return {object.number("position_m", position_error, 0.0),
           rad_per_deg * object.number("heading_deg", heading_error, 0.0),
@@ -192,7 +193,7 @@ void read_actors(const JsonObject& root, Scenario& scenario) {
   const json* const actors = root.array("actors", 0, limits::actors);
   if (actors == nullptr) return;
   scenario.actors.reserve(actors->size());
-  for (std::size_t i = 0; i < actors->size() && root.status().ok(); ++i) {
+  for (std::size_t i = 0; i < actors->size() && root.refusals().goes_on(); ++i) {
     scenario.actors.push_back(
         read_actor(root, (*actors)[i], indexed("actors", i), scenario.models));
   }
@@ -201,8 +202,8 @@ void read_actors(const JsonObject& root, Scenario& scenario) {
 void read_futures(const JsonObject& root, Scenario& scenario) {
   require_version_2(root, root, {"futures", "risk"});
   if (const json* const futures = root.array("futures", 1, limits::futures)) {
-    for (std::size_t i = 0; i < futures->size() && root.status().ok(); ++i) {
-      const JsonObject future((*futures)[i], indexed("futures", i), root.status(),
+    for (std::size_t i = 0; i < futures->size() && root.refusals().goes_on(); ++i) {
+      const JsonObject future((*futures)[i], indexed("futures", i), root.refusals(),
                               {"probability", "motions", "absent"});
       scenario.futures.push_back(read_future(future, scenario.actors));
     }

@@ -16,9 +16,9 @@ void read_range(const JsonObject& object, const char* key, NumberRange range, do
   const nlohmann::json* ends = object.array(key, 2, 2);
   if (ends == nullptr) return;
   const double first =
-      checked_number((*ends)[0], object.path_of(key) + "[0]", range, object.status(), least);
+      checked_number((*ends)[0], object.path_of(key) + "[0]", range, object.refusals(), least);
   const double last =
-      checked_number((*ends)[1], object.path_of(key) + "[1]", range, object.status(), most);
+      checked_number((*ends)[1], object.path_of(key) + "[1]", range, object.refusals(), most);
   if (first > last) object.refuse(key, "ends before it begins", "write it as [least, most]");
   least = first;
   most = last;
@@ -26,7 +26,7 @@ void read_range(const JsonObject& object, const char* key, NumberRange range, do
 
 void read_weights(const JsonObject& parent, HarmWeights& w) {
   if (parent.has("weights")) {
-    const JsonObject object(parent.at("weights"), parent.path_of("weights"), parent.status(),
+    const JsonObject object(parent.at("weights"), parent.path_of("weights"), parent.refusals(),
                             {"ego_occupant", "other_occupant", "pedestrian", "cyclist",
                              "motorcyclist", "property_per_mj"});
     w.ego_occupant = object.number("ego_occupant", weight, w.ego_occupant);
@@ -37,7 +37,7 @@ void read_weights(const JsonObject& parent, HarmWeights& w) {
     w.property_per_mj = object.number("property_per_mj", weight, w.property_per_mj);
   }
   if (parent.has("people")) {
-    const JsonObject object(parent.at("people"), parent.path_of("people"), parent.status(),
+    const JsonObject object(parent.at("people"), parent.path_of("people"), parent.refusals(),
                             {"ego", "car", "truck", "bus"});
     w.people_in_ego = object.number("ego", people, w.people_in_ego);
     w.people_in_car = object.number("car", people, w.people_in_car);
@@ -59,7 +59,7 @@ void read_mean_or(const JsonObject& object, const char* key, NumberRange range,
 
 void read_ranges(const JsonObject& parent, HarmRanges& r) {
   if (!parent.has("ranges")) return;
-  const JsonObject object(parent.at("ranges"), parent.path_of("ranges"), parent.status(),
+  const JsonObject object(parent.at("ranges"), parent.path_of("ranges"), parent.refusals(),
                           {"friction", "strength", "restitution", "risk_speed", "all_models"});
   read_range(object, "friction", friction, r.least_friction, r.most_friction);
   read_range(object, "strength", strength, r.least_strength, r.most_strength);
@@ -83,8 +83,8 @@ void read_harm(const JsonObject& object, HarmOptions& harm) {
   }
   read_weights(object, harm.weights);
   if (object.has("pedestrian")) {
-    const JsonObject person(object.at("pedestrian"), object.path_of("pedestrian"), object.status(),
-                            {"age_years", "male_share"});
+    const JsonObject person(object.at("pedestrian"), object.path_of("pedestrian"),
+                            object.refusals(), {"age_years", "male_share"});
     read_mean_or(person, "age_years", age, harm.pedestrian.age_years);
     read_mean_or(person, "male_share", share, harm.pedestrian.male_share);
   }
@@ -102,7 +102,7 @@ void read_harm(const JsonObject& object, HarmOptions& harm) {
   if (object.has("after_impact")) {
     // Without effect, but no nonsense either.
     const JsonObject after(object.at("after_impact"), object.path_of("after_impact"),
-                           object.status(), {"deceleration_mps2", "longest_s", "most_contacts"});
+                           object.refusals(), {"deceleration_mps2", "longest_s", "most_contacts"});
     after.number("deceleration_mps2", former_deceleration, 0.0);
     after.number("longest_s", former_time, 0.0);
     after.count("most_contacts", former_contacts, 1);

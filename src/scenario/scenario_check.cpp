@@ -21,7 +21,10 @@ constexpr double rounding = 1.0 - 1e-12;
 
 class Check {
 public:
-  Status status = Success{};
+  explicit Check(Refusals& refusals) : refusals_(refusals) {}
+
+  bool goes_on() const { return refusals_.goes_on(); }
+  Refusals& refusals() { return refusals_; }
 
   /// `unit`: what a number as scenarios have it is multiplied by to be the library's.
   void within(const std::string& path, double number, NumberRange range, double unit = 1.0) {
@@ -56,7 +59,7 @@ public:
   }
 
   void poses(const std::string& path, const std::vector<TimedPose>& poses) {
-    for (std::size_t i = 0; i < poses.size() && status.ok(); ++i) {
+    for (std::size_t i = 0; i < poses.size() && goes_on(); ++i) {
       const std::string at = path + "[" + std::to_string(i) + "]";
       within(at + ".t_s", poses[i].time_s, ranges::pose_time);
       pose(at, poses[i].pose);
@@ -64,10 +67,11 @@ public:
   }
 
   void refuse(const std::string& path, std::string reason, std::string remedy) {
-    if (status.ok()) {
-      status = Error{ErrorCode::bad_input, {}, path, std::move(reason), std::move(remedy)};
-    }
+    refusals_.add(Error{ErrorCode::bad_input, {}, path, std::move(reason), std::move(remedy)});
   }
+
+private:
+  Refusals& refusals_;
 };
 
 template <class Named>
@@ -96,6 +100,14 @@ void check_models(const Scenario& scenario, Check& check) {
       check.within(path + ".yaw_inertia_kgm2", *model.yaw_inertia_kgm2, ranges::yaw_inertia);
     }
     check.within(path + ".stiffness", model.stiffness, ranges::stiffness);
+    if (model.box_m) {
+      if (!model.mesh.empty() || !model.path.empty()) {
+        check.refuse(path + ".mesh", "is given together with box", "keep one of them");
+      }
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        check.within(path + ".box[" + std::to_string(i) + "]", (*model.box_m)[i], ranges::box_side);
+      }
+    }
     if (model.honeycomb) {
       const Honeycomb& h = *model.honeycomb;
       check.within(path + ".honeycomb.pressure_pa", h.pressure_pa, ranges::honeycomb_pressure);
@@ -132,9 +144,10 @@ void check_ego(const Scenario& scenario, Check& check) {
 }
 
 void check_candidates(const Scenario& scenario, Check& check) {
-  for (std::size_t i = 0; i < scenario.listed.size() && check.status.ok(); ++i) {
+  for (std::size_t i = 0; i < scenario.listed.size() && check.goes_on(); ++i) {
     const ListedCandidate& candidate = scenario.listed[i];
     const std::string path = ranges::indexed("candidates.listed", i);
+    const std::size_t before = check.refusals().errors().size();
     check.within(path + ".acceleration_mps2", candidate.acceleration_mps2, ranges::acceleration);
     check.within(path + ".steering_deg", candidate.steering_rad.value_or(0.0), ranges::steering,
                  rad_per_deg);
@@ -149,7 +162,9 @@ void check_candidates(const Scenario& scenario, Check& check) {
                    "write the poses in the frame of the ego's pose");
     }
     // It may stand in a table, where an index tells little.
-    if (!check.status.ok()) check.status.error().place += " of '" + candidate.name + "'";
+    for (std::size_t k = before; k < check.refusals().errors().size(); ++k) {
+      check.refusals().errors()[k].place += " of '" + candidate.name + "'";
+    }
   }
   if (!scenario.grid) {
     if (scenario.listed.empty() && !scenario.add_straight_braking) {
@@ -175,7 +190,7 @@ void check_motion(const std::string& path, const ActorMotion& motion, Check& che
 }
 
 void check_actors(const Scenario& scenario, Check& check) {
-  for (std::size_t i = 0; i < scenario.actors.size() && check.status.ok(); ++i) {
+  for (std::size_t i = 0; i < scenario.actors.size() && check.goes_on(); ++i) {
     const ScenarioActor& actor = scenario.actors[i];
     const std::string path = "actors[" + std::to_string(i) + "]";
     if (actor.model >= scenario.models.size()) {
@@ -185,14 +200,14 @@ void check_actors(const Scenario& scenario, Check& check) {
     check.within(path + ".occupants", actor.occupants.value_or(0.0), ranges::occupants);
     check.within(path + ".existence_probability", actor.existence_probability, ranges::existence);
     check.uncertainty(path + ".perception", actor.perception);
-    for (std::size_t k = 0; k < actor.predictions.size() && check.status.ok(); ++k) {
+    for (std::size_t k = 0; k < actor.predictions.size() && check.goes_on(); ++k) {
       check_motion(path + "." + ranges::indexed("predictions", k), actor.predictions[k], check);
     }
   }
 }
 
 void check_futures(const Scenario& scenario, Check& check) {
-  for (std::size_t i = 0; i < scenario.futures.size() && check.status.ok(); ++i) {
+  for (std::size_t i = 0; i < scenario.futures.size() && check.goes_on(); ++i) {
     for (const FutureMotion& moved : scenario.futures[i].motions) {
       const std::string path = ranges::indexed("futures", i) + ".motions";
       check_motion(path + "." + scenario.actors[moved.actor].name, moved.motion, check);
@@ -261,8 +276,9 @@ void check_road(const Road& road, Check& check) {
                      std::to_string(road_limits::areas) + " areas",
                  "simplify it");
   }
-  for (std::size_t i = 0; i < road.drivable.size() && check.status.ok(); ++i) {
-    check.status = check_area(road.drivable[i], "road." + ranges::indexed("drivable", i));
+  for (std::size_t i = 0; i < road.drivable.size() && check.goes_on(); ++i) {
+    const Status sound = check_area(road.drivable[i], "road." + ranges::indexed("drivable", i));
+    if (!sound) check.refusals().add(sound.error());
   }
   check.within("road.off_road.harm_per_leaving", road.harm_per_leaving, ranges::harm_per_leaving);
   if (road.off_road_grip) {
@@ -272,16 +288,16 @@ void check_road(const Road& road, Check& check) {
 
 }  // namespace
 
-Status check_road(const Road& road) {
-  Check check;
+void check_road(const Road& road, Refusals& refusals) {
+  Check check(refusals);
   check_road(road, check);
-  return check.status;
 }
 
 Status check_harm(const HarmOptions& harm, const std::string& path) {
-  Check check;
+  Refusals refusals;
+  Check check(refusals);
   check_harm(harm, path, check);
-  return check.status;
+  return refusals.status();
 }
 
 Status check_workers(unsigned workers) {
@@ -290,8 +306,8 @@ Status check_workers(unsigned workers) {
                     "let at most " + std::to_string(max_workers) + " share the work");
 }
 
-Status check_names(const Scenario& scenario) {
-  Check check;
+void check_names(const Scenario& scenario, Refusals& refusals) {
+  Check check(refusals);
   check_names(scenario.listed, "candidates.listed", check);
   check_names(scenario.actors, "actors", check);
   for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
@@ -300,11 +316,10 @@ Status check_names(const Scenario& scenario) {
                  "is 'ego', which is the deciding vehicle wherever bodies are named",
                  "choose another name");
   }
-  return check.status;
 }
 
-Status check_probabilities(const Scenario& scenario) {
-  Check check;
+void check_probabilities(const Scenario& scenario, Refusals& refusals) {
+  Check check(refusals);
   for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
     const ScenarioActor& actor = scenario.actors[i];
     const std::string path = ranges::indexed("actors", i);
@@ -347,13 +362,19 @@ Status check_probabilities(const Scenario& scenario) {
       }
     }
   }
-  return check.status;
 }
 
 Status check_scenario(const Scenario& scenario) {
-  if (Status named = check_names(scenario); !named) return named;
-  if (Status weighted = check_probabilities(scenario); !weighted) return weighted;
-  Check check;
+  Refusals refusals;
+  check_scenario(scenario, refusals);
+  return refusals.status();
+}
+
+void check_scenario(const Scenario& scenario, Refusals& refusals) {
+  check_names(scenario, refusals);
+  check_probabilities(scenario, refusals);
+  if (!refusals.goes_on()) return;
+  Check check(refusals);
   check_models(scenario, check);
   check_ego(scenario, check);
   check_candidates(scenario, check);
@@ -364,7 +385,6 @@ Status check_scenario(const Scenario& scenario) {
   check.within("horizon_s", scenario.horizon_s, ranges::horizon);
   check_harm(scenario.harm, "harm", check);
   check.within("grip", scenario.grip, ranges::grip);
-  return check.status;
 }
 
 }  // namespace crashrank::detail

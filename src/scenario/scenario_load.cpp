@@ -1,7 +1,11 @@
 #include "crashrank/scenario/scenario.hpp"
 
 #include "crashrank/internal/base/guarded.hpp"
+#include "crashrank/scenario/candidate.hpp"
 #include "scenario/candidate_table.hpp"
+#include "scenario/json_object.hpp"
+#include "scenario/motion_check.hpp"
+#include "scenario/scenario_check.hpp"
 #include "scenario/scenario_parse.hpp"
 #include "scenario/text_file.hpp"
 
@@ -86,24 +90,81 @@ Status read_table(const std::string& table, const std::string& file, const Scena
   return detail::add_candidate_table(*text, *path, listed);
 }
 
+/// Finds the mesh of each model that has one.
+void resolve_meshes(const std::string& file, const ScenarioPaths& paths, Scenario& scenario,
+                    detail::Refusals& refusals) {
+  for (ScenarioModel& model : scenario.models) {
+    if (model.mesh.empty()) continue;
+    Result<std::string> path = resolve(file, model.mesh, paths);
+    if (path) {
+      model.path = std::move(*path);
+      continue;
+    }
+    path.error().place = "models." + model.name + ".mesh";
+    refusals.add(path.error());
+  }
+}
+
 Result<Scenario> load(const std::string& text, const std::string& file,
                       const ScenarioPaths& paths) {
   Result<detail::ParsedScenario> parsed = detail::parse_scenario_text(text, file);
   if (!parsed) return parsed.error();
   Scenario& scenario = parsed->scenario;
-  for (ScenarioModel& model : scenario.models) {
-    Result<std::string> path = resolve(file, model.mesh, paths);
-    if (!path) {
-      path.error().place = "models." + model.name + ".mesh";
-      return path.error();
-    }
-    model.path = std::move(*path);
-  }
+  detail::Refusals refusals;
+  resolve_meshes(file, paths, scenario, refusals);
+  if (!refusals.ok()) return refusals.errors().front();
   if (!parsed->candidate_table.empty()) {
     const Status read = read_table(parsed->candidate_table, file, paths, scenario.listed);
     if (!read.ok()) return read.error();
   }
   return std::move(scenario);
+}
+
+/// Motions that no body has; those of candidates are seen with the ego's mesh.
+void check_motions(const Scenario& scenario, detail::Refusals& refusals) {
+  const auto check = [&](const ActorMotion& motion, const std::string& place) {
+    const Result<Motion> made = make_motion(motion, place);
+    const char* const fault = made ? detail::motion_fault(*made, scenario.horizon_s) : nullptr;
+    if (!made) refusals.add(made.error());
+    if (fault != nullptr) refusals.add(detail::refused_motion(place, "its motion", fault));
+  };
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    const std::string place = "actors[" + std::to_string(i) + "]";
+    const ScenarioActor& actor = scenario.actors[i];
+    if (actor.predictions.empty()) check(actor, place);
+    for (std::size_t k = 0; k < actor.predictions.size(); ++k) {
+      check(actor.predictions[k], place + ".predictions[" + std::to_string(k) + "]");
+    }
+  }
+  for (std::size_t i = 0; i < scenario.futures.size(); ++i) {
+    for (const FutureMotion& moved : scenario.futures[i].motions) {
+      check(moved.motion,
+            "futures[" + std::to_string(i) + "].motions." + scenario.actors[moved.actor].name);
+    }
+  }
+}
+
+CheckedScenario check(const std::string& text, const std::string& file,
+                      const ScenarioPaths& paths) {
+  detail::Refusals refusals(true);
+  detail::ParsedScenario parsed = detail::parse_scenario_text(text, file, refusals);
+  Scenario& scenario = parsed.scenario;
+  resolve_meshes(file, paths, scenario, refusals);
+  if (!parsed.candidate_table.empty()) {
+    const Status read = read_table(parsed.candidate_table, file, paths, scenario.listed);
+    if (!read) refusals.add(read.error());
+  }
+  // Without models every body would be refused once more.
+  if (!scenario.models.empty()) {
+    detail::check_scenario(scenario, refusals);
+    check_motions(scenario, refusals);
+  }
+  CheckedScenario checked;
+  for (const Error& error : refusals.errors()) {
+    checked.errors.push_back(detail::error_in_file(error.file.empty() ? file : error.file, error));
+  }
+  checked.scenario = std::move(scenario);
+  return checked;
 }
 
 Result<Scenario> read_and_load(const std::string& file, const ScenarioPaths& paths) {
@@ -123,6 +184,14 @@ Result<std::string> resolve_mesh_path(const std::string& scenario_file, const st
 Result<Scenario> load_scenario(const std::string& text, const std::string& file,
                                const ScenarioPaths& paths) {
   return detail::guarded([&] { return load(text, file, paths); });
+}
+
+CheckedScenario check_scenario(const std::string& text, const std::string& file,
+                               const ScenarioPaths& paths) {
+  const Result<CheckedScenario> checked =
+      detail::guarded([&]() -> Result<CheckedScenario> { return check(text, file, paths); });
+  if (checked) return *checked;
+  return {{}, {checked.error()}};
 }
 
 Result<Scenario> load_scenario_file(const std::string& file, const ScenarioPaths& paths) {

@@ -3,6 +3,7 @@
 #include "crashrank/internal/base/guarded.hpp"
 #include "crashrank/model/make_model.hpp"
 #include "crashrank/model/model.hpp"
+#include "crashrank/vehicle/box_body.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 #include "scenario/key_ranges.hpp"
 
@@ -97,14 +98,34 @@ Result<LoadedScenarioModel> load_mesh(const ScenarioModel& wanted,
   return read;
 }
 
+Result<LoadedScenarioModel> make_box(const ScenarioModel& wanted,
+                                     const ScenarioModelOptions& options) {
+  if (!wanted.path.empty()) {
+    return make_error(ErrorCode::bad_input, "has a box and a mesh", "keep one of them");
+  }
+  Result<TriangleMesh> mesh = make_box_body(wanted.kind, *wanted.box_m);
+  if (!mesh) return mesh.error();
+  if (Status moved = transform_mesh(*mesh, wanted.transform); !moved) return moved.error();
+  Result<Model> model = make_model(std::move(*mesh), options.build);
+  if (!model) return model.error();
+  LoadedScenarioModel made;
+  made.model = std::move(*model);
+  return made;
+}
+
 }  // namespace
 
 Result<LoadedScenarioModel> load_scenario_model(const ScenarioModel& wanted,
                                                 const ScenarioModelOptions& options) {
   return detail::guarded([&]() -> Result<LoadedScenarioModel> {
+    if (wanted.box_m) {
+      Result<LoadedScenarioModel> made = make_box(wanted, options);
+      if (!made) made.error().place = "models." + wanted.name + ".box";
+      return made;
+    }
     if (wanted.path.empty()) {
       return make_error(ErrorCode::usage, "model '" + wanted.name + "' names no mesh file",
-                        "set its path, or make its model from arrays");
+                        "set its path or its box, or make its model from arrays");
     }
     Result<LoadedScenarioModel> read =
         is_model_file(wanted.path) ? load_compiled(wanted) : load_mesh(wanted, options);

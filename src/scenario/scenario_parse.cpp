@@ -21,6 +21,8 @@ namespace crashrank {
 namespace {
 
 using detail::JsonObject;
+using detail::NumberRange;
+using detail::Refusals;
 using namespace detail::ranges;
 using nlohmann::json;
 
@@ -29,14 +31,14 @@ BodyKind read_kind(const JsonObject& object) {
       BodyKind::car,        BodyKind::truck,   BodyKind::bus,
       BodyKind::motorcycle, BodyKind::bicycle, BodyKind::pedestrian,
       BodyKind::barrier,    BodyKind::pole,    BodyKind::building};
-  object.require("kind");
   const std::string text = object.text("kind", limits::name_characters);
   std::string known;
   for (const BodyKind kind : kinds) {
     if (text == body_kind_name(kind)) return kind;
     known += (known.empty() ? "" : ", ") + std::string(body_kind_name(kind));
   }
-  object.refuse("kind", "'" + text + "' is not a kind of body", "choose one of " + known);
+  object.refuse("kind", object.has("kind") ? "'" + text + "' is not a kind of body" : "is missing",
+                "choose one of " + known);
   return BodyKind::car;
 }
 
@@ -58,13 +60,14 @@ Axis read_axis(const JsonObject& object, const char* key, Axis otherwise) {
 
 bool same_line(Axis a, Axis b) { return static_cast<int>(a) / 2 == static_cast<int>(b) / 2; }
 
-std::optional<Eigen::Vector3d> read_point(const JsonObject& object, const char* key) {
+std::optional<Eigen::Vector3d> read_point(const JsonObject& object, const char* key,
+                                          NumberRange range = position) {
   const json* array = object.array(key, 3, 3);
   if (array == nullptr) return std::nullopt;
   Eigen::Vector3d point;
   for (std::size_t i = 0; i < 3; ++i) {
     point[static_cast<Eigen::Index>(i)] = detail::checked_number(
-        (*array)[i], object.path_of(indexed(key, i).c_str()), position, object.status(), 0.0);
+        (*array)[i], object.path_of(indexed(key, i).c_str()), range, object.refusals(), 0.0);
   }
   return point;
 }
@@ -80,7 +83,7 @@ std::optional<Surface> read_surface(const JsonObject& object) {
 
 std::optional<Honeycomb> read_honeycomb(const JsonObject& parent) {
   if (!parent.has("honeycomb")) return std::nullopt;
-  const JsonObject object(parent.at("honeycomb"), parent.path_of("honeycomb"), parent.status(),
+  const JsonObject object(parent.at("honeycomb"), parent.path_of("honeycomb"), parent.refusals(),
                           {"pressure_pa", "depth_m", "low_m", "high_m"});
   for (const char* const key : {"pressure_pa", "depth_m", "high_m"}) object.require(key);
   Honeycomb honeycomb;
@@ -94,16 +97,34 @@ std::optional<Honeycomb> read_honeycomb(const JsonObject& parent) {
   return honeycomb;
 }
 
+/// A mesh, or length, width and height of the body's box in its place.
+void read_shape(const JsonObject& object, ScenarioModel& model) {
+  if (!object.has("box")) {
+    if (!object.has("mesh")) {
+      object.refuse("mesh", "is missing",
+                    "name a mesh file, or give box: [length, width, height] in m");
+    }
+    model.mesh = object.name("mesh", limits::path_characters);
+    return;
+  }
+  for (const char* const key : {"mesh", "scale", "up", "forward"}) {
+    if (object.has(key)) {
+      object.refuse(key, "is given together with box",
+                    "keep one of them; a box is in metres, x forward, z up");
+    }
+  }
+  model.box_m = read_point(object, "box", box_side);
+}
+
 ScenarioModel read_model(const json& value, const std::string& name, const std::string& path,
-                         Status& status) {
+                         Refusals& refusals) {
   const JsonObject object(
-      value, path, status,
-      {"mesh", "kind", "mass_kg", "scale", "up", "forward", "origin_m", "center_of_mass_m",
-       "yaw_inertia_kgm2", "stiffness", "surface", "honeycomb"});
+      value, path, refusals,
+      {"mesh", "box", "kind", "mass_kg", "scale", "up", "forward", "origin_m", "center_of_mass_m",
+       "yaw_inertia_kgm2", "stiffness", "surface", "honeycomb", "note"});
   ScenarioModel model;
   model.name = name;
-  object.require("mesh");
-  model.mesh = object.name("mesh", limits::path_characters);
+  read_shape(object, model);
   model.kind = read_kind(object);
   if (object.has("mass_kg") && !object.at("mass_kg").is_null()) {
     model.mass_kg = object.optional_number("mass_kg", mass);
@@ -124,10 +145,10 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
 }
 
 ScenarioEgo read_ego(const JsonObject& root, const std::vector<ScenarioModel>& models) {
-  const JsonObject object(root.at("ego"), "ego", root.status(),
+  const JsonObject object(root.at("ego"), "ego", root.refusals(),
                           {"model", "pose", "speed_mps", "yaw_rate_dps", "wheelbase_m",
                            "max_acceleration_mps2", "max_deceleration_mps2", "max_steering_deg",
-                           "max_steering_rate_dps", "occupants", "uncertainty"});
+                           "max_steering_rate_dps", "occupants", "uncertainty", "note"});
   detail::require_version_2(root, object,
                             {"max_deceleration_mps2", "max_steering_rate_dps", "uncertainty"});
   ScenarioEgo ego;
@@ -149,8 +170,8 @@ ScenarioEgo read_ego(const JsonObject& root, const std::vector<ScenarioModel>& m
   return ego;
 }
 
-ListedCandidate read_candidate(const json& value, const std::string& path, Status& status) {
-  const JsonObject object(value, path, status,
+ListedCandidate read_candidate(const json& value, const std::string& path, Refusals& refusals) {
+  const JsonObject object(value, path, refusals,
                           {"name", "acceleration_mps2", "steering_deg", "yaw_rate_dps", "poses"});
   ListedCandidate candidate;
   object.require("name");
@@ -176,13 +197,13 @@ ListedCandidate read_candidate(const json& value, const std::string& path, Statu
 void read_candidates(const JsonObject& root, detail::ParsedScenario& parsed) {
   Scenario& scenario = parsed.scenario;
   if (!root.has("candidates")) return;
-  Status& status = root.status();
-  const JsonObject object(root.at("candidates"), "candidates", status,
-                          {"listed", "table", "grid", "add_straight_braking"});
+  Refusals& refusals = root.refusals();
+  const JsonObject object(root.at("candidates"), "candidates", refusals,
+                          {"listed", "table", "grid", "add_straight_braking", "note"});
   if (const json* listed = object.array("listed", 0, limits::listed_candidates)) {
-    for (std::size_t i = 0; i < listed->size() && status.ok(); ++i) {
+    for (std::size_t i = 0; i < listed->size() && refusals.goes_on(); ++i) {
       const std::string path = object.path_of(indexed("listed", i).c_str());
-      scenario.listed.push_back(read_candidate((*listed)[i], path, status));
+      scenario.listed.push_back(read_candidate((*listed)[i], path, refusals));
     }
   }
   if (object.has("table")) {
@@ -193,7 +214,7 @@ void read_candidates(const JsonObject& root, detail::ParsedScenario& parsed) {
   if (object.has("grid") && object.at("grid").is_boolean()) {
     scenario.grid = object.flag("grid", true) ? std::optional(CandidateGrid{}) : std::nullopt;
   } else if (object.has("grid")) {
-    const JsonObject grid(object.at("grid"), object.path_of("grid"), status,
+    const JsonObject grid(object.at("grid"), object.path_of("grid"), refusals,
                           {"accelerations", "steerings"});
     scenario.grid = CandidateGrid{grid.count("accelerations", grid_side, 15),
                                   grid.count("steerings", grid_side, 15)};
@@ -207,16 +228,16 @@ void read_models(const JsonObject& root, Scenario& scenario) {
   const json& models = root.at("models");
   if (!models.is_object() || models.empty() || models.size() > limits::models) {
     detail::refuse_at(
-        root.status(), "models", "is not an object of 1 to 256 models",
+        root.refusals(), "models", "is not an object of 1 to 256 models",
         "write it as {\"name\": {...}}",
         models.is_object() && !models.empty() ? ErrorCode::limit_exceeded : ErrorCode::bad_input);
     return;
   }
   for (const auto& [name, value] : models.items()) {
     const std::string path = "models." + name;
-    detail::check_name(name, "models", limits::name_characters, root.status());
-    if (!root.status().ok()) return;
-    scenario.models.push_back(read_model(value, name, path, root.status()));
+    detail::check_name(name, "models", limits::name_characters, root.refusals());
+    if (!root.refusals().goes_on()) return;
+    scenario.models.push_back(read_model(value, name, path, root.refusals()));
   }
 }
 
@@ -232,13 +253,13 @@ std::vector<std::string> find_keys_without_effect(const json& document) {
   return keys;
 }
 
-detail::ParsedScenario read_scenario(const json& document, Status& status) {
+detail::ParsedScenario read_scenario(const json& document, Refusals& refusals) {
   detail::ParsedScenario parsed;
   Scenario& scenario = parsed.scenario;
-  const JsonObject root(
-      document, {}, status,
-      {"$schema", "scenario_version", "name", "description", "models", "ego", "candidates",
-       "actors", "horizon_s", "crush", "measure", "harm", "grip", "futures", "risk", "road"});
+  const JsonObject root(document, {}, refusals,
+                        {"$schema", "scenario_version", "name", "description", "models", "ego",
+                         "candidates", "actors", "horizon_s", "crush", "measure", "harm", "grip",
+                         "futures", "risk", "road", "note"});
   root.require("scenario_version");
   root.text("$schema", limits::path_characters);
   if (root.has("scenario_version") && root.at("scenario_version") != 1 &&
@@ -250,8 +271,8 @@ detail::ParsedScenario read_scenario(const json& document, Status& status) {
   scenario.description = root.text("description", limits::description_characters);
   read_models(root, scenario);
   root.require("ego");
-  if (!status.ok()) return parsed;
-  scenario.ego = read_ego(root, scenario.models);
+  if (!refusals.goes_on()) return parsed;
+  if (root.has("ego")) scenario.ego = read_ego(root, scenario.models);
   read_candidates(root, parsed);
   detail::read_actors(root, scenario);
   detail::read_futures(root, scenario);
@@ -268,13 +289,13 @@ detail::ParsedScenario read_scenario(const json& document, Status& status) {
     }
   }
   if (root.has("harm")) {
-    const JsonObject harm(root.at("harm"), "harm", status,
+    const JsonObject harm(root.at("harm"), "harm", refusals,
                           {"risk_model", "weights", "people", "pedestrian", "friction", "ranges",
                            "after_contact", "after_impact", "least_struck_share"});
     detail::read_harm(harm, scenario.harm);
   }
   scenario.grip = root.number("grip", grip, 0.8);
-  if (status.ok()) scenario.keys_without_effect = find_keys_without_effect(document);
+  if (refusals.ok()) scenario.keys_without_effect = find_keys_without_effect(document);
   return parsed;
 }
 
@@ -300,27 +321,29 @@ void normalise(Scenario& scenario) {
   normalise(scenario.futures, "futures", scenario);
 }
 
-Result<detail::ParsedScenario> parse(const std::string& text, const std::string& file) {
+detail::ParsedScenario parse(const std::string& text, const std::string& file, Refusals& refusals) {
   if (text.size() > limits::file_bytes) {
-    return Error{
-        ErrorCode::limit_exceeded, file, {}, "is larger than 16 MiB", "split the scenario"};
+    refusals.add(
+        {ErrorCode::limit_exceeded, {}, {}, "is larger than 16 MiB", "split the scenario"});
+    return {};
   }
   Result<json> document = detail::parse_json(text);
-  if (!document) return detail::error_in_file(file, document.error());
-  Status status = Success{};
-  detail::ParsedScenario parsed = read_scenario(*document, status);
+  if (!document) {
+    refusals.add(document.error());
+    return {};
+  }
+  detail::ParsedScenario parsed = read_scenario(*document, refusals);
   Scenario& scenario = parsed.scenario;
-  if (status.ok()) normalise(scenario);
-  if (status.ok()) status = detail::check_names(scenario);
-  if (status.ok()) status = detail::check_probabilities(scenario);
-  if (status.ok()) status = detail::check_road(scenario.road);
-  if (!status.ok()) return detail::error_in_file(file, status.error());
+  if (refusals.goes_on()) normalise(scenario);
+  if (refusals.goes_on()) detail::check_names(scenario, refusals);
+  if (refusals.goes_on()) detail::check_probabilities(scenario, refusals);
+  if (refusals.goes_on()) detail::check_road(scenario.road, refusals);
   if (scenario.name.empty()) scenario.name = std::filesystem::path(file).stem().string();
   return parsed;
 }
 
 Result<Scenario> parse_alone(const std::string& text, const std::string& file) {
-  Result<detail::ParsedScenario> parsed = parse(text, file);
+  Result<detail::ParsedScenario> parsed = detail::parse_scenario_text(text, file);
   if (!parsed) return parsed.error();
   if (!parsed->candidate_table.empty()) {
     return detail::error_in_file(file, {ErrorCode::bad_input,
@@ -340,7 +363,15 @@ Result<Scenario> parse_scenario(const std::string& text, const std::string& file
 
 Result<detail::ParsedScenario> detail::parse_scenario_text(const std::string& text,
                                                            const std::string& file) {
-  return parse(text, file);
+  Refusals refusals;
+  ParsedScenario parsed = parse(text, file, refusals);
+  if (!refusals.ok()) return error_in_file(file, refusals.errors().front());
+  return parsed;
+}
+
+detail::ParsedScenario detail::parse_scenario_text(const std::string& text, const std::string& file,
+                                                   Refusals& refusals) {
+  return parse(text, file, refusals);
 }
 
 }  // namespace crashrank

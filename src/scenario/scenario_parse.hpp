@@ -2,6 +2,7 @@
 
 #include "crashrank/base/result.hpp"
 #include "crashrank/scenario/scenario.hpp"
+#include "scenario/refusals.hpp"
 
 #include <string>
 
@@ -15,5 +16,9 @@ struct ParsedScenario {
 
 /// `parse_scenario` of a text that may name a table of candidates.
 Result<ParsedScenario> parse_scenario_text(const std::string& text, const std::string& file);
+
+/// The same as far as it can be read; errors are without the file.
+ParsedScenario parse_scenario_text(const std::string& text, const std::string& file,
+                                   Refusals& refusals);
 
 }  // namespace crashrank::detail

@@ -152,6 +152,13 @@ class Answers(unittest.TestCase):
                 for c in entry["contacts"]:
                     self.assertEqual("ego" in c["bodies"], "other" in c)
 
+    def test_check(self):
+        self.assertEqual(self.check("check", "scenario.json")["errors"], [])
+        wrong = {**SCENARIO, "grip": 9, "horizon": 3}
+        (pathlib.Path(self.folder.name) / "wrong.json").write_text(json.dumps(wrong),
+                                                                   encoding="utf-8")
+        self.assertEqual(len(self.check("check", "wrong.json", codes=(3,))["errors"]), 2)
+
     def test_validate(self):
         car = str(DATA / "models" / "sedan.obj")
         self.check("validate", "rows.csv", "--boxes", "--car", car)

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fuzz {
 namespace {
@@ -167,7 +168,7 @@ std::vector<Bytes> seeds() {
   std::sort(files.begin(), files.end());
   std::vector<Bytes> made;
   for (const fs::path& file : files) made.push_back(dense(contents(file)));
-  made.push_back(bytes_of(R"({"scenario_version":1,"models":{"a":{"mesh":"a.obj","kind":"car"}},)"
+  made.push_back(bytes_of(R"({"scenario_version":1,"models":{"a":{"box":[4,2,1],"kind":"car"}},)"
                           R"("ego":{"model":"a","speed_mps":9}})"));
   return made;
 }
@@ -219,9 +220,12 @@ void mutate(Bytes& bytes, std::mt19937_64& random) {
 }
 
 bool take(const Bytes& bytes) {
-  const Result<Scenario> scenario =
-      parse_scenario(std::string(bytes.begin(), bytes.end()), "fuzz.json");
+  const std::string text(bytes.begin(), bytes.end());
+  const Result<Scenario> scenario = parse_scenario(text, "fuzz.json");
   if (!scenario) {
+    const std::vector<Error> all = check_scenario(text, "fuzz.json").errors;
+    require(!all.empty() && all.size() <= 100, "a check finds less than the parser");
+    for (const Error& each : all) require(plain(each.message()), "an error is not plain");
     const Error& error = scenario.error();
     require(error.code == ErrorCode::bad_input || error.code == ErrorCode::limit_exceeded,
             "an error of another kind");

@@ -8,8 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crashrank {
@@ -58,6 +60,30 @@ TEST(ScenarioModels, MeshesAndModelFilesAreReadInOrderAndTellTheirMass) {
   EXPECT_FALSE(scenario.models[0].mass_kg.has_value());
   EXPECT_EQ(scenario.models[1].mass_kg, 3000.0);
   EXPECT_EQ(scenario.models[2].mass_kg, 1200.0);
+}
+
+TEST(ScenarioModels, ABoxBecomesTheBodyOfItsKind) {
+  Scenario scenario;
+  ScenarioModel model;
+  model.name = "seen";
+  model.kind = BodyKind::truck;
+  model.box_m = Eigen::Vector3d(8.0, 2.5, 3.5);
+  model.transform.origin_m.x() = 2.0;  // from the rear axle to the middle
+  scenario.models = {model};
+  const Result<std::vector<Model>> models = load_scenario_models(scenario);
+  ASSERT_TRUE(models.ok()) << models.error().message();
+  const Box box = models->front().mesh.bounds();
+  EXPECT_TRUE(box.extent().isApprox(Eigen::Vector3f(8.0F, 2.5F, 3.5F)));
+  EXPECT_TRUE(box.center().isApprox(Eigen::Vector3f(0.0F, 0.0F, 1.75F)));
+  for (const auto& [side, path] : {std::pair(std::nan(""), ""), std::pair(2.5, "truck.obj")}) {
+    scenario.models[0].box_m->y() = side;
+    scenario.models[0].path = path;
+    const Result<std::vector<Model>> refused = load_scenario_models(scenario);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, ErrorCode::bad_input);
+    EXPECT_EQ(refused.error().place, "models.seen.box");
+    EXPECT_FALSE(refused.error().remedy.empty());
+  }
 }
 
 TEST(ScenarioModels, EachStatedQuantityIsTheFilesUnlessTheScenarioStatesIt) {

@@ -369,5 +369,61 @@ TEST(Measure, NamesReadBack) {
   EXPECT_EQ(measure_from_name("harmless").error().code, ErrorCode::usage);
 }
 
+TEST(Scenario, ACheckFindsEveryErrorOnce) {
+  json document = sample();
+  EXPECT_TRUE(parse_scenario(document.dump(), "f.json").ok());
+  document["horizon"] = 3;
+  document["grip"] = "high";
+  document["models"]["car"].erase("kind");
+  document["models"]["wall"]["mesh"] = "/elsewhere/wall.obj";
+  document["ego"].erase("speed_mps");
+  document["candidates"]["listed"][1]["steering_deg"] = 500;
+  document["actors"][0]["pose"] = 3;
+  document["actors"][1]["name"] = document["actors"][0]["name"];
+  document["actors"][2]["model"] = "van";
+  const CheckedScenario checked = check_scenario(document.dump(), "f.json");
+  std::vector<std::string> places;
+  for (const Error& error : checked.errors) {
+    places.push_back(error.place);
+    EXPECT_NE(error.file, "");
+    EXPECT_FALSE(error.reason.empty() || error.remedy.empty()) << error.message();
+  }
+  const std::vector<std::string> expected{
+      "horizon",         "models.car.kind", "ego.speed_mps", "candidates.listed[1].steering_deg",
+      "actors[0].pose",  "actors[2].model", "grip",          "actors[1].name",
+      "models.wall.mesh"};
+  EXPECT_EQ(places, expected);
+}
+
+TEST(Scenario, ACheckFindsMotionsThatNoBodyHas) {
+  json document = sample();
+  document["models"]["car"] = {{"box", {4.5, 1.8, 1.5}}, {"kind", "car"}};
+  document["models"]["wall"] = {{"box", {4, 0.6, 0.8}}, {"kind", "barrier"}};
+  EXPECT_TRUE(check_scenario(document.dump(), "f.json").errors.empty());
+  for (std::size_t i = 0; i < 2; ++i) {
+    document["actors"][i] = {{"name", std::to_string(i)},
+                             {"model", "car"},
+                             {"poses", {{{"t_s", 0}}, {{"t_s", 1}, {"x_m", 400}}}}};
+  }
+  const CheckedScenario checked = check_scenario(document.dump(), "f.json");
+  ASSERT_EQ(checked.errors.size(), 2U);
+  EXPECT_EQ(checked.errors[1].place, "actors[1]");
+}
+
+TEST(Scenario, ACheckOfAnyPartOfADocumentEnds) {
+  const json whole = json::parse(read(CRASHRANK_SCENARIO_DATA "/all_numbers.json"));
+  const json flat = whole.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    for (json::json_pointer place(pointer); !place.empty(); place = place.parent_pointer()) {
+      for (const json& other : {json(), json(7), json("x"), json::array(), json::object()}) {
+        json changed = whole;
+        changed[place] = other;
+        check_scenario(changed.dump(), "f.json");
+      }
+    }
+  }
+  EXPECT_EQ(check_scenario("{", "f.json").errors.size(), 1U);
+}
+
 }  // namespace
 }  // namespace crashrank

@@ -46,9 +46,9 @@ CRASHRANK_API std::string ranking_text(const Scenario& scenario, View<const Mode
 /// Reasons to doubt places of a valid answer, one sentence each, names not escaped: contacts faster
 /// than the crash model reaches, more contacts than are simulated, bodies that overlap at the
 /// start, listed manoeuvres beyond the grip of the tyres, timed poses that end while their body
-/// moves or begin at another speed than the ego's, meshes that seem turned or have a size or mass
-/// that no body of their kind has, bodies that float, keys of the scenario that are without effect.
-/// At most the squared number of bodies.
+/// moves or begin at another speed than the ego's, bodies known by their boxes alone, meshes that
+/// seem turned or have a size or mass that no body of their kind has, bodies that float, keys of
+/// the scenario that are without effect. At most the squared number of bodies.
 CRASHRANK_API std::vector<std::string> ranking_doubts(const Scenario& scenario,
                                                       View<const Model> models,
                                                       const RankResult& result);
@@ -59,6 +59,11 @@ CRASHRANK_API std::string why_partial(const RankResult& result, bool bounded);
 
 /// Progress of an interrupted ranking, as a warning: the number of candidates with a score.
 CRASHRANK_API std::string ranking_progress(const RankResult& result);
+
+/// An SVG picture of a scenario from above at time 0, with all bodies, the ways of the actors (in
+/// all their predictions) until the horizon, and the road. A model for each of the scenario's, as
+/// for `rank`.
+CRASHRANK_API std::string scenario_plan(const Scenario& scenario, View<const Model> models);
 
 /// What the page shows.
 struct HtmlReportOptions {

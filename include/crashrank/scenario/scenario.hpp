@@ -9,6 +9,7 @@
 #include "crashrank/model/model.hpp"
 #include "crashrank/motion/motion.hpp"
 #include "crashrank/scenario/harm_options.hpp"
+#include "crashrank/vehicle/box_body.hpp"
 #include "crashrank/vehicle/vehicle.hpp"
 
 #include <Eigen/Core>
@@ -44,6 +45,9 @@ struct ScenarioModel {
   std::string mesh;               ///< as the scenario writes it
   std::string path;               ///< resolved path that `load_scenario` allowed, else empty
   BodyKind kind = BodyKind::car;  ///< what it is
+  /// Length, width and height of its box, m, in place of a mesh: its shape is `make_box_body`, its
+  /// origin on the ground below the rear axle (see `box_axles`), moved by `transform.origin_m`.
+  std::optional<Eigen::Vector3d> box_m;
   /// Mass with all aboard, kg; absent: as its model file states, else guessed from kind and size.
   std::optional<double> mass_kg;
   ImportTransform transform;  ///< how its mesh is read
@@ -88,7 +92,7 @@ struct ScenarioEgo {
   Pose pose;                           ///< body to world at time 0
   double speed_mps = 0.0;              ///< along its forward axis; negative when reversing
   double yaw_rate_radps = 0.0;         ///< left positive
-  std::optional<double> wheelbase_m;   ///< absent: 0.6 of the mesh's length
+  std::optional<double> wheelbase_m;   ///< absent: `box_axles` of a box, 0.6 of a mesh's length
   double max_acceleration_mps2 = 3.0;  ///< of the engine, m/s²
   /// Of the brakes, m/s²; absent: they hold as much as the tyres.
   std::optional<double> max_deceleration_mps2;
@@ -238,6 +242,7 @@ inline constexpr double max_mass_kg = 1e6;              ///< kg
 inline constexpr double yaw_inertia_kgm2 = 1e9;         ///< most, kg·m²; above 0
 inline constexpr double min_stiffness = 0.01;           ///< least factor
 inline constexpr double max_stiffness = 100.0;          ///< most
+inline constexpr double box_m = max_box_side_m;         ///< most side of a box, m; above 0
 inline constexpr double honeycomb_pa = 1e9;             ///< most pressure, Pa; above 0
 inline constexpr double honeycomb_m = 100.0;            ///< most depth or height, m
 inline constexpr double min_scale = 1e-6;               ///< metres per file unit
@@ -277,6 +282,17 @@ CRASHRANK_API Result<std::string> resolve_mesh_path(const std::string& scenario_
 /// Reads no mesh: the caller does, with the importer or from compiled model files, in the order of
 /// `Scenario::models`. Errors also: not_found, and those of the table with its line.
 CRASHRANK_API Result<Scenario> load_scenario(const std::string& text, const std::string& file,
+                                             const ScenarioPaths& paths = {});
+
+/// A scenario as far as its text could be read, and what is wrong with it.
+struct CheckedScenario {
+  Scenario scenario;  ///< complete if there are no errors
+  /// In the order of the text, at most 100. Of errors in one another's keys the first alone.
+  std::vector<Error> errors;
+};
+
+/// `load_scenario`, and the checks of `rank` that need no mesh, that go on after an error.
+CRASHRANK_API CheckedScenario check_scenario(const std::string& text, const std::string& file,
                                              const ScenarioPaths& paths = {});
 
 /// Reads the file, at most `scenario_limits::file_bytes`, and loads it. Errors also: not_found.

@@ -26,12 +26,12 @@ struct LoadedScenarioModel {
   std::vector<std::string> warnings;  ///< of a mesh, one sentence each
 };
 
-/// Reads one model: a mesh as `import_mesh` does and builds its trees, or a model file as
-/// `load_model` does. In crashrank::import. Blocks; safe from any thread.
-/// Errors: those of the two, naming file and model; bad_input for a model file that the scenario
-/// wants scaled, turned or moved, or whose mass or yaw inertia is outside `scenario_limits` where
-/// the scenario gives none, or whose yaw inertia the mass that the scenario gives cannot have;
-/// usage for a model without a path.
+/// Reads one model: a mesh as `import_mesh` does and builds its trees, a model file as
+/// `load_model` does, or makes the body of a box. In crashrank::import. Blocks; safe from any
+/// thread. Errors: those of the two, naming file and model; bad_input for a model file that the
+/// scenario wants scaled, turned or moved, or whose mass or yaw inertia is outside
+/// `scenario_limits` where the scenario gives none, or whose yaw inertia the mass that the scenario
+/// gives cannot have; usage for a model without path and box.
 CRASHRANK_API Result<LoadedScenarioModel> load_scenario_model(
     const ScenarioModel& wanted, const ScenarioModelOptions& options = {});
 
