@@ -14,6 +14,8 @@ using Eigen::Vector3d;
 constexpr auto no_pair = static_cast<std::uint32_t>(-1);
 /// A free body is at rest if the speed of no outline point exceeds this, m/s.
 constexpr double rest_mps = 0.02;
+/// Bodies that press on each other are at rest if none in the scene is faster than this, m/s.
+constexpr double still_mps = 0.001;
 
 double speed_bound(const PlanarBody& body, double radius_m) {
   return plane_length(body.vx, body.vy) + radius_m * std::abs(body.spin);
@@ -263,10 +265,14 @@ void SceneRun::open_contacts() {
 /// when no body moves or its time is over.
 void SceneRun::stop_resting_bodies() {
   bool all_rest = true;
+  const bool all_still = std::all_of(chain_.begin(), chain_.end(), [&](std::uint32_t i) {
+    return speed_bound(motion_of(i), members_[i].radius_m) < still_mps;
+  });
   for (const std::uint32_t i : chain_) {
     Member& m = members_[i];
     PlanarBody& b = motion_of(i);
-    if (m.state == State::free && !m.pressed && speed_bound(b, m.radius_m) < rest_mps) {
+    const bool is_slow = speed_bound(b, m.radius_m) < rest_mps && (all_still || !m.pressed);
+    if (m.state == State::free && is_slow) {
       b.vx = b.vy = b.spin = 0.0;
       m.state = State::rests;
     }
