@@ -35,8 +35,8 @@ struct HarmRanges {
   double least_strength = 0.7;  ///< stiffness, times the default strength of all bodies
   double most_strength = 1.4;   ///< times the default
   /// Times the restitution of the contact law, which is never more than 0.5. The law has 0.26
-  /// to 0.41 in fresh structure; measured are 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s, about 0.1 at
-  /// medium and high speed (SAE 931842): factors of 0.5 to 1.3.
+  /// to 0.41 in fresh structure; measured are 0.2 to 0.4 at a delta-v of 0.9 to 2.2 m/s, about 0.1
+  /// at medium and high speed (SAE 931842): factors of 0.5 to 1.3.
   double least_restitution = 0.5;
   double most_restitution = 1.5;  ///< times the law's
   /// Times the speed at which the risk curves are read, for the width of the curves themselves; of
