@@ -127,8 +127,12 @@ int run(const CheckArguments& options) {
     if (code == exit_done) code = failed;
   }
   if (code == exit_done && !options.json) {
-    print(fmt::format("{}: no errors, {} warnings; {} candidates, {} actors\n", file,
-                      found.warnings.size(), found.candidates, scenario.actors.size()));
+    const auto counted = [](std::size_t count, const char* what) {
+      return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+    };
+    print(fmt::format(
+        "{}: no errors, {}; {}, {}\n", file, counted(found.warnings.size(), "warning"),
+        counted(found.candidates, "candidate"), counted(scenario.actors.size(), "actor")));
   } else if (code != exit_done && !options.plan.empty()) {
     say("no plan is drawn of a scenario with errors");
   }
