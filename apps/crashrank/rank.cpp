@@ -40,13 +40,14 @@ struct RankArguments {
   std::string risk_model;
   std::string risk;
   std::string infeasible = "demote";
+  std::string order = "score";
   std::size_t futures = RankOptions{}.sampled_futures;
   std::string profile;
   std::string damage_folder;
   std::size_t damage_top = 5;
   std::string report;
   std::size_t top = 20;
-  unsigned workers = 1;
+  unsigned workers = std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
   std::string policy = "late-match";
   std::string depth = "auto";
   bool json = false;
@@ -55,7 +56,6 @@ struct RankArguments {
   std::uint64_t work_budget = std::numeric_limits<std::uint64_t>::max();
   bool first_place = false;
   bool engine_given = false;  ///< --policy or --depth
-  bool workers_given = false;
   TreeArguments tree;
 
   bool bounded() const {
@@ -216,6 +216,9 @@ int run(const RankArguments& options) {
   const Result<Infeasible> infeasible = infeasible_from_name(options.infeasible);
   if (!infeasible) return fail(infeasible.error());
   how.infeasible = *infeasible;
+  const Result<RankOrder> order = order_from_name(options.order);
+  if (!order) return fail(order.error());
+  how.order = *order;
   how.records_motion = options.motion;
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return fail(build.error());
@@ -233,8 +236,7 @@ int run(const RankArguments& options) {
     return fail(sound.error());
   }
   DamageOptions damage{options.damage_folder, options.damage_top, inputs, options.report};
-  damage.workers =
-      options.workers_given ? options.workers : std::max(1U, std::thread::hardware_concurrency());
+  damage.workers = options.workers;
   if (!options.damage_folder.empty()) {
     if (const Status sound = check_damage_folder(damage); !sound) return fail(sound.error());
   }
@@ -341,6 +343,10 @@ void add_rank(CLI::App& app, Action& action) {
       "What becomes of manoeuvres beyond grip, engine, brakes or steering: behind all others, "
       "left out, or ranked like all others",
       {"demote", "drop", "keep"});
+  add_choice(*command, "--order", options->order,
+             "What orders the candidates: the score, or the upper end of its interval; upper needs "
+             "an answer without a deadline or budget",
+             {"score", "upper"});
   add_file(*command, "--profile", options->profile,
            "Weights of harm and ranges of uncertain parameters: a file after "
            "data/profile.schema.json, which overrides the scenario");
@@ -350,11 +356,9 @@ void add_rank(CLI::App& app, Action& action) {
       "With --json and without a deadline: the simulated motion of every body that is "
       "hit, in the likeliest future");
   add_count(*command, "--top", options->top, "Candidates in the table, 0 for all", 0, 1'000'000);
-  const CLI::Option* const workers =
-      add_count(*command, "--workers", options->workers,
-                "Threads that share the work; the answer is the same. --damage uses all processors "
-                "by default",
-                1, max_workers);
+  add_count(*command, "--workers", options->workers,
+            "Threads that share the work; the answer is the same", 1, max_workers,
+            "as many as there are processors");
   command
       ->add_option(
           "--deadline-ms", options->deadline_ms,
@@ -396,9 +400,8 @@ void add_rank(CLI::App& app, Action& action) {
   add_allowed_folders(*command, options->allowed_folders);
   options->tree.add_to(*command);
   command->footer(rank_epilogue);
-  command->callback([options, policy, depth, workers, &action] {
+  command->callback([options, policy, depth, &action] {
     options->engine_given = policy->count() > 0 || depth->count() > 0;
-    options->workers_given = workers->count() > 0;
     action = [options] { return run(*options); };
   });
 }

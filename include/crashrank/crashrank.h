@@ -508,13 +508,21 @@ enum {
   CRASHRANK_INFEASIBLE_KEEP = 3     ///< they are ranked like all others
 };
 
+/// What orders the candidates.
+typedef int32_t crashrank_order;
+/// Values of crashrank_order.
+enum {
+  CRASHRANK_ORDER_SCORE = 1,  ///< the score
+  CRASHRANK_ORDER_UPPER = 2   ///< the upper end of its interval; crashrank_rank alone
+};
+
 /// How candidates are ranked; 0 is the default of every member.
 typedef struct crashrank_rank_options {
   size_t size;                ///< sizeof(crashrank_rank_options)
   crashrank_measure measure;  ///< 0: as the scenario says (a scenario made here: harm)
   uint32_t workers;           ///< threads that share the work, 64 at most; the answer is the same
   int32_t json;               ///< other than 0: crashrank_ranking_json has an answer
-  int32_t unused;             ///< not read
+  crashrank_order order;      ///< 0: CRASHRANK_ORDER_SCORE
   crashrank_infeasible infeasible;  ///< 0: CRASHRANK_INFEASIBLE_DEMOTE
   int64_t motion;                   ///< other than 0: crashrank_ranking_motion has motions
 } crashrank_rank_options;

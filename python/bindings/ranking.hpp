@@ -19,6 +19,7 @@ struct RankRequest {
   std::string measure;  ///< empty: the scenario's
   std::string risk;     ///< empty: the scenario's
   std::string infeasible = "demote";
+  std::string order = "score";
   std::string profile_file;  ///< empty: none
   unsigned workers = 1;
   std::size_t sampled_futures = RankOptions{}.sampled_futures;

@@ -75,7 +75,7 @@ class Ranker:
         allow: Iterable[object] = (),
     ) -> None:
         given = as_scenario(scenario, base, allow)
-        request = as_request(measure, workers, risk, infeasible, profile, futures)
+        request = as_request(measure, workers, risk, infeasible, "score", profile, futures)
         most = as_count(max_candidates, "max_candidates", 1, MAX_CANDIDATES)
         self._session = _core.make_session(given._situation, request, most)
         self._plans = self._session.plans()

@@ -129,6 +129,8 @@ class Ranking(Sequence[RankedCandidate]):
     stability: Record
     futures: Record
     infeasible: str
+    order: str
+    first_by: Record
     dropped: tuple[str, ...]
     complete: bool
     proved: bool
@@ -283,6 +285,7 @@ def rank(
     work_budget: int | None = None,
     first_place_only: bool = False,
     infeasible: str = "demote",
+    order: str = "score",
     profile: object = None,
     futures: int = 64,
     motion: bool = False,
@@ -320,6 +323,9 @@ def rank(
         End as soon as the first place is proved.
     infeasible : {'demote', 'drop', 'keep'}
         What becomes of manoeuvres beyond grip, engine, brakes or steering.
+    order : {'score', 'upper'}
+        What orders the candidates: the score, or the upper end of its interval. ``upper`` without
+        a budget only.
     profile : path, optional
         File of weights and ranges, over those of the scenario.
     futures : int
@@ -338,7 +344,7 @@ def rank(
     Ranking
     """
     given = as_scenario(scenario, base, allow)
-    request = as_request(measure, workers, risk, infeasible, profile, futures, motion)
+    request = as_request(measure, workers, risk, infeasible, order, profile, futures, motion)
     budget = as_budget(deadline_s, work_budget, first_place_only)
     if motion and (deadline_s is not None or work_budget is not None or first_place_only):
         raise usage(

@@ -45,12 +45,17 @@ template <> struct EnumInC<AfterContact> {
   static constexpr auto last = AfterContact::locks;
   static constexpr const char* name = "crashrank_after_contact";
 };
+template <> struct EnumInC<RankOrder> {
+  static constexpr auto last = RankOrder::upper;
+  static constexpr const char* name = "crashrank_order";
+};
 template <> struct EnumInC<Infeasible> {
   static constexpr auto last = Infeasible::keep;
   static constexpr const char* name = "crashrank_infeasible";
 };
 
 static_assert(to_c(EnumInC<Infeasible>::last) == CRASHRANK_INFEASIBLE_KEEP);
+static_assert(to_c(EnumInC<RankOrder>::last) == CRASHRANK_ORDER_UPPER);
 static_assert(to_c(EnumInC<BodyKind>::last) == CRASHRANK_KIND_BUILDING);
 static_assert(to_c(EnumInC<Surface>::last) == CRASHRANK_SURFACE_PERSON);
 static_assert(to_c(EnumInC<Measure>::last) == CRASHRANK_MEASURE_HARM);

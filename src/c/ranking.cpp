@@ -32,6 +32,12 @@ Result<RankOptions> to_options(const crashrank_rank_options& options) {
     if (!infeasible) return infeasible.error();
     made.infeasible = *infeasible;
   }
+  if (options.order != 0) {
+    const Result<RankOrder> order =
+        c::from_c<RankOrder>(options.order, "crashrank_rank_options.order");
+    if (!order) return order.error();
+    made.order = *order;
+  }
   made.records_motion = options.motion != 0;
   return made;
 }

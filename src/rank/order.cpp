@@ -7,11 +7,11 @@
 namespace crashrank {
 namespace {
 
-detail::OrderKey result_key(const CandidateResult& c, Infeasible infeasible) {
+detail::OrderKey result_key(const CandidateResult& c, const RankResult& of) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   detail::OrderKey key;
-  key.demoted = !c.feasible && infeasible != Infeasible::keep;
-  key.score = c.score.value_or(c.score_interval.highest);
+  key.demoted = !c.feasible && of.infeasible != Infeasible::keep;
+  key.score = detail::ordering_score(c, of.order);
   key.known = c.score.has_value();
   key.set_collision_probability(c.collision_probability);
   key.collides = c.collides;
@@ -33,6 +33,20 @@ std::size_t range_sample_count(const RankResult& result) noexcept {
   return static_cast<std::size_t>(
       std::count_if(result.samples.begin(), result.samples.end(),
                     [](const HarmSample& sample) { return !is_numerical(sample); }));
+}
+
+std::size_t first_by(const RankResult& result, RankOrder order) noexcept {
+  const std::vector<CandidateResult>& ranking = result.ranking;
+  std::size_t first = 0;
+  for (std::size_t row = 1; row < ranking.size(); ++row) {
+    const bool demoted =
+        !ranking[row].feasible && ranking[first].feasible && result.infeasible != Infeasible::keep;
+    if (!demoted && detail::ordering_score(ranking[row], order) <
+                        detail::ordering_score(ranking[first], order)) {
+      first = row;
+    }
+  }
+  return first;
 }
 
 std::vector<std::size_t> tied_with(const RankResult& result, std::size_t index) {
@@ -65,6 +79,18 @@ Result<Infeasible> infeasible_from_name(const std::string& name) {
                     "choose demote, drop or keep");
 }
 
+const char* order_name(RankOrder order) noexcept {
+  return order == RankOrder::upper ? "upper" : "score";
+}
+
+Result<RankOrder> order_from_name(const std::string& name) {
+  for (const RankOrder each : {RankOrder::score, RankOrder::upper}) {
+    if (name == order_name(each)) return each;
+  }
+  return make_error(ErrorCode::usage, "'" + name + "' is not an order of candidates",
+                    "choose score or upper");
+}
+
 const char* basis_name(RankBasis basis) noexcept {
   switch (basis) {
     case RankBasis::braking:
@@ -80,6 +106,11 @@ const char* basis_name(RankBasis basis) noexcept {
 }
 
 namespace detail {
+
+double ordering_score(const CandidateResult& candidate, RankOrder order) noexcept {
+  const double highest = candidate.score_interval.highest;
+  return order == RankOrder::upper ? highest : candidate.score.value_or(highest);
+}
 
 void OrderKey::set_collision_probability(double probability) noexcept {
   constexpr double per_step = 1e9;
@@ -129,10 +160,10 @@ void assign_places(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   for (std::size_t first = 0, end = 0; first < ranking.size(); first = end) {
     end = first + 1;
-    const OrderKey key = result_key(ranking[first], result.infeasible);
+    const OrderKey key = result_key(ranking[first], result);
     // An unknown score can still differ, so only known scores tie.
     while (end < ranking.size() && ranking[first].score && ranking[end].score &&
-           compare(key, result_key(ranking[end], result.infeasible)) == 0) {
+           compare(key, result_key(ranking[end], result)) == 0) {
       ++end;
     }
     for (std::size_t i = first; i < end; ++i) {
@@ -156,8 +187,7 @@ void drop_infeasible(RankResult& result) {
 void sort_ranking(RankResult& result) {
   std::vector<CandidateResult>& ranking = result.ranking;
   std::sort(ranking.begin(), ranking.end(), [&](const auto& a, const auto& b) {
-    const int compared =
-        compare(result_key(a, result.infeasible), result_key(b, result.infeasible));
+    const int compared = compare(result_key(a, result), result_key(b, result));
     return compared != 0 ? compared < 0 : a.candidate < b.candidate;
   });
   result.complete = std::all_of(ranking.begin(), ranking.end(),
@@ -176,7 +206,7 @@ void sort_ranking(RankResult& result) {
   const bool any_followable = std::any_of(ranking.begin(), ranking.end(), followable);
   for (const CandidateResult& c : ranking) {
     if (!all_demoted && !followable(c)) continue;
-    lowest_high = std::min(lowest_high, c.score.value_or(c.score_interval.highest));
+    lowest_high = std::min(lowest_high, ordering_score(c, result.order));
   }
   bool winner_seen = false;
   for (const CandidateResult& c : ranking) {

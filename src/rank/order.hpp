@@ -9,7 +9,7 @@ namespace crashrank::detail {
 /// Sort key of a candidate: what is known so far of the quantities that decide its place.
 struct OrderKey {
   bool demoted = false;  ///< the vehicle cannot follow it, and infeasible candidates rank last
-  double score = 0.0;    ///< the score, or its upper bound or estimate if it is not known
+  double score = 0.0;    ///< what orders, or its upper bound or estimate if it is not known
   bool known = false;
   double collision_probability = 0.0;  ///< a multiple of 1e-9
   bool collides = false;               ///< in the likeliest future, like the next
@@ -30,6 +30,10 @@ struct OrderKey {
   /// Returns true if no candidate with the same score can precede it.
   bool is_best_of_its_score() const noexcept;
 };
+
+/// The number by which a candidate is ordered: its score or the upper end of its interval as
+/// requested; the upper end if its score is not known.
+double ordering_score(const CandidateResult& candidate, RankOrder order) noexcept;
 
 /// Returns -1 if `a` precedes `b`, 1 if it follows, 0 if only the order of the candidates decides.
 int compare(const OrderKey& a, const OrderKey& b) noexcept;

@@ -67,6 +67,7 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   result.harm = scene->harm;
   result.samples = scene->samples;
   result.infeasible = scene->infeasible;
+  result.order = options.order;
   result.has_motion = scene->records_motion;
   const double ego_length_m = models[result.ego.model].mesh.bounds().extent().x();
   Result<std::vector<Candidate>> candidates = make_candidates(scenario, ego_length_m);

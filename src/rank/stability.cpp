@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
-#include <optional>
 #include <vector>
 
 namespace crashrank::detail {
@@ -21,16 +20,19 @@ Tier tier_of(const CandidateResult& c, Infeasible infeasible) {
   return c.score || c.searched ? followable : undecided;
 }
 
-double lowest_of(const CandidateResult& c) { return c.score.value_or(c.score_interval.lowest); }
-double highest_of(const CandidateResult& c) { return c.score.value_or(c.score_interval.highest); }
+/// Bounds on what orders a candidate.
+double lowest_of(const CandidateResult& c, RankOrder order) {
+  return c.score ? ordering_score(c, order) : c.score_interval.lowest;
+}
+double highest_of(const CandidateResult& c, RankOrder order) { return ordering_score(c, order); }
 
 /// Returns true if `a` precedes `b` by tier and score, whatever the unknown values are.
-bool is_certainly_before(const CandidateResult& a, const CandidateResult& b,
-                         Infeasible infeasible) {
-  const Tier p = tier_of(a, infeasible);
-  const Tier q = tier_of(b, infeasible);
+bool is_certainly_before(const CandidateResult& a, const CandidateResult& b, const RankResult& of) {
+  const Tier p = tier_of(a, of.infeasible);
+  const Tier q = tier_of(b, of.infeasible);
   if (p == followable && q == demoted) return true;
-  return p <= q && !(p == undecided && q == undecided) && highest_of(a) < lowest_of(b);
+  return p <= q && !(p == undecided && q == undecided) &&
+         highest_of(a, of.order) < lowest_of(b, of.order);
 }
 
 /// Ends of the score intervals of the candidates of a tier, ascending.
@@ -52,21 +54,20 @@ struct TierEnds {
   }
 };
 
-/// Counts the candidates that certainly precede `c` and those that certainly follow it.
-void count_by_tiers(const std::array<TierEnds, tiers>& ends, Tier tier, CandidateResult& c,
-                    std::size_t& before, std::size_t& behind) {
+/// Counts the candidates that certainly precede one with such bounds, and those that certainly
+/// follow it.
+void count_by_tiers(const std::array<TierEnds, tiers>& ends, Tier tier, double lowest,
+                    double highest, std::size_t& before, std::size_t& behind) {
   for (const Tier other : {followable, undecided, demoted}) {
     const TierEnds& of = ends[other];
     if (tier == undecided && other == undecided) continue;
     if (other < tier) {
-      before +=
-          other == followable && tier == demoted ? of.highest.size() : of.all_below(lowest_of(c));
+      before += other == followable && tier == demoted ? of.highest.size() : of.all_below(lowest);
     } else if (other > tier) {
-      behind +=
-          tier == followable && other == demoted ? of.lowest.size() : of.all_above(highest_of(c));
+      behind += tier == followable && other == demoted ? of.lowest.size() : of.all_above(highest);
     } else {
-      before += of.all_below(lowest_of(c));
-      behind += of.all_above(highest_of(c));
+      before += of.all_below(lowest);
+      behind += of.all_above(highest);
     }
   }
 }
@@ -78,16 +79,17 @@ void places_by_intervals(RankResult& result) {
   std::array<TierEnds, tiers> ends;
   for (const CandidateResult& c : ranking) {
     TierEnds& own = ends[tier_of(c, result.infeasible)];
-    own.lowest.push_back(lowest_of(c));
-    own.highest.push_back(highest_of(c));
+    own.lowest.push_back(lowest_of(c, result.order));
+    own.highest.push_back(highest_of(c, result.order));
   }
   for (TierEnds& each : ends) each.sort();
   for (std::size_t first = 0, end = 0; first < ranking.size(); first = end) {
     // Candidates with equal known scores are ordered by the tie-breaks, which are known too.
     end = first + 1;
     const Tier tier = tier_of(ranking[first], result.infeasible);
-    const std::optional<double>& score = ranking[first].score;
-    while (score && end < ranking.size() && ranking[end].score == score &&
+    const double score = highest_of(ranking[first], result.order);
+    while (ranking[first].score && end < ranking.size() && ranking[end].score &&
+           highest_of(ranking[end], result.order) == score &&
            tier_of(ranking[end], result.infeasible) == tier) {
       ++end;
     }
@@ -95,7 +97,8 @@ void places_by_intervals(RankResult& result) {
       CandidateResult& c = ranking[i];
       std::size_t before = c.place - 1 - std::min(first, c.place - 1);
       std::size_t not_before = end - first - 1 - before;
-      count_by_tiers(ends, tier, c, before, not_before);
+      count_by_tiers(ends, tier, lowest_of(c, result.order), highest_of(c, result.order), before,
+                     not_before);
       c.best_place = before;
       c.worst_place = ranking.size() - 1 - not_before;
       const bool wins = result.in_race.size() == 1 && result.in_race.front() == c.candidate;
@@ -140,14 +143,14 @@ void compute_stability(RankResult& result) {
     c.worst_place = c.place - 1;
   }
   for (std::size_t i = 0; i + 1 < ranking.size(); ++i) {
-    ranking[i].separable = is_certainly_before(ranking[i], ranking[i + 1], result.infeasible) ||
-                           is_certainly_before(ranking[i + 1], ranking[i], result.infeasible);
+    ranking[i].separable = is_certainly_before(ranking[i], ranking[i + 1], result) ||
+                           is_certainly_before(ranking[i + 1], ranking[i], result);
   }
-  compare_samples(result);
-  if (!result.complete) {
-    places_by_intervals(result);
-    return;
-  }
+  const bool by_score = result.order == RankOrder::score;
+  if (by_score) compare_samples(result);
+  if (!result.complete) places_by_intervals(result);
+  // Samples vary the score alone.
+  if (!result.complete || !by_score) return;
   const std::size_t samples = result.samples.size();
   // A candidate without scores in the samples cannot be sorted.
   const auto known = static_cast<std::size_t>(

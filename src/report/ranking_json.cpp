@@ -319,6 +319,12 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
                              {"within_numerical_error", ranked.within_numerical_error},
                              {"within_sampling_error", ranked.within_sampling_error}});
   }
+  Json first;
+  for (const RankOrder order : {RankOrder::score, RankOrder::upper}) {
+    Json& name = first[order_name(order)];
+    if (result.ranking.empty()) continue;
+    name = result.candidates[result.ranking[first_by(result, order)].candidate].name;
+  }
   const RankWork& work = result.work;
   Json document{{"scenario", scenario.name},
                 {"measure", measure_name(result.measure)},
@@ -338,6 +344,8 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
                   {"left_out", result.futures.left_out},
                   {"risk", risk_name(result.futures.risk)}}},
                 {"infeasible", infeasible_name(result.infeasible)},
+                {"order", order_name(result.order)},
+                {"first_by", std::move(first)},
                 {"dropped", std::move(dropped)},
                 {"complete", result.complete},
                 {"proved", result.proved},

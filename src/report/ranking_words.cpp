@@ -193,6 +193,23 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
 
 }  // namespace
 
+std::string other_order_words(const RankResult& result) {
+  const bool by_score = result.order == RankOrder::score;
+  const std::size_t other = first_by(result, by_score ? RankOrder::upper : RankOrder::score);
+  if (other == 0) return {};
+  const CandidateResult& mine = result.ranking.front();
+  const CandidateResult& its = result.ranking[other];
+  return by_score
+             ? fmt::format(
+                   "{} has the least upper end, {:.2g} against {:.2g}: --order upper puts "
+                   "it first",
+                   quoted(result, other), its.score_interval.highest, mine.score_interval.highest)
+             : fmt::format(
+                   "Ordered by the upper ends of the intervals; by score {} is first, {:.2g} "
+                   "against {:.2g}",
+                   quoted(result, other), *its.score, *mine.score);
+}
+
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
   std::string likeliest = outcome_of_likeliest(scenario, ranked);
   if (ranked.futures.size() < 2) return likeliest;

@@ -51,6 +51,10 @@ std::string further_words(const Scenario& scenario, const CandidateResult& ranke
 std::vector<std::string> pushed_words(const Scenario& scenario, const RankResult& result,
                                       std::size_t shown);
 
+/// That the other order of candidates (RankOrder) has another first one, one sentence; empty where
+/// both agree.
+std::string other_order_words(const RankResult& result);
+
 /// What a candidate leads to, one sentence of plain text: "hits the lorry after 1.48 s at 23.1
 /// m/s".
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked);

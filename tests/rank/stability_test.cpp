@@ -35,6 +35,33 @@ Scene square() {
   return scene;
 }
 
+TEST(Order, ByUpperEndsSortsTheIntervalsOfTheOrderByScore) {
+  const Scene scene = square();
+  const RankResult by_score = scene.ranked();
+  RankOptions options;
+  options.order = RankOrder::upper;
+  const RankResult by_upper = scene.ranked(options);
+  ASSERT_EQ(by_upper.ranking.size(), by_score.ranking.size());
+  std::vector<CandidateResult> sorted = by_score.ranking;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+    return a.score_interval.highest < b.score_interval.highest;
+  });
+  for (std::size_t row = 0; row < sorted.size(); ++row) {
+    EXPECT_EQ(by_upper.ranking[row].candidate, sorted[row].candidate);
+    EXPECT_EQ(by_upper.ranking[row].score, sorted[row].score);
+    EXPECT_EQ(by_upper.ranking[row].best_place, row);
+    EXPECT_EQ(by_upper.ranking[row].worst_place, row);
+  }
+  EXPECT_EQ(by_upper.in_race, std::vector<std::size_t>{sorted.front().candidate});
+  for (const RankResult* const each : {&by_score, &by_upper}) {
+    const auto named = [each](RankOrder order) {
+      return each->ranking[first_by(*each, order)].candidate;
+    };
+    EXPECT_EQ(named(RankOrder::score), by_score.ranking.front().candidate);
+    EXPECT_EQ(named(RankOrder::upper), by_upper.ranking.front().candidate);
+  }
+}
+
 TEST(Stability, SamplesDeterminePlacesAndSeparability) {
   const RankResult result = square().ranked();
   ASSERT_EQ(result.samples.size(), 132U);

@@ -42,6 +42,17 @@ CRASHRANK_API const char* infeasible_name(Infeasible infeasible) noexcept;
 /// Errors: usage, listing the names.
 CRASHRANK_API Result<Infeasible> infeasible_from_name(const std::string& name);
 
+/// What orders the candidates.
+enum class RankOrder {
+  score,  ///< the nominal score
+  upper,  ///< the upper end of ScoreInterval: the most that the unknown parameters allow
+};
+
+/// The name on the command line: "score", "upper".
+CRASHRANK_API const char* order_name(RankOrder order) noexcept;
+/// Errors: usage, listing the names.
+CRASHRANK_API Result<RankOrder> order_from_name(const std::string& name);
+
 /// How candidates are ranked.
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
@@ -57,6 +68,7 @@ struct RankOptions {
   /// errors, 1 to `max_sampled_futures`.
   std::size_t sampled_futures = 64;
   Infeasible infeasible = Infeasible::demote;  ///< of candidates that the ego cannot follow
+  RankOrder order = RankOrder::score;          ///< `Ranker` refuses `upper`: it has no samples
   bool records_motion = false;  ///< fills in CandidateResult::motion; `Ranker` ignores it
   ImpactOptions impact;         ///< `start_is_apart` is set internally
   /// Called before each simulation and after each candidate with the number of candidates evaluated
@@ -323,6 +335,7 @@ struct RankResult {
   std::vector<Candidate> candidates;           ///< in the order of `make_candidates`
   std::vector<CandidateResult> ranking;        ///< every candidate except dropped ones, best first
   Infeasible infeasible = Infeasible::demote;  ///< as requested
+  RankOrder order = RankOrder::score;          ///< as requested
   bool has_motion = false;                     ///< RankOptions::records_motion was requested
   /// indices into `candidates`, ascending; Infeasible::drop only
   std::vector<std::size_t> dropped;
@@ -373,7 +386,9 @@ struct RankResult {
 /// simulation, so sharing does not change a bit. A fixed body has one plan, and one that may be
 /// absent adjoins no other body.
 ///
-/// Order: feasible before infeasible candidates (RankOptions::infeasible); lower score; lower
+/// Order: feasible before infeasible candidates (RankOptions::infeasible); lower score, or lower
+/// upper end of its interval (RankOptions::order; places are then those of the upper ends alone,
+/// and samples say nothing of them); lower
 /// probability of a collision; in the likeliest future no contact before a graze; the longer time
 /// to collision at the horizon, rounded to 10 ms, up to `imminent_crash_s`; in the likeliest future
 /// staying on the road before leaving it; the larger least distance, rounded to 1 cm, up to
@@ -388,6 +403,11 @@ struct RankResult {
 /// thread; allocates.
 CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model> models,
                                       const RankOptions& options = {});
+
+/// Row of the ranking that would be first in that order: the least score or upper end of the
+/// candidates that infeasibility does not demote, ties to the earlier row; 0 for an empty ranking.
+/// Linear in the candidates; safe from any thread.
+CRASHRANK_API std::size_t first_by(const RankResult& result, RankOrder order) noexcept;
 
 /// Number of samples of unknown parameters, without the numerical ones.
 CRASHRANK_API std::size_t range_sample_count(const RankResult& result) noexcept;

@@ -95,6 +95,10 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     if (!fits) return fits.error();
     RankResult bodies;
     const RankOptions& how = options.rank;
+    if (how.order != RankOrder::score) {
+      return make_error(ErrorCode::usage, "an answer in time has no samples for the order 'upper'",
+                        "order by score, or rank without a deadline, a budget or --first-place");
+    }
     if (how.harm) {
       const Status weighed = detail::check_harm(*how.harm, "harm");
       if (!weighed) return weighed.error();

@@ -15,6 +15,15 @@
 namespace crashrank {
 namespace {
 
+TEST(RankerRefusal, AnOrderByUpperEndsNeedsSamples) {
+  const Case c(302, Measure::harm);
+  RankerOptions options;
+  options.rank.order = RankOrder::upper;
+  const Result<Ranker> refused = Ranker::prepare(c.scene.scenario, c.scene.models, options);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code, ErrorCode::usage);
+}
+
 TEST(RankerRefusal, MotionsThatAreNotFiniteAreRefused) {
   const Case c(302, Measure::harm);
   Ranker ranker = c.ranker(Measure::harm, 2);
