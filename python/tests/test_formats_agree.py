@@ -11,7 +11,6 @@ import format_scenes as scenes
 import pytest
 from conftest import DATA, ROOT, program
 from crashrank import formats
-from crashrank.formats._document import with_mesh_files
 
 FORMATS = ("commonroad", "openscenario", "osi", "mcap", "esmini", "poses", "bag")
 NEEDS = {
@@ -68,10 +67,9 @@ def test_what_is_read_is_valid_and_ranks(name, tmp_path):
     jsonschema = pytest.importorskip("jsonschema")
     found = read(name, tmp_path)
     schema = json.loads((DATA / "scenario.schema.json").read_text())
-    ready = with_mesh_files(found.scenario, tmp_path)
-    jsonschema.validate(ready, schema)
+    jsonschema.validate(found.scenario, schema)
     json.dumps(found.scenario, allow_nan=False)
-    ranking = crashrank.rank(ready, base=tmp_path, deadline_s=20)
+    ranking = crashrank.rank(found.scenario, deadline_s=20)
     assert len(ranking) >= 225
     assert not ranking.best.collides
     assert found.report.bodies == 2
@@ -79,12 +77,12 @@ def test_what_is_read_is_valid_and_ranks(name, tmp_path):
     assert road == (name in ("commonroad", "osi", "mcap"))
 
 
-def test_the_ego_hits_what_it_is_driven_into(tmp_path):
+def test_the_ego_hits_what_it_is_driven_into():
     """Straight on at 15 m/s, 0.9 m of half width: the person is reached where both paths cross."""
     found = formats.read_poses_csv(DATA / "formats/crossing_poses.csv")
-    ready = with_mesh_files(found.scenario, tmp_path)
+    ready = found.scenario
     ready["candidates"] = {"listed": [{"name": "hold", "acceleration_mps2": 0}], "grid": False}
-    first = crashrank.rank(ready, base=tmp_path).to_dict()["ranking"]
+    first = crashrank.rank(ready).to_dict()["ranking"]
     hold = next(each for each in first if each["candidate"] == "hold")
     assert hold["other"] == "person"
     # The person's middle is 35 m ahead and -4 + 1.5 t to the left; the front is 2.25 m ahead.

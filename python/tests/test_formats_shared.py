@@ -12,7 +12,6 @@ import crashrank
 import pytest
 from conftest import DATA, ROOT
 from crashrank import formats
-from crashrank.formats._document import with_mesh_files
 from test_formats_hostile import accepted, mutated
 
 FOLDER = pathlib.Path(
@@ -47,26 +46,22 @@ def test_commonroad_files_are_read(path):
     assert found.report.bodies == len(found.scenario["actors"])
     assert found.report.bodies + len(found.report.left_out) > 0
     jsonschema = pytest.importorskip("jsonschema")
-    document = json.loads(json.dumps(found.scenario))
-    for model in document["models"].values():
-        model["mesh"] = str(model.pop("box"))
-    jsonschema.validate(document, json.loads((DATA / "scenario.schema.json").read_text()))
+    jsonschema.validate(found.scenario, json.loads((DATA / "scenario.schema.json").read_text()))
 
 
 @pytest.mark.parametrize("path", files([p for p in COMMONROAD if p.stem in RANKED]))
-def test_commonroad_files_rank(path, tmp_path):
-    ready = with_mesh_files(read_commonroad(path).scenario, tmp_path)
-    ranking = crashrank.rank(ready, base=tmp_path, deadline_s=1.0)
+def test_commonroad_files_rank(path):
+    ranking = crashrank.rank(read_commonroad(path).scenario, deadline_s=1.0)
     assert len(ranking) >= 225
 
 
 @pytest.mark.parametrize("path", files([PEDESTRIAN] if PEDESTRIAN.exists() else []))
-def test_a_recorded_crash_is_found(path, tmp_path):
+def test_a_recorded_crash_is_found(path):
     """The recording hits the person at step 56, at 9 m/s: so does its ego if it goes on."""
     found = read_commonroad(path, ego=34, time_step=48)
-    ready = with_mesh_files(found.scenario, tmp_path)
+    ready = found.scenario
     ready["candidates"] = {"listed": [{"name": "hold", "acceleration_mps2": 0}], "grid": False}
-    rows = crashrank.rank(ready, base=tmp_path, deadline_s=20).to_dict()["ranking"]
+    rows = crashrank.rank(ready, deadline_s=20).to_dict()["ranking"]
     hold = next(row for row in rows if row["candidate"] == "hold")
     assert hold["other"] == "pedestrian 35"
     assert hold["time_of_impact_s"] == pytest.approx(0.8, abs=0.15)
@@ -85,7 +80,7 @@ def test_openscenario_files_need_an_engine(path):
 
 
 @pytest.mark.parametrize("path", files(OSI))
-def test_osi_traces_are_read_and_rank(path, tmp_path):
+def test_osi_traces_are_read_and_rank(path):
     pytest.importorskip("osi3")
     pytest.importorskip("mcap")
     ego = None if path.suffix == ".mcap" else "0"
@@ -94,8 +89,7 @@ def test_osi_traces_are_read_and_rank(path, tmp_path):
         ego_speed = found.scenario["ego"]["speed_mps"]
         assert 5 < ego_speed < 40
         assert found.scenario["actors"]
-    ready = with_mesh_files(found.scenario, tmp_path)
-    assert len(crashrank.rank(ready, base=tmp_path, deadline_s=1.0)) >= 225
+    assert len(crashrank.rank(found.scenario, deadline_s=1.0)) >= 225
 
 
 @pytest.mark.parametrize("path", files([p for p in OSI if p.name == "pedestrian.osi"]))

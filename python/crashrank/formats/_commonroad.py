@@ -14,7 +14,7 @@ from ._commonroad_shapes import (
     standing_boxes,
 )
 from ._document import Imported, make_document
-from ._refusals import checked_ego, checked_horizon, checked_time, choice_error, number, refuse
+from ._refusals import checked_choices, choice_error, number, refuse
 from ._road import areas_between, reach_of
 from ._scene import (
     DEFAULT_SIZE_M,
@@ -92,8 +92,7 @@ def read_commonroad(
     BadInputError, LimitError, NotFoundError, UsageError
         One line: file, element with its line, reason, remedy.
     """
-    chosen, horizon = checked_ego(ego), checked_horizon(horizon_s)
-    at_s = checked_time(time_s, "time_s")
+    chosen, at_s, horizon = checked_choices(ego, time_s, horizon_s)
     root = read_xml(path, "commonRoad", "CommonRoad scenario")
     version = root.get("commonRoadVersion") or ""
     if version not in VERSIONS:

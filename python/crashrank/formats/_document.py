@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import math
 import os
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._boxes import overlap_depths, write_box
+from ._boxes import overlap_depths
 from ._refusals import refuse
 from ._road import near_areas
 from ._scene import (
@@ -113,18 +112,6 @@ def make_document(scene: Scene) -> Imported:
     report.bodies, report.areas = len(others), len(areas)
     _report_overlaps(ego, own, others, scene.horizon_s, report)
     return Imported(document, report)
-
-
-def with_mesh_files(scenario: dict[str, Any], folder: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return a scenario whose boxes are mesh files, which are written into a folder."""
-    changed = copy.deepcopy(scenario)
-    for i, model in enumerate(changed["models"].values()):
-        length, width, height = model.pop("box")
-        name = f"box-{i}.obj"
-        share = ORIGIN_SHARE.get(model["kind"], 0.5)
-        write_box(os.path.join(folder, name), (length, width, height), share)
-        model["mesh"] = name
-    return changed
 
 
 def _others(scene: Scene, own: Motion) -> list[tuple[Body, list[Motion]]]:
