@@ -1,5 +1,6 @@
 """The same scene in every format becomes the same scenario, and can be ranked."""
 
+import csv
 import json
 import os
 import re
@@ -106,6 +107,35 @@ def test_the_command_writes_a_scenario(tmp_path):
     done = run("import", "poses-csv", file, "-o", "-", "--json")
     assert json.loads(done.stdout)["scenario_version"] == 2
     assert json.loads(done.stderr)["bodies"] == 2
+
+
+def test_the_command_decides(tmp_path):
+    file = DATA / "formats/crossing_poses.csv"
+    done = run("import", "poses-csv", file, "-o", tmp_path / "s.json", "--decide", "--json")
+    assert done.returncode == 0, done.stderr
+    report = json.loads(done.stderr)
+    last = report["decision"]["last"]["avoidable"]
+    assert report["time_s"] == last["time_s"]
+    written = json.loads((tmp_path / "s.json").read_text())
+    assert written == formats.read_poses_csv(file, last["time_s"]).scenario
+
+
+def test_the_command_surveys_a_folder():
+    pytest.importorskip("lxml")
+    pytest.importorskip("osi3")
+    done = run("import", "survey", DATA / "formats", "-o", "-")
+    assert done.returncode == 0, done.stderr
+    rows = list(csv.DictReader(done.stdout.splitlines()))
+    assert [row["format"] for row in rows] == [
+        "osi", "commonroad", "openscenario", "esmini-csv", "poses-csv",
+    ]  # fmt: skip
+    for row in rows:
+        assert row["read"] == "True"
+        assert row["hits"].endswith(("person", "2"))
+        assert float(row["contact_time_s"]) == pytest.approx(2.17, abs=0.03)
+    done = run("import", "survey", "no-folder", "-o", "-")
+    assert done.returncode == 3
+    assert "is no folder" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -109,12 +109,6 @@ def read_commonroad(
     found = reader.ego(chosen)
     if at_s is None:
         at_s = found.tracks[0].states[0].t_s
-    first = found.tracks[0].states[0]
-    if found.place.startswith("planningProblem") and abs(at_s - first.t_s) > step_s / 2:
-        raise choice_error(
-            root.file, found.place, f"has its state at {first.t_s:g} s, not at {at_s:g} s",
-            "choose that time, or a dynamic obstacle as ego",
-        )  # fmt: skip
     name = root.get("benchmarkID") or "CommonRoad scenario"
     bodies = reader.bodies(found, horizon)
     at = state_at(found.tracks[0], at_s)
