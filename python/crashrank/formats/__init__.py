@@ -1,6 +1,7 @@
 """Readers of scenarios of other tools; each returns a scenario and a report.
 
-`find_decision_point` steps back from a contact and says when it could last be avoided.
+`find_decision_point` steps back from a contact and says when it could last be avoided;
+`to_markers` writes a ranking for RViz and Foxglove.
 
 ``python -m crashrank import FORMAT FILE -o SCENARIO.json`` is the same as a command.
 `read_commonroad` and `read_openscenario` need ``crashrank[formats]``, `read_osi` needs
@@ -14,6 +15,7 @@ from ._commonroad import read_commonroad
 from ._curve import Choice, DecisionCurve, DecisionStep
 from ._decision import find_decision_point
 from ._document import Imported
+from ._markers import to_markers
 from ._openscenario import read_openscenario
 from ._osi import read_osi
 from ._scene import Report
@@ -32,4 +34,5 @@ __all__ = [
     "read_openscenario",
     "read_osi",
     "read_poses_csv",
+    "to_markers",
 ]
