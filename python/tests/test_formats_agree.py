@@ -1,5 +1,6 @@
 """The same scene in every format becomes the same scenario, and can be ranked."""
 
+import csv
 import json
 import os
 import re
@@ -11,7 +12,6 @@ import format_scenes as scenes
 import pytest
 from conftest import DATA, ROOT, program
 from crashrank import formats
-from crashrank.formats._document import with_mesh_files
 
 FORMATS = ("commonroad", "openscenario", "osi", "mcap", "esmini", "poses", "bag")
 NEEDS = {
@@ -68,10 +68,9 @@ def test_what_is_read_is_valid_and_ranks(name, tmp_path):
     jsonschema = pytest.importorskip("jsonschema")
     found = read(name, tmp_path)
     schema = json.loads((DATA / "scenario.schema.json").read_text())
-    ready = with_mesh_files(found.scenario, tmp_path)
-    jsonschema.validate(ready, schema)
+    jsonschema.validate(found.scenario, schema)
     json.dumps(found.scenario, allow_nan=False)
-    ranking = crashrank.rank(ready, base=tmp_path, deadline_s=20)
+    ranking = crashrank.rank(found.scenario, deadline_s=20)
     assert len(ranking) >= 225
     assert not ranking.best.collides
     assert found.report.bodies == 2
@@ -79,12 +78,12 @@ def test_what_is_read_is_valid_and_ranks(name, tmp_path):
     assert road == (name in ("commonroad", "osi", "mcap"))
 
 
-def test_the_ego_hits_what_it_is_driven_into(tmp_path):
+def test_the_ego_hits_what_it_is_driven_into():
     """Straight on at 15 m/s, 0.9 m of half width: the person is reached where both paths cross."""
     found = formats.read_poses_csv(DATA / "formats/crossing_poses.csv")
-    ready = with_mesh_files(found.scenario, tmp_path)
+    ready = found.scenario
     ready["candidates"] = {"listed": [{"name": "hold", "acceleration_mps2": 0}], "grid": False}
-    first = crashrank.rank(ready, base=tmp_path).to_dict()["ranking"]
+    first = crashrank.rank(ready).to_dict()["ranking"]
     hold = next(each for each in first if each["candidate"] == "hold")
     assert hold["other"] == "person"
     # The person's middle is 35 m ahead and -4 + 1.5 t to the left; the front is 2.25 m ahead.
@@ -108,6 +107,35 @@ def test_the_command_writes_a_scenario(tmp_path):
     done = run("import", "poses-csv", file, "-o", "-", "--json")
     assert json.loads(done.stdout)["scenario_version"] == 2
     assert json.loads(done.stderr)["bodies"] == 2
+
+
+def test_the_command_decides(tmp_path):
+    file = DATA / "formats/crossing_poses.csv"
+    done = run("import", "poses-csv", file, "-o", tmp_path / "s.json", "--decide", "--json")
+    assert done.returncode == 0, done.stderr
+    report = json.loads(done.stderr)
+    last = report["decision"]["last"]["avoidable"]
+    assert report["time_s"] == last["time_s"]
+    written = json.loads((tmp_path / "s.json").read_text())
+    assert written == formats.read_poses_csv(file, last["time_s"]).scenario
+
+
+def test_the_command_surveys_a_folder():
+    pytest.importorskip("lxml")
+    pytest.importorskip("osi3")
+    done = run("import", "survey", DATA / "formats", "-o", "-")
+    assert done.returncode == 0, done.stderr
+    rows = list(csv.DictReader(done.stdout.splitlines()))
+    assert [row["format"] for row in rows] == [
+        "osi", "commonroad", "openscenario", "esmini-csv", "poses-csv",
+    ]  # fmt: skip
+    for row in rows:
+        assert row["read"] == "True"
+        assert row["hits"].endswith(("person", "2"))
+        assert float(row["contact_time_s"]) == pytest.approx(2.17, abs=0.03)
+    done = run("import", "survey", "no-folder", "-o", "-")
+    assert done.returncode == 3
+    assert "is no folder" in done.stderr
 
 
 @pytest.mark.parametrize(

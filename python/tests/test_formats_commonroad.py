@@ -265,8 +265,6 @@ def test_the_ego_has_to_be_named_without_a_planning_problem(tmp_path):
         read(tmp_path, text)
     with pytest.raises(crashrank.BadInputError, match="not a vehicle"):
         read(tmp_path, text, ego=2)
-    with pytest.raises(crashrank.UsageError, match="at 0 s, not at 1 s"):
-        read(tmp_path, scenes.commonroad(), time_step=2)
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,13 @@
 """OSI traces and ROS 2 bags: what the shared scene does not have."""
 
+import math
 import struct
 
 import crashrank
 import format_scenes as scenes
 import pytest
-from crashrank.formats import read_bag, read_osi
+from conftest import DATA
+from crashrank.formats import read_bag, read_osi, read_poses_csv, to_markers
 
 
 def write(tmp_path, messages, name="a.osi"):
@@ -151,6 +153,54 @@ class TestBag:
         assert boxes == [[0.5, 0.5, 1.75], [4.0, 2.0, 1.5]]
 
 
+class TestMarkers:
+    @pytest.fixture(autouse=True)
+    def _needs(self):
+        pytest.importorskip("rosbags")
+
+    def test_markers_show_the_first_contact(self, tmp_path):
+        """The person is hit where both paths cross: its box and the ego's touch there."""
+        from rosbags.highlevel import AnyReader
+
+        found = read_poses_csv(DATA / "formats/crossing_poses.csv")
+        listed = [{"name": "hold", "acceleration_mps2": 0}, {"name": "b", "acceleration_mps2": -7}]
+        scenario = {**found.scenario, "candidates": {"listed": listed, "grid": False}}
+        ranking = crashrank.rank(scenario)
+        to_markers(ranking, tmp_path / "bag", candidate="hold", frame="world")
+        with AnyReader([tmp_path / "bag"]) as bag:
+            ((connection, _, data),) = bag.messages()
+            assert connection.topic == "/crashrank/markers"
+            markers = bag.deserialize(data, connection.msgtype).markers
+        assert {each.header.frame_id for each in markers} == {"world"}
+        by_name = {(each.ns, each.id): each for each in markers}
+        assert len(by_name) == len(markers) == len(ranking) + 2 * 3
+        hold = [row.candidate for row in ranking].index("hold")
+        worst, best = by_name["paths", hold].color, by_name["paths", 0].color
+        assert (worst.r, worst.g, best.r, best.g) == (1, 0, 0, 1)
+        end = by_name["paths", hold].points[-1]
+        x, y, _ = scenes.rear_axle(scenes.world(15 * 4, 0))
+        assert (end.x, end.y) == pytest.approx((x, y), abs=0.01)
+        ego, person = by_name["bodies", 0], by_name["bodies", 1]
+        at_s = (35 - 0.25 - 2.25) / 15
+        for box, size, (x, y, yaw) in (
+            (ego, scenes.CAR, scenes.world(15 * at_s, 0)),
+            (person, scenes.PERSON, scenes.world(35, -4 + 1.5 * at_s, 1.5708)),
+        ):
+            assert (box.pose.position.x, box.pose.position.y) == pytest.approx((x, y), abs=0.4)
+            assert 2 * math.atan2(box.pose.orientation.z, box.pose.orientation.w) == pytest.approx(
+                yaw, abs=1e-3
+            )
+            assert (box.scale.x, box.scale.y, box.scale.z) == pytest.approx(size, abs=0.1)
+        assert by_name["text", 0].text.startswith("hold: 0.5")
+        assert by_name["text", 1].text == "person"
+        with pytest.raises(crashrank.UsageError, match="is there already"):
+            to_markers(ranking, tmp_path / "bag")
+        with pytest.raises(crashrank.UsageError, match="no candidate 'x'"):
+            to_markers(ranking, tmp_path / "other", candidate="x")
+        with pytest.raises(crashrank.NotFoundError, match="cannot be written"):
+            to_markers(ranking, tmp_path / "bag/metadata.yaml/x")
+
+
 @pytest.mark.parametrize(
     ("reader", "file", "module", "extra"),
     [
@@ -162,7 +212,6 @@ class TestBag:
 def test_missing_packages_name_the_extra(monkeypatch, reader, file, module, extra):
     import sys
 
-    from conftest import DATA
     from crashrank import formats
 
     monkeypatch.setitem(sys.modules, module, None)

@@ -9,9 +9,7 @@ from typing import Any
 from ._boxes import oriented_box
 from ._document import Imported, make_document
 from ._refusals import (
-    checked_ego,
-    checked_horizon,
-    checked_time,
+    checked_choices,
     choice_error,
     guarded_parse,
     refuse,
@@ -106,8 +104,8 @@ def read_bag(
     horizon_s : float, default 4
         Seconds after the moment of decision that count.
     """
-    chosen, horizon = checked_ego(ego), checked_horizon(horizon_s)
-    at_s = checked_time(time_s, "time_s") or 0.0
+    chosen, at_s, horizon = checked_choices(ego, time_s, horizon_s)
+    at_s = at_s or 0.0
     reader = required_module("rosbags.highlevel", "rosbags", "ros")
     folder = _checked_folder(path)
     report = Report("ROS 2 bag", folder)

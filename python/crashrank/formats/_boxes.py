@@ -134,27 +134,3 @@ def _reach(turned: NDArray[np.float64], size: tuple[float, float]) -> NDArray[np
         np.abs(np.cos(turned)) * size[0] + np.abs(np.sin(turned)) * size[1]
     ) / 2
     return reach
-
-
-def write_box(path: str, size_m: tuple[float, float, float], origin_share: float) -> None:
-    """Write a closed box of 12 triangles as an OBJ file, for engines without `box` in models.
-
-    Parameters
-    ----------
-    size_m : tuple of float
-        Length, width and height, m. It stands on z = 0.
-    origin_share : float
-        Where the origin lies from the rear end, as a share of the length.
-    """
-    length, width, height = size_m
-    corners = [
-        ((x - origin_share) * length, (y - 0.5) * width, z * height)
-        for x in (0, 1)
-        for y in (0, 1)
-        for z in (0, 1)
-    ]
-    quads = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
-    lines = ["o box"] + [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in corners]
-    lines += [f"f {a} {b} {c}\nf {a} {c} {d}" for a, b, c, d in quads]
-    with open(path, "w", encoding="ascii") as file:
-        file.write("\n".join(lines) + "\n")

@@ -5,34 +5,19 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable
 from typing import Any
 
 from .._errors import Error, NotFoundError, printable
-from ._bag import read_bag
-from ._commonroad import read_commonroad
-from ._document import Imported
-from ._openscenario import read_openscenario
-from ._osi import read_osi
-from ._tables import read_esmini_csv, read_poses_csv
+from ._decision import find_decision_point
+from ._readers import READERS, reader_of
+from ._survey import survey_table
 
 EXIT_CODES = {"usage": 2, "internal": 1, "out_of_memory": 4, "out_of_budget": 4}
 
 
-def _commonroad(path: str, **options: Any) -> Imported:
-    return read_commonroad(path, **options)
-
-
-READERS: dict[str, Callable[..., Imported]] = {
-    "commonroad": _commonroad,
-    "openscenario": read_openscenario,
-    "osi": read_osi,
-    "esmini-csv": read_esmini_csv,
-    "poses-csv": read_poses_csv,
-    "ros-bag": read_bag,
-}
-
-_DESCRIPTION = "Converts a scene of another tool to a scenario file, and prints what was assumed."
+_DESCRIPTION = """Converts a scene of another tool to a scenario file, and prints what was assumed.
+With --decide the moment of decision is the last at which the contact ahead can be avoided. The
+format survey writes a table (CSV) of all files in a folder: read or refused, and what is hit."""
 
 _EPILOG = """formats: commonroad (XML 2018b, 2020a), openscenario (followed trajectories), osi
 (ground truth, .osi or .mcap), esmini-csv (its log), poses-csv (columns t_s, id, x_m, y_m, yaw_deg
@@ -44,39 +29,48 @@ the first two, [osi] and [ros] for theirs. Exit codes: 0 done, 1 it cannot be wr
 def main(words: list[str]) -> int:
     """Run the command with the words behind ``import``; return its exit code."""
     options = _parser().parse_args(words)
-    reader = READERS.get(options.format)
-    if reader is None:
-        known = ", ".join(READERS)
-        return _fail(f"there is no reader of {options.format!r}; choose {known}", 2)
     try:
-        found = reader(
-            options.file, time_s=options.time, ego=options.ego, horizon_s=options.horizon
-        )
+        text, report, lines = _converted(options)
     except Error as error:
         return _fail(str(error), EXIT_CODES.get(error.code, 3))
     except MemoryError:
         return _fail(f"{options.file}: does not fit into memory; cut out what matters", 4)
     try:
-        _write(found, options.output)
+        if options.output == "-":
+            sys.stdout.buffer.write(text.encode())
+            sys.stdout.flush()
+        else:
+            with open(options.output, "w", encoding="utf-8") as file:
+                file.write(text)
     except OSError as error:
         missing = NotFoundError(
             "not_found", options.output, "", f"cannot be written: {error.strerror}", "name another"
         )
         return _fail(str(missing), 1)
     if options.json:
-        print(json.dumps(found.report.to_dict(), ensure_ascii=False), file=sys.stderr)
+        print(json.dumps(report, ensure_ascii=False), file=sys.stderr)
     elif not options.quiet:
-        for line in found.report.lines():
+        for line in lines:
             print(f"crashrank: {printable(line)}", file=sys.stderr)
     return 0
 
 
-def _write(found: Imported, output: str) -> None:
-    if output == "-":
-        json.dump(found.scenario, sys.stdout, indent=1)
-        print(flush=True)
-    else:
-        found.save(output)
+def _converted(options: argparse.Namespace) -> tuple[str, dict[str, Any], list[str]]:
+    """Return what is written, and the report as members and as lines."""
+    horizon = {} if options.horizon is None else {"horizon_s": options.horizon}
+    if options.format == "survey":
+        return survey_table(options.file, **horizon), {}, []
+    reader, time_s, curve = reader_of(options.file, options.format), options.time, None
+    if options.decide:
+        curve = find_decision_point(
+            options.file, format=options.format, ego=options.ego, time_s=time_s, **horizon
+        )
+        time_s = (curve.last_avoidable or curve.steps[0]).time_s
+    found = reader(options.file, time_s=time_s, ego=options.ego, **horizon)
+    report, lines = found.report.to_dict(), found.report.lines()
+    if curve is not None:
+        report, lines = {**report, "decision": curve.to_dict()}, lines + curve.lines()
+    return found.to_json(), report, lines
 
 
 def _fail(text: str, code: int) -> int:
@@ -89,12 +83,23 @@ def _parser() -> argparse.ArgumentParser:
         "crashrank import", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False
     )
     add = parser.add_argument
-    add("format", metavar="FORMAT", help=", ".join(READERS))
-    add("file", metavar="FILE", help="what is read")
-    add("-o", "--output", required=True, metavar="SCENARIO.json", help="- for standard output")
+    add("format", metavar="FORMAT", help=", ".join([*READERS, "survey"]))
+    add("file", metavar="FILE", help="what is read; for survey a folder")
+    add("-o", "--output", required=True, metavar="OUT", help="- for standard output")
     add("--ego", metavar="ID", help="what decides, as the file names it")
     add("--time", type=float, metavar="T", help="moment of decision, seconds on the file's clock")
-    add("--horizon", type=float, default=4.0, metavar="S", help="seconds that count; default: 4")
+    add(
+        "--horizon",
+        type=float,
+        metavar="S",
+        help="seconds that count; default: 4; 10 where a contact is searched for",
+    )
+    add(
+        "--decide",
+        action="store_true",
+        help="choose the last moment at which the crash can be "
+        "avoided, and print the curve of the least harm over time",
+    )
     add("--json", action="store_true", help="print the report as JSON, on standard error")
     add("--quiet", action="store_true", help="print no report")
     return parser

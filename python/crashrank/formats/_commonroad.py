@@ -14,7 +14,7 @@ from ._commonroad_shapes import (
     standing_boxes,
 )
 from ._document import Imported, make_document
-from ._refusals import checked_ego, checked_horizon, checked_time, choice_error, number, refuse
+from ._refusals import checked_choices, choice_error, number, refuse
 from ._road import areas_between, reach_of
 from ._scene import (
     DEFAULT_SIZE_M,
@@ -92,8 +92,7 @@ def read_commonroad(
     BadInputError, LimitError, NotFoundError, UsageError
         One line: file, element with its line, reason, remedy.
     """
-    chosen, horizon = checked_ego(ego), checked_horizon(horizon_s)
-    at_s = checked_time(time_s, "time_s")
+    chosen, at_s, horizon = checked_choices(ego, time_s, horizon_s)
     root = read_xml(path, "commonRoad", "CommonRoad scenario")
     version = root.get("commonRoadVersion") or ""
     if version not in VERSIONS:
@@ -110,12 +109,6 @@ def read_commonroad(
     found = reader.ego(chosen)
     if at_s is None:
         at_s = found.tracks[0].states[0].t_s
-    first = found.tracks[0].states[0]
-    if found.place.startswith("planningProblem") and abs(at_s - first.t_s) > step_s / 2:
-        raise choice_error(
-            root.file, found.place, f"has its state at {first.t_s:g} s, not at {at_s:g} s",
-            "choose that time, or a dynamic obstacle as ego",
-        )  # fmt: skip
     name = root.get("benchmarkID") or "CommonRoad scenario"
     bodies = reader.bodies(found, horizon)
     at = state_at(found.tracks[0], at_s)

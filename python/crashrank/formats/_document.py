@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import math
 import os
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._boxes import overlap_depths, write_box
+from ._boxes import overlap_depths
 from ._refusals import refuse
 from ._road import near_areas
 from ._scene import (
@@ -28,7 +27,7 @@ from ._scene import (
     origin_of_box,
     wrapped,
 )
-from ._tracks import Motion, motions
+from ._tracks import Motion, forward_speed, motions, state_at
 
 MAX_ACTORS = 1_000
 MAX_MODELS = 256
@@ -51,16 +50,23 @@ class Imported:
         With the keys of a scenario file; `crashrank.Scenario` and `crashrank.rank` take it.
     report : Report
         What was assumed and left out.
+    going_on : dict
+        The candidate, without its name, that goes on as the file has it: the ego's recorded motion,
+        and its last velocity after that; else its speed and curvature held.
     """
 
     scenario: dict[str, Any]
     report: Report
+    going_on: dict[str, Any]
+
+    def to_json(self) -> str:
+        """Return the text of the scenario's file."""
+        return json.dumps(self.scenario, ensure_ascii=False, indent=1, allow_nan=False) + "\n"
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the scenario as a file."""
         with open(path, "w", encoding="utf-8") as file:
-            json.dump(self.scenario, file, ensure_ascii=False, indent=1, allow_nan=False)
-            file.write("\n")
+            file.write(self.to_json())
 
 
 def make_document(scene: Scene) -> Imported:
@@ -79,6 +85,8 @@ def make_document(scene: Scene) -> Imported:
             report.file, ego.place, f"is not there at {scene.time_s:g} s",
             f"choose a time from {states[0].t_s:g} to {states[-1].t_s:g} s, or another ego",
         )  # fmt: skip
+    if len(states) == 1 and abs(states[0].t_s - scene.time_s) > 1e-6:
+        report.assume(f"its only state, at {states[0].t_s:g} s, is moved on", ego.name)
     # Only where it begins counts: its candidates take the place of what it did.
     found = motions(ego, scene.time_s, scene.horizon_s, Report("", ""))
     own = found[0]
@@ -112,19 +120,8 @@ def make_document(scene: Scene) -> Imported:
     report.time_s, report.ego = scene.time_s, ego.name
     report.bodies, report.areas = len(others), len(areas)
     _report_overlaps(ego, own, others, scene.horizon_s, report)
-    return Imported(document, report)
-
-
-def with_mesh_files(scenario: dict[str, Any], folder: str | os.PathLike[str]) -> dict[str, Any]:
-    """Return a scenario whose boxes are mesh files, which are written into a folder."""
-    changed = copy.deepcopy(scenario)
-    for i, model in enumerate(changed["models"].values()):
-        length, width, height = model.pop("box")
-        name = f"box-{i}.obj"
-        share = ORIGIN_SHARE.get(model["kind"], 0.5)
-        write_box(os.path.join(folder, name), (length, width, height), share)
-        model["mesh"] = name
-    return changed
+    held = {"acceleration_mps2": 0.0}
+    return Imported(document, report, _written(own, ego, shift) if own.poses else held)
 
 
 def _others(scene: Scene, own: Motion) -> list[tuple[Body, list[Motion]]]:
@@ -140,7 +137,7 @@ def _others(scene: Scene, own: Motion) -> list[tuple[Body, list[Motion]]]:
         up = body.ground_m - scene.ego.ground_m
         if abs(up) > LEVEL_M + _GRADE * away:
             report.leave_out(f"{body.name} stands {up:.3g} m above the ego: another level")
-        elif not body.stands and _is_own_recording(scene.ego, own, body, body_motions[0]):
+        elif not body.stands and _is_own_recording(scene.ego, body):
             report.leave_out(f"{body.name} is the ego's own recording: the same place and speed")
         else:
             found.append((away, i, body, body_motions))
@@ -160,14 +157,16 @@ def _wheels(ego: Body, centre: Pose) -> list[Pose]:
     return [moved(centre, a * behind, b * 0.4 * width) for a in (1, -1) for b in (1, -1)]
 
 
-def _is_own_recording(ego: Body, own: Motion, body: Body, other: Motion) -> bool:
+def _is_own_recording(ego: Body, body: Body) -> bool:
     """Return whether a recorded body is the vehicle that a planning problem starts from."""
     if not ego.place.startswith("planningProblem") or body.kind != ego.kind:
         return False
+    own = ego.tracks[0].states[0]
+    other = state_at(body.tracks[0], own.t_s)
     return (
-        math.hypot(other.start.x_m - own.start.x_m, other.start.y_m - own.start.y_m) < 2.5
-        and abs(wrapped(other.start.yaw_rad - own.start.yaw_rad)) < 0.2
-        and abs(other.speed_mps - own.speed_mps) < 2.0
+        math.dist(other.pose[:2], own.pose[:2]) < 2.5
+        and abs(wrapped(other.pose.yaw_rad - own.pose.yaw_rad)) < 0.2
+        and abs(forward_speed(other) - forward_speed(own)) < 2.0
     )
 
 

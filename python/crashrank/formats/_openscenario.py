@@ -14,7 +14,7 @@ from .._errors import BadInputError
 from ._document import Imported, make_document
 from ._entities import Entity, read_entities
 from ._parameters import Parameters
-from ._refusals import checked_ego, checked_horizon, checked_time, input_error, refuse
+from ._refusals import checked_choices, input_error, refuse
 from ._scene import FIXED, Body, Pose, Report, Scene, State, Track, moved, velocity_along
 from ._tables import ego_of
 from ._tracks import checked_track
@@ -53,8 +53,8 @@ def read_openscenario(
     horizon_s : float, default 4
         Seconds after the moment of decision that count.
     """
-    chosen, horizon = checked_ego(ego), checked_horizon(horizon_s)
-    at_s = checked_time(time_s, "time_s") or 0.0
+    chosen, at_s, horizon = checked_choices(ego, time_s, horizon_s)
+    at_s = at_s or 0.0
     root = read_xml(path, "OpenSCENARIO", "OpenSCENARIO file")
     header = root.need("FileHeader")
     if header.get("revMajor") != "1":

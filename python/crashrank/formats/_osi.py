@@ -10,10 +10,8 @@ from typing import Any
 from ._document import Imported, make_document
 from ._osi_messages import trace_messages
 from ._refusals import (
-    checked_ego,
+    checked_choices,
     checked_file,
-    checked_horizon,
-    checked_time,
     choice_error,
     refuse,
     refuse_size,
@@ -97,8 +95,8 @@ def read_osi(
     horizon_s : float, default 4
         Seconds after the moment of decision that count.
     """
-    chosen, horizon = checked_ego(ego), checked_horizon(horizon_s)
-    at_s = checked_time(time_s, "time_s") or 0.0
+    chosen, at_s, horizon = checked_choices(ego, time_s, horizon_s)
+    at_s = at_s or 0.0
     required_module("osi3", "osi-python", "osi")
     file, _ = checked_file(path, MAX_BYTES)
     report = Report("OSI ground truth", file)

@@ -8,7 +8,7 @@ import stat
 from collections.abc import Callable
 from typing import Any, NoReturn, TypeVar
 
-from .._checks import as_path
+from .._checks import as_number, as_path
 from .._errors import BadInputError, Error, LimitError, NotFoundError, UsageError
 from .._tables import missing
 
@@ -142,35 +142,21 @@ def number(text: object, file: str, place: str, low: float, high: float) -> floa
     return value
 
 
-def checked_time(value: object, name: str) -> float | None:
-    """Return an argument that is a time in seconds, or None."""
-    from .._checks import as_number
-
-    return None if value is None else as_number(value, name, "seconds")
-
-
-def checked_horizon(value: object) -> float:
-    """Return an argument that is a horizon in seconds."""
-    from .._checks import as_number
-
-    horizon = as_number(value, "horizon_s", "seconds")
+def checked_choices(
+    ego: object, time_s: object, horizon_s: object
+) -> tuple[str | None, float | None, float]:
+    """Return what every reader takes: name of the ego, moment of decision and horizon, s."""
+    if isinstance(ego, bool) or not isinstance(ego, (str, int, type(None))):
+        raise choice_error(
+            "", "ego", f"is a {type(ego).__name__}", "give its name or number in the file"
+        )
+    horizon = as_number(horizon_s, "horizon_s", "seconds")
     if not 0.1 <= horizon <= MAX_HORIZON_S:
-        raise UsageError(
-            "usage", "", "horizon_s", f"is {horizon:g}", f"give 0.1 to {MAX_HORIZON_S:g} seconds"
+        raise choice_error(
+            "", "horizon_s", f"is {horizon:g}", f"give 0.1 to {MAX_HORIZON_S:g} seconds"
         )
-    return horizon
-
-
-def checked_ego(value: object) -> str | None:
-    """Return an argument that names the ego, as text, or None."""
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, (str, int)):
-        raise UsageError(
-            "usage",
-            "",
-            "ego",
-            f"is a {type(value).__name__}",
-            "give its name or number in the file",
-        )
-    return str(value)
+    return (
+        None if ego is None else str(ego),
+        None if time_s is None else as_number(time_s, "time_s", "seconds"),
+        horizon,
+    )

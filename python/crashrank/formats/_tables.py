@@ -11,9 +11,7 @@ from dataclasses import dataclass, field
 
 from ._document import Imported, make_document
 from ._refusals import (
-    checked_ego,
-    checked_horizon,
-    checked_time,
+    checked_choices,
     choice_error,
     decoded,
     number,
@@ -88,11 +86,7 @@ def read_poses_csv(
     horizon_s : float, default 4
         Seconds after the moment of decision that count.
     """
-    chosen, horizon, at_s = (
-        checked_ego(ego),
-        checked_horizon(horizon_s),
-        checked_time(time_s, "time_s"),
-    )
+    chosen, at_s, horizon = checked_choices(ego, time_s, horizon_s)
     file, data = read_bytes(path, MAX_BYTES)
     report = Report("table of poses", file)
     rows = _rows(file, decoded(file, data))
@@ -215,11 +209,7 @@ def read_esmini_csv(
     horizon_s : float, default 4
         Seconds after the moment of decision that count.
     """
-    chosen, horizon, at_s = (
-        checked_ego(ego),
-        checked_horizon(horizon_s),
-        checked_time(time_s, "time_s"),
-    )
+    chosen, at_s, horizon = checked_choices(ego, time_s, horizon_s)
     file, data = read_bytes(path, MAX_BYTES)
     report = Report("esmini log", file)
     rows = _rows(file, decoded(file, data))

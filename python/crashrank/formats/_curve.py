@@ -1,0 +1,251 @@
+"""Decision curves: the least harm that can still be reached, over time, as text, JSON and plot."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from .._tables import missing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_COLOURS = {
+    "going on": "#c0392b",
+    "braking": "#e08e0b",
+    "steering": "#7b5ea7",
+    "least": "#0b6e99",
+}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A manoeuvre that can be chosen at a moment, and what it leads to."""
+
+    candidate: str
+    """Its name."""
+    acceleration_mps2: float
+    """Along the forward axis at the start; negative when braking."""
+    curvature_per_m: float
+    """Of its path at the start, left positive."""
+    score: float | None
+    """In the measure's unit; None where a deadline left only the interval."""
+    score_interval: tuple[float, float]
+    """Bounds on the score."""
+    collision_probability: float | None
+    """Over all futures; None where a deadline left it open."""
+    time_of_impact_s: float | None
+    """Earliest first contact of any future, s after the moment of decision."""
+    other: str | None
+    """Actor that is hit first, in the likeliest future."""
+    leaves_road: bool
+    """A wheel leaves the drivable areas."""
+
+    @property
+    def avoids(self) -> bool:
+        """Whether it is known to have no contact in any future."""
+        return self.collision_probability == 0.0
+
+    @property
+    def most(self) -> float:
+        """Score, or the upper bound where it is not known."""
+        return self.score_interval[1] if self.score is None else self.score
+
+    @property
+    def least(self) -> float:
+        """Score, or the lower bound where it is not known."""
+        return self.score_interval[0] if self.score is None else self.score
+
+
+@dataclass(frozen=True)
+class DecisionStep:
+    """What could be chosen at one moment."""
+
+    time_s: float
+    """On the file's clock."""
+    going_on: Choice
+    """The ego's recorded motion, else its speed and curvature held."""
+    best: Choice
+    """First of all manoeuvres."""
+    braking: Choice | None
+    """First of those that brake straight ahead."""
+    steering: Choice | None
+    """First of those that hold the speed and steer."""
+    complete: bool
+    """Every score is known."""
+
+    @property
+    def avoidable(self) -> bool:
+        """Whether any manoeuvre avoids every contact."""
+        return self.best.avoids
+
+    @property
+    def avoidable_by_braking(self) -> bool:
+        """Whether braking straight ahead avoids every contact."""
+        return self.braking is not None and self.braking.avoids
+
+    @property
+    def avoidable_by_steering(self) -> bool:
+        """Whether steering at held speed avoids every contact."""
+        return self.steering is not None and self.steering.avoids
+
+    @property
+    def halvable(self) -> bool:
+        """Whether a manoeuvre has at most half the score of going on."""
+        return self.best.most <= self.going_on.least / 2
+
+
+@dataclass(frozen=True)
+class DecisionCurve:
+    """What could be chosen before a contact, moment by moment; made by `find_decision_point`.
+
+    The last moment of a kind is the latest of `steps` at which it holds: from the next step on it
+    does not, so that the true moment lies less than a step later. None where no step has it.
+
+    Examples
+    --------
+    >>> from crashrank import formats
+    >>> curve = formats.find_decision_point("data/formats/crossing_poses.csv", step_s=0.25)
+    >>> curve.other, curve.last_avoidable.time_s
+    ('person', 1.75)
+    """
+
+    file: str
+    """What was read; empty for scenarios that were given."""
+    ego: str
+    """What decides."""
+    other: str
+    """Actor that the ego hits if it goes on."""
+    contact_time_s: float
+    """When it is hit, on the file's clock."""
+    measure: str
+    """What is compared; lower is better."""
+    measure_unit: str
+    """Unit of the scores."""
+    step_s: float
+    """Time between steps."""
+    steps: tuple[DecisionStep, ...]
+    """By rising time, all before the contact."""
+
+    @property
+    def last_avoidable(self) -> DecisionStep | None:
+        """Last step at which any manoeuvre avoids every contact."""
+        return self._last(lambda step: step.avoidable)
+
+    @property
+    def last_avoidable_by_braking(self) -> DecisionStep | None:
+        """Last step at which braking straight ahead avoids every contact."""
+        return self._last(lambda step: step.avoidable_by_braking)
+
+    @property
+    def last_avoidable_by_steering(self) -> DecisionStep | None:
+        """Last step at which steering at held speed avoids every contact."""
+        return self._last(lambda step: step.avoidable_by_steering)
+
+    @property
+    def last_halvable(self) -> DecisionStep | None:
+        """Last step at which a manoeuvre has at most half the score of going on."""
+        return self._last(lambda step: step.halvable)
+
+    def _last(self, holds: Callable[[DecisionStep], bool]) -> DecisionStep | None:
+        return next((step for step in reversed(self.steps) if holds(step)), None)
+
+    def _decisions(self) -> Iterator[tuple[str, str, DecisionStep | None, Choice | None]]:
+        """Return key, text, step and choice of each last moment."""
+        for key, text, step, way in (
+            ("avoidable", "avoidable", self.last_avoidable, "best"),
+            ("by_braking", "by braking", self.last_avoidable_by_braking, "braking"),
+            ("by_steering", "by steering", self.last_avoidable_by_steering, "steering"),
+            ("halvable", "half the harm", self.last_halvable, "best"),
+        ):
+            yield key, text, step, None if step is None else getattr(step, way)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain dicts and lists: the members, and under ``last`` the last moments."""
+        last = {
+            key: None
+            if step is None or choice is None
+            else {
+                "time_s": step.time_s,
+                "before_contact_s": self.contact_time_s - step.time_s,
+                "choice": dataclasses.asdict(choice),
+            }
+            for key, _, step, choice in self._decisions()
+        }
+        members = dataclasses.asdict(self)
+        steps = members.pop("steps")
+        return {**members, "last": last, "steps": steps}
+
+    def to_json(self) -> str:
+        """Return `to_dict` as JSON text."""
+        return json.dumps(self.to_dict(), ensure_ascii=False, allow_nan=False)
+
+    def lines(self) -> list[str]:
+        """Return the last moments and the table of all steps as text."""
+        found = [
+            f"{self.ego} hits {self.other} at {self.contact_time_s:.2f} s; scores in "
+            f"{self.measure_unit}, steps of {self.step_s:g} s"
+        ]
+        for _, text, step, choice in self._decisions():
+            if step is None or choice is None:
+                found.append(f"last {text}: at no step")
+                continue
+            away = ", leaves the road" if choice.leaves_road else ""
+            found.append(
+                f"last {text}: {step.time_s:.2f} s, {self.contact_time_s - step.time_s:.2f} s "
+                f"before the contact: {choice.candidate}{away}"
+            )
+        found.append("   time_s  going on     least   braking  steering  least harmful")
+        for each in self.steps:
+            ways = (each.going_on, each.best, each.braking, each.steering)
+            numbers = " ".join(f"{_shown(way):>9}" for way in ways)
+            found.append(f"{each.time_s:9.2f} {numbers}  {each.best.candidate}")
+        return found
+
+    def __str__(self) -> str:
+        """Return `lines` as one text."""
+        return "\n".join(self.lines())
+
+    def plot(self) -> Figure:
+        """Draw the scores over time with the last moments marked; needs matplotlib."""
+        try:
+            from .._figure import NotebookFigure
+        except ImportError:
+            raise missing("matplotlib", "notebook") from None
+        figure = NotebookFigure(figsize=(9, 4.2), layout="constrained")
+        axes = figure.subplots()
+        times = [step.time_s for step in self.steps]
+        for label, member in (
+            ("going on", "going_on"),
+            ("braking", "braking"),
+            ("steering", "steering"),
+            ("least", "best"),
+        ):
+            ways = [getattr(step, member) for step in self.steps]
+            low = [float("nan") if way is None else way.least for way in ways]
+            high = [float("nan") if way is None else way.most for way in ways]
+            colour = _COLOURS[label]
+            axes.plot(times, high, marker=".", color=colour, label=label)
+            axes.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0)
+        for _, text, moment, _ in self._decisions():
+            if moment is not None:
+                axes.axvline(moment.time_s, color="#8a8f98", linewidth=1, linestyle="--")
+                axes.text(
+                    moment.time_s, 0.98, f"last {text} ", rotation=90, ha="right", va="top",
+                    fontsize="small", transform=axes.get_xaxis_transform(),
+                )  # fmt: skip
+        axes.axvline(self.contact_time_s, color="black", linewidth=1.5)
+        axes.set_xlabel(f"time [s]; contact with {self.other} at {self.contact_time_s:.2f} s")
+        axes.set_ylabel(f"{self.measure} [{self.measure_unit}]")
+        axes.legend(loc="center left", fontsize="small")
+        return figure
+
+
+def _shown(way: Choice | None) -> str:
+    """Return a score in nine characters: none without a manoeuvre, a bound where not known."""
+    if way is None:
+        return "-"
+    return f"{way.score:.4g}" if way.score is not None else f"<={way.most:.3g}"

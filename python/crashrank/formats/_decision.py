@@ -1,0 +1,240 @@
+"""The point of decision: step back from a contact and rank what could be chosen at each step."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import pairwise
+from typing import Any, NoReturn
+
+from .._checks import as_count, as_number, as_path
+from .._errors import usage, wrong_type
+from .._ranking import RankedCandidate, Ranking, rank
+from ._curve import Choice, DecisionCurve, DecisionStep
+from ._document import Imported
+from ._readers import reader_of
+from ._refusals import MAX_HORIZON_S, refuse
+
+MAX_STEPS = 10_000
+# A grid's level of no acceleration or curvature, rounded.
+_ZERO = 1e-9
+
+
+def find_decision_point(
+    source: object,
+    *,
+    format: str | None = None,  # noqa: A002
+    ego: str | int | None = None,
+    time_s: float | None = None,
+    horizon_s: float = 10.0,
+    before_s: float = 3.0,
+    after_s: float = 2.0,
+    step_s: float = 0.1,
+    accelerations: int = 15,
+    steerings: int = 15,
+    measure: str | None = None,
+    risk: str | None = None,
+    deadline_s: float | None = None,
+    workers: int = 1,
+) -> DecisionCurve:
+    """Step back from a contact; say when it could last be avoided, or its harm be halved, and how.
+
+    At each step a grid of manoeuvres is ranked, and beside it the one that goes on: the ego's own
+    recording where the file has one, else its speed and curvature held. Contacts count until
+    `after_s` after the contact, whenever a manoeuvre begins.
+
+    Parameters
+    ----------
+    source : path, or iterable of Imported or of (time, scenario)
+        A file of one of the readers; or scenarios of successive moments, each a mapping with the
+        keys of a scenario file whose candidates are replaced.
+    format : str, optional
+        Name of the reader, as of ``crashrank import``. Default: by the file's ending.
+    ego : str or int, optional
+        As of the reader.
+    time_s : float, optional
+        From when on a contact is searched for, s on the file's clock. Default: as of the reader.
+    horizon_s : float, default 10
+        How long a contact is searched for, s.
+    before_s, after_s : float
+        How far before the contact the first step may lie, and how long after it contacts count, s.
+    step_s : float
+        Time between steps, s.
+    accelerations, steerings : int
+        Levels of the grid; odd numbers contain holding the speed and going straight.
+    measure, risk, deadline_s, workers
+        As of `crashrank.rank`, for each step.
+
+    Returns
+    -------
+    DecisionCurve
+
+    Raises
+    ------
+    BadInputError
+        Where the ego goes on without a contact.
+    UsageError, LimitError, NotFoundError
+        As of the reader and of `crashrank.rank`.
+    """
+    grid = {
+        "accelerations": as_count(accelerations, "accelerations", 1, 101),
+        "steerings": as_count(steerings, "steerings", 1, 101),
+    }
+    step = _seconds(step_s, "step_s")
+    before, after = _seconds(before_s, "before_s"), _seconds(after_s, "after_s")
+    file = ""
+    if isinstance(source, (str, bytes, os.PathLike)):
+        file = as_path(source, "source")
+        reader = reader_of(file, format)
+
+        def read(at_s: float | None, seconds: float) -> Imported:
+            return reader(file, time_s=at_s, ego=ego, horizon_s=seconds)
+
+        moments = _recorded(read, file, time_s, horizon_s, before, after, step)
+    else:
+        moments = _given(source)
+    ordered = sorted(moments, key=lambda moment: moment[0])
+    steps: list[DecisionStep] = []
+    for at_s, scenario, going_on, _ in ordered:
+        held = _going_on(scenario, going_on, measure, risk)
+        ranking = rank(
+            {**scenario, "candidates": {"grid": grid}}, measure=measure, risk=risk,
+            deadline_s=deadline_s, workers=workers,
+        )  # fmt: skip
+        steps.append(_step(at_s, held, ranking))
+    hits = [each for each in steps if each.going_on.time_of_impact_s is not None]
+    if not hits:
+        _refuse_free(file)
+    last = hits[-1].going_on
+    contact_s = hits[-1].time_s + (last.time_of_impact_s or 0.0)
+    if contact_s <= steps[0].time_s:
+        refuse(file, "ego", f"touches {last.other} at the first moment", "choose an earlier one")
+    between = [b.time_s - a.time_s for a, b in pairwise(steps)]
+    return DecisionCurve(
+        file=file,
+        ego=ordered[0][3],
+        other=last.other or "",
+        contact_time_s=contact_s,
+        measure=ranking.measure,
+        measure_unit=ranking.measure_unit,
+        step_s=round(max(between, default=step), 9),
+        steps=tuple(each for each in steps if each.time_s < contact_s),
+    )
+
+
+def first_contact(found: Imported) -> tuple[float, str] | None:
+    """Return when the ego hits which actor if it goes on, on the file's clock; None if it does not.
+
+    The earliest of all futures counts.
+    """
+    choice = _going_on(found.scenario, found.going_on)
+    if choice.time_of_impact_s is None:
+        return None
+    return found.report.time_s + choice.time_of_impact_s, choice.other or ""
+
+
+_Moment = tuple[float, Mapping[str, Any], Mapping[str, Any], str]
+
+
+def _recorded(
+    read: Callable[[float | None, float], Imported], file: str, time_s: float | None,
+    horizon_s: float, before_s: float, after_s: float, step_s: float,
+) -> Iterator[_Moment]:  # fmt: skip
+    """Return the moments of a file: whole steps after the first one, before its contact."""
+    first = read(time_s, horizon_s)
+    contact = first_contact(first)
+    if contact is None:
+        _refuse_free(file)
+    start_s = first.report.time_s
+    count = math.ceil((contact[0] - start_s) / step_s - 1e-6)
+    earliest = max(math.ceil((contact[0] - before_s - start_s) / step_s - 1e-6), 0)
+    if count - earliest > MAX_STEPS:
+        raise usage("step_s", f"makes {count - earliest} steps", f"at most {MAX_STEPS} are ranked")
+    for i in range(earliest, max(count, 1)):
+        at_s = round(start_s + i * step_s, 9)
+        seconds = min(max(contact[0] - at_s + after_s, 0.1), MAX_HORIZON_S)
+        found = read(at_s, seconds)
+        yield at_s, found.scenario, found.going_on, found.report.ego
+
+
+def _given(source: object) -> Iterator[_Moment]:
+    """Return the moments of scenarios that are given."""
+    if not isinstance(source, Iterable) or isinstance(source, Mapping):
+        raise wrong_type(
+            "source", f"is a {type(source).__name__}", "give a path, or scenarios with their times"
+        )
+    count = 0
+    for i, each in enumerate(source):
+        count += 1
+        if isinstance(each, Imported):
+            yield each.report.time_s, each.scenario, each.going_on, each.report.ego
+        elif isinstance(each, tuple) and len(each) == 2 and isinstance(each[1], Mapping):
+            yield as_number(each[0], f"source[{i}]", "seconds"), each[1], {}, "ego"
+        else:
+            raise wrong_type(
+                f"source[{i}]", f"is a {type(each).__name__}",
+                "give an Imported, or a tuple of a time and a scenario",
+            )  # fmt: skip
+    if not count:
+        raise usage("source", "is empty", "give one scenario or more")
+
+
+def _going_on(
+    scenario: Mapping[str, Any],
+    motion: Mapping[str, Any],
+    measure: str | None = None,
+    risk: str | None = None,
+) -> Choice:
+    """Return what going on leads to; ranked alone, so that no deadline leaves it open."""
+    listed = [{"name": "go on", **(motion or {"acceleration_mps2": 0.0})}]
+    alone = {"listed": listed, "grid": False, "add_straight_braking": False}
+    return _choice(rank({**scenario, "candidates": alone}, measure=measure, risk=risk).best)
+
+
+def _step(at_s: float, going_on: Choice, ranking: Ranking) -> DecisionStep:
+    grid = [_choice(row) for row in ranking]
+    straight = (c for c in grid if abs(c.curvature_per_m) < _ZERO and c.acceleration_mps2 < -_ZERO)
+    held = (c for c in grid if abs(c.curvature_per_m) > _ZERO > abs(c.acceleration_mps2))
+    return DecisionStep(
+        time_s=at_s,
+        going_on=going_on,
+        best=grid[0] if grid[0].most <= going_on.most else going_on,
+        braking=next(straight, None),
+        steering=next(held, None),
+        complete=ranking.complete,
+    )
+
+
+def _choice(row: RankedCandidate) -> Choice:
+    impacts = [
+        future.time_of_impact_s for future in row.futures if future.time_of_impact_s is not None
+    ]
+    if row.time_of_impact_s is not None:
+        impacts.append(row.time_of_impact_s)
+    others = [row.other] + [future.other for future in row.futures]
+    return Choice(
+        candidate=row.candidate,
+        acceleration_mps2=row.acceleration_mps2,
+        curvature_per_m=row.curvature_per_m,
+        score=row.score,
+        score_interval=(row.score_interval[0], row.score_interval[1]),
+        collision_probability=row.collision_probability,
+        time_of_impact_s=min(impacts, default=None),
+        other=next((other for other in others if other is not None), None),
+        leaves_road=row.leaves_road is not None,
+    )
+
+
+def _seconds(value: object, name: str) -> float:
+    seconds = as_number(value, name, "seconds")
+    if not 0.001 <= seconds <= MAX_HORIZON_S:
+        raise usage(name, f"is {seconds:g}", f"give 0.001 to {MAX_HORIZON_S:g} seconds")
+    return seconds
+
+
+def _refuse_free(file: str) -> NoReturn:
+    refuse(
+        file, "ego", "goes on without a contact",
+        "name another ego or time, or a longer horizon_s",
+    )  # fmt: skip

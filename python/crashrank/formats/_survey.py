@@ -1,0 +1,66 @@
+"""A table of the files in a folder: read or refused and why, bodies, what the ego hits."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Iterator
+from typing import Any
+
+from .._checks import as_path
+from .._errors import Error, NotFoundError
+from ._decision import first_contact
+from ._readers import format_of, reader_of
+
+COLUMNS = (
+    "file", "format", "read", "reason", "ego", "time_s", "bodies", "areas", "warnings", "hits",
+    "contact_time_s",
+)  # fmt: skip
+
+
+def survey(folder: object, *, horizon_s: float = 10.0) -> Iterator[dict[str, Any]]:
+    """Return a row with `COLUMNS` for each file below a folder whose format is known.
+
+    ``hits`` is the actor that the ego hits if it goes on within `horizon_s`, at
+    ``contact_time_s`` on the file's clock; empty without a contact.
+    """
+    for path in _files(as_path(folder, "folder")):
+        row: dict[str, Any] = {"file": path, "format": format_of(path), "read": False}
+        try:
+            found = reader_of(path)(path, horizon_s=horizon_s)
+            contact = first_contact(found)
+        except Error as error:
+            yield {**row, "reason": str(error).removeprefix(f"{path}: ")}
+            continue
+        report = found.report
+        row.update(read=True, ego=report.ego, time_s=report.time_s, bodies=report.bodies)
+        row.update(areas=report.areas, warnings=len(report.warnings))
+        if contact is not None:
+            row.update(hits=contact[1], contact_time_s=round(contact[0], 3))
+        yield row
+
+
+def survey_table(folder: object, *, horizon_s: float = 10.0) -> str:
+    """Return the table of `survey` as CSV text."""
+    text = io.StringIO()
+    table = csv.DictWriter(text, COLUMNS, restval="", lineterminator="\n")
+    table.writeheader()
+    table.writerows(survey(folder, horizon_s=horizon_s))
+    return text.getvalue()
+
+
+def _files(folder: str) -> Iterator[str]:
+    """Return the files and bags of a known format below a folder, sorted."""
+    if not os.path.isdir(folder):
+        raise NotFoundError("not_found", folder, "", "is no folder", "name a folder")
+    for at, folders, files in os.walk(folder):
+        folders.sort()
+        if format_of(at):
+            folders.clear()
+            yield at
+            continue
+        for name in sorted(files):
+            path = os.path.join(at, name)
+            if format_of(path):
+                yield path
