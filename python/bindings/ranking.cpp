@@ -110,6 +110,14 @@ std::string html_of(const Ranked& ranked, std::size_t drawn) {
   return html_report(ranked.scenario, ranked.situation->models(), ranked.result, options);
 }
 
+std::string text_of(const Ranked& ranked) {
+  const nb::gil_scoped_release unlocked;
+  RankingTextOptions options;
+  options.top = 20;
+  options.width = 100;
+  return ranking_text(ranked.scenario, ranked.situation->models(), ranked.result, options);
+}
+
 /// x, y (m) and heading (rad) in the world, by motion and time.
 PathArray sample_motions(const std::vector<Motion>& motions, const GivenTimes& times) {
   std::vector<double> values;
@@ -158,6 +166,7 @@ nb::ndarray<nb::numpy, double, nb::shape<-1, 2>> outline_of(const Ranked& ranked
 void bind_rankings(nb::module_& module) {
   nb::class_<Ranked>(module, "Ranked", "A ranking with its scenario and models.")
       .def("json", &json_of, "The document that `crashrank rank --json` prints.")
+      .def("text", &text_of, "The table that `crashrank rank` prints.")
       .def("html", &html_of, nb::arg("drawn"), "The report, one page.")
       .def("candidate_paths", &candidate_paths, nb::arg("times_s").noconvert(),
            "x, y, heading by rank and time; m, rad, world.")

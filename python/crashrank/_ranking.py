@@ -157,15 +157,25 @@ class Ranking(Sequence[RankedCandidate]):
         return sorted({*super().__dir__(), *self._document})
 
     @overload
-    def __getitem__(self, index: int) -> RankedCandidate: ...
+    def __getitem__(self, index: int | str) -> RankedCandidate: ...
     @overload
     def __getitem__(self, index: slice) -> tuple[RankedCandidate, ...]: ...
-    def __getitem__(self, index: int | slice) -> RankedCandidate | tuple[RankedCandidate, ...]:
-        """Return the candidate at that place, from 0."""
+    def __getitem__(
+        self, index: int | str | slice
+    ) -> RankedCandidate | tuple[RankedCandidate, ...]:
+        """Return the candidate at that place, from 0, or of that name.
+
+        Raises `UsageError` where no candidate has the name.
+        """
         rows = self._document["ranking"]
         if isinstance(index, slice):
             return tuple(RankedCandidate(row) for row in rows[index])
-        return RankedCandidate(rows[index])
+        if not isinstance(index, str):
+            return RankedCandidate(rows[index])
+        for row in rows:
+            if row["candidate"] == index:
+                return RankedCandidate(row)
+        raise no_candidate(index)
 
     def __len__(self) -> int:
         """Return the number of candidates."""
@@ -184,14 +194,6 @@ class Ranking(Sequence[RankedCandidate]):
     def interrupted(self) -> bool:
         """Whether Ctrl-C ended the ranking: `complete` is then false."""
         return self._ranked.interrupted
-
-    @checked_call
-    def named(self, candidate: str) -> RankedCandidate:
-        """Return the candidate of that name. Raises `UsageError` where there is none."""
-        for row in self._document["ranking"]:
-            if row["candidate"] == candidate:
-                return RankedCandidate(row)
-        raise no_candidate(candidate)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the answer as ``crashrank rank --json`` prints it: plain dicts and lists."""
@@ -267,6 +269,10 @@ class Ranking(Sequence[RankedCandidate]):
             'style="width:100%;height:640px;border:0" title="crashrank report" '
             f'srcdoc="{page}"></iframe>'
         )
+
+    def __str__(self) -> str:
+        """Return the table that ``crashrank rank`` prints, 100 columns wide."""
+        return self._ranked.text()
 
     def __repr__(self) -> str:
         """Return the number of candidates and the best."""

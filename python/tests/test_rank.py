@@ -45,11 +45,12 @@ def test_measures_are_those_of_the_command(measure):
     assert without_times(mine.to_dict()) == without_times(told)
 
 
-def test_risk_profile_and_futures_reach_the_engine():
+def test_risk_profile_futures_and_order_reach_the_engine():
     path = DATA / "scenarios/oncoming_may_turn.json"
     profile = DATA / "profiles/everybody_alike.json"
-    told = run_command("rank", path, "--risk", "cvar:0.8", "--profile", profile, "--futures", 32)
-    mine = crashrank.rank(path, risk="cvar:0.8", profile=profile, futures=32)
+    words = ["--risk", "cvar:0.8", "--profile", profile, "--futures", 32, "--order", "upper"]
+    told = run_command("rank", path, *words)
+    mine = crashrank.rank(path, risk="cvar:0.8", profile=profile, futures=32, order="upper")
     assert without_times(mine.to_dict()) == without_times(told)
 
 
@@ -96,7 +97,7 @@ def test_a_body_may_be_a_box_of_a_kind():
         )
 
     ranking = crashrank.rank(scene(kind="car", box=(4.6, 1.8, 1.5)))
-    assert ranking.named("on").score > 0.0
+    assert ranking["on"].score > 0.0
     assert any("models.seen is a car of 4.6 x 1.8 x 1.5 m" in w for w in ranking.warnings)
     for body, key in (
         ({"box": [4.6, 1.8, 1.5]}, "kind"),
@@ -145,7 +146,11 @@ def test_attributes_are_named_as_in_the_answer(truck_ranking):
     assert truck_ranking.best is not None
     assert truck_ranking[-1].rank == 5
     assert [c.rank for c in truck_ranking[:2]] == [1, 2]
-    assert truck_ranking.named("brake in lane").candidate == "brake in lane"
+    assert truck_ranking["brake in lane"].candidate == "brake in lane"
+    with pytest.raises(crashrank.UsageError):
+        truck_ranking["no such candidate"]
+    rows = [line for line in str(truck_ranking).splitlines() if line[:4].strip().isdigit()]
+    assert all(c.candidate in row for c, row in zip(truck_ranking, rows, strict=True))
     with pytest.raises(AttributeError):
         truck_ranking.best.no_such_key  # noqa: B018
     with pytest.raises(AttributeError):
@@ -388,5 +393,5 @@ def test_bodies_in_memory_are_ranked():
     assert scenario.candidates[0] == "go"
     ranking = crashrank.rank(scenario)
     # 12 m between origins, 4 m of length: the surfaces are 8 m apart.
-    assert ranking.named("go").time_of_impact_s == pytest.approx(8 / 15, abs=1e-3)
+    assert ranking["go"].time_of_impact_s == pytest.approx(8 / 15, abs=1e-3)
     assert str(ROOT) not in json.dumps(ranking.to_dict())
