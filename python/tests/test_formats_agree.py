@@ -174,7 +174,7 @@ def test_code_of_the_guide_runs():
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("15.0 2\n")
-    assert len(text.split()) <= 1200
+    assert len(text.split()) <= 1500
 
 
 def test_public_names_are_documented():

@@ -14,6 +14,7 @@ pytest.importorskip("pandas")
 FOLDER = ROOT / "docs/notebooks"
 # What an output has to hold.
 SHOWN = {
+    "decision_curve": ["hits pedestrian 2 at 2.1", "last_halvable: 0.", "False"],
     "first_ranking": ["1 coast into the barrier", "sandbox=", "score_lowest", "14.0 m/s: "],
     "planner_loop": ["0.7 s  brake", "score_highest"],
     "scene_database": ["12 of 12 scenes", "; 0 ranked in", "broken", "_summary.html"],
@@ -52,4 +53,4 @@ def test_notebooks_run(name, tmp_path, monkeypatch):
     for text in SHOWN[name]:
         assert text in shown
     figures = [o for cell in code for o in cell.outputs if "image/png" in o.get("data", {})]
-    assert bool(figures) == (name == "first_ranking")
+    assert bool(figures) == (name in ("decision_curve", "first_ranking"))

@@ -14,7 +14,6 @@ from ._survey import survey_table
 
 EXIT_CODES = {"usage": 2, "internal": 1, "out_of_memory": 4, "out_of_budget": 4}
 
-
 _DESCRIPTION = """Converts a scene of another tool to a scenario file, and prints what was assumed.
 With --decide the moment of decision is the last at which the contact ahead can be avoided. The
 format survey writes a table (CSV) of all files in a folder: read or refused, and what is hit."""
