@@ -120,13 +120,19 @@ inline int orient2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Ei
                     int dropped, std::uint64_t& exact_calls) {
   const int i = (dropped + 1) % 3;
   const int j = (dropped + 2) % 3;
-  const double left = (b[i] - a[i]) * (c[j] - a[j]);
-  const double right = (b[j] - a[j]) * (c[i] - a[i]);
+  const double bi = b[i] - a[i];
+  const double bj = b[j] - a[j];
+  const double ci = c[i] - a[i];
+  const double cj = c[j] - a[j];
+  const double left = bi * cj;
+  const double right = bj * ci;
   const double determinant = left - right;
   const double bound =
       detail::predicate_error * (std::abs(left) + std::abs(right)) + detail::underflow_floor;
   if (determinant > bound) return 1;
   if (determinant < -bound) return -1;
+  // Equal coordinates make an exact 0 without integers: edges of boxes share lines.
+  if ((bi == 0.0 || cj == 0.0) && (bj == 0.0 || ci == 0.0)) return 0;
   ++exact_calls;
   return detail::orient2d_exact(a[i], a[j], b[i], b[j], c[i], c[j]);
 }
