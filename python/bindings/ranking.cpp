@@ -24,6 +24,7 @@ RankOptions options_of(const RankRequest& request, const Scenario& scenario) {
   options.workers = request.workers;
   options.sampled_futures = request.sampled_futures;
   options.records_motion = request.motion;
+  options.smooth = request.smooth;
   if (!request.measure.empty()) options.measure = value_of(measure_from_name(request.measure));
   if (!request.risk.empty()) options.risk = value_of(risk_from_name(request.risk));
   options.order = value_of(order_from_name(request.order));
@@ -179,9 +180,10 @@ void bind_rankings(nb::module_& module) {
       .def_ro("interrupted", &Ranked::interrupted, "Whether Ctrl-C ended it.");
   nb::class_<RankRequest>(module, "RankRequest", "What is asked of every ranking.")
       .def(nb::init<std::string, std::string, std::string, std::string, std::string, unsigned,
-                    std::size_t, bool>(),
+                    std::size_t, bool, bool>(),
            nb::arg("measure"), nb::arg("risk"), nb::arg("infeasible"), nb::arg("order"),
-           nb::arg("profile"), nb::arg("workers"), nb::arg("futures"), nb::arg("motion") = false);
+           nb::arg("profile"), nb::arg("workers"), nb::arg("futures"), nb::arg("motion") = false,
+           nb::arg("smooth") = false);
   nb::class_<RankBudget>(module, "RankBudget", "Where one ranking ends early.")
       .def(
           "__init__",

@@ -24,6 +24,7 @@ struct RankRequest {
   unsigned workers = 1;
   std::size_t sampled_futures = RankOptions{}.sampled_futures;
   bool motion = false;  ///< RankOptions::records_motion
+  bool smooth = false;  ///< RankOptions::smooth
 };
 
 /// The library's options. Reads the profile. Throws Failure.

@@ -21,6 +21,7 @@ def as_request(
     profile: object,
     futures: object,
     motion: object = False,
+    smooth: object = False,
 ) -> _core.RankRequest:
     """Return what is asked of every ranking: an absent measure or risk is the scenario's."""
     return _core.RankRequest(
@@ -32,6 +33,7 @@ def as_request(
         as_count(workers, "workers", 1, _core.max_workers),
         as_count(futures, "futures", 1, _core.max_sampled_futures),
         as_flag(motion, "motion"),
+        as_flag(smooth, "smooth"),
     )
 
 

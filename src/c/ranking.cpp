@@ -39,6 +39,7 @@ Result<RankOptions> to_options(const crashrank_rank_options& options) {
     made.order = *order;
   }
   made.records_motion = options.motion != 0;
+  made.smooth = options.smooth != 0;
   return made;
 }
 

@@ -23,6 +23,8 @@ public:
   Clock::time_point time() const { return time_; }
   /// The same deadline, earlier by the given duration.
   Deadline earlier_by(Clock::duration time) const { return Deadline(time_ - time, cancel_); }
+  /// The same cancellation alone.
+  Deadline without_time() const { return Deadline(cancel_); }
   bool expired() const {
     if (cancel_ != nullptr && cancel_->load(std::memory_order_relaxed)) return true;
     return is_set_ && Clock::now() >= time_;

@@ -22,6 +22,9 @@ detail::OrderKey result_key(const CandidateResult& c, const RankResult& of) {
   if (!c.contacts.empty()) {
     key.first_s = c.contacts.front().time_of_impact_s;
     key.closing_mps = c.contacts.front().closing_speed_mps;
+  } else if (c.first_touch) {
+    key.first_s = c.first_touch->time_of_impact_s;
+    key.closing_mps = c.first_touch->closing_speed_mps;
   }
   if (c.at_horizon) key.end_speed_mps = c.at_horizon->speed_mps;
   return key;
@@ -45,6 +48,23 @@ std::size_t first_by(const RankResult& result, RankOrder order) noexcept {
                         detail::ordering_score(ranking[first], order)) {
       first = row;
     }
+  }
+  return first;
+}
+
+std::optional<std::size_t> first_without_errors(const RankResult& result) noexcept {
+  const std::vector<CandidateResult>& ranking = result.ranking;
+  if (!result.futures.has_state_errors || result.futures.combinations > 1.0) return std::nullopt;
+  std::optional<std::size_t> first;
+  double least = std::numeric_limits<double>::infinity();
+  const bool keeps = result.infeasible == Infeasible::keep;
+  for (std::size_t row = 0; row < ranking.size(); ++row) {
+    if (!ranking[row].score || ranking[row].futures.empty()) return std::nullopt;
+    if (!keeps && !ranking[row].feasible && ranking.front().feasible) continue;
+    const double score = ranking[row].futures.front().score;
+    if (first && !(score < least)) continue;
+    first = row;
+    least = score;
   }
   return first;
 }

@@ -92,6 +92,29 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
   return vehicle;
 }
 
+/// The scenario with `small_errors` where the state of a moving body has none.
+Scenario with_small_errors(Scenario scenario, const std::vector<RankedBody>& actors) {
+  if (!scenario.ego.uncertainty.any()) scenario.ego.uncertainty = small_errors;
+  for (std::size_t i = 0; i < actors.size(); ++i) {
+    StateUncertainty& own = scenario.actors[i].perception;
+    if (std::isfinite(actors[i].mass_kg) && !own.any()) own = small_errors;
+  }
+  return scenario;
+}
+
+Result<Futures> make_futures(const Scenario& scenario, const std::vector<RankedBody>& actors,
+                             const RankOptions& options) {
+  if (!options.smooth) return Futures::make(scenario, options.sampled_futures);
+  Result<Futures> stated = Futures::make(scenario, options.sampled_futures);
+  if (!stated) return stated;
+  const std::size_t drawn = stated->summary.method == FutureMethod::certain
+                                ? std::min(options.sampled_futures, smooth_futures)
+                                : options.sampled_futures;
+  Result<Futures> smoothed = Futures::make(with_small_errors(scenario, actors), drawn);
+  if (smoothed) smoothed->summary.smooth = true;
+  return smoothed;
+}
+
 /// Checks that fixed bodies have one pose without errors.
 Status check_fixed(const Scene& scene, const Scenario& scenario) {
   for (std::size_t i = 0; i < scene.actors.size(); ++i) {
@@ -230,7 +253,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     added.occupants = actor.occupants;
   }
 
-  Result<Futures> futures = Futures::make(scenario, options.sampled_futures);
+  Result<Futures> futures = make_futures(scenario, result.actors, options);
   if (!futures) return futures.error();
   scene.futures = std::move(*futures);
   if (options.risk) scene.futures.summary.risk = *options.risk;

@@ -343,6 +343,20 @@ void doubt_keys(const Scenario& scenario, std::vector<std::string>& doubts) {
                                scenario.keys_without_effect.size() == 1 ? "it" : "them"));
 }
 
+void doubt_explanation(const RankResult& result, std::vector<std::string>& doubts) {
+  const auto brief = std::count_if(
+      result.ranking.begin(), result.ranking.end(),
+      [](const CandidateResult& ranked) { return ranked.score && ranked.first_touch; });
+  if (brief == 0) return;
+  doubts.push_back(fmt::format(
+      "the explanation ended after {} of {} candidates with contacts: the others have score and "
+      "first contact alone, and no places were compared in samples; rank without a deadline",
+      std::count_if(result.ranking.begin(), result.ranking.end(),
+                    [](const CandidateResult& ranked) { return !ranked.contacts.empty(); }),
+      std::count_if(result.ranking.begin(), result.ranking.end(),
+                    [](const CandidateResult& ranked) { return ranked.collides; })));
+}
+
 void doubt_probabilities(const Scenario& scenario, std::vector<std::string>& doubts) {
   Counted normalised;
   for (const std::string& place : scenario.normalised) normalised.add(place);
@@ -377,6 +391,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_fixed(scenario, result, doubts);
   detail::doubt_bodies(scenario, models, result, doubts);
   doubt_keys(scenario, doubts);
+  doubt_explanation(result, doubts);
   doubt_probabilities(asked, doubts);
   return doubts;
 }

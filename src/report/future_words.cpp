@@ -2,6 +2,7 @@
 
 #include "report/score_text.hpp"
 
+#include "crashrank/rank/rank.hpp"
 #include "crashrank/scenario/harm_options.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <numbers>
 #include <optional>
 
 namespace crashrank::detail {
@@ -31,6 +33,12 @@ std::string risk_words(const RiskMeasure& risk) {
   return {};
 }
 
+std::string small_error_words() {
+  return fmt::format(", and small ones where none are stated ({:g} m, {:.1f}°, {:g} m/s)",
+                     small_errors.position_m, small_errors.heading_rad * (180.0 / std::numbers::pi),
+                     small_errors.speed_mps);
+}
+
 std::string method_words(const FutureSummary& summary) {
   switch (summary.method) {
     case FutureMethod::certain:
@@ -47,12 +55,13 @@ std::string method_words(const FutureSummary& summary) {
       if (summary.has_state_errors) {
         return fmt::format(
             "{} futures are drawn{}, with the stated errors of positions, headings and speeds of "
-            "the ego and of perceived actors; they are the same for all candidates and in every "
+            "the ego and of perceived actors{}; they are the same for all candidates and in every "
             "run.",
             summary.sampled,
             summary.combinations > 1.0
                 ? fmt::format(" of {:.3g} combinations of predictions", summary.combinations)
-                : std::string());
+                : std::string(),
+            summary.smooth ? small_error_words() : std::string());
       }
       return fmt::format(
           "Of {:.3g} combinations of predictions {} are drawn, the same for all candidates and in "

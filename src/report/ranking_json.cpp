@@ -245,7 +245,7 @@ Json candidate_json(const Scenario& scenario, View<const Model> models, const Ra
     entry["delta_v_mps"] = both(crash.ego.delta_v_mps, crash.other.delta_v_mps);
     entry["pdof_deg"] = both(crash.ego.pdof_deg, crash.other.pdof_deg);
   }
-  if (ranked.score) {
+  if (ranked.score && !ranked.first_touch) {
     detail::add_damage(entry, detail::summary_of(ranked.ego, models[scenario.ego.model].mesh),
                        detail::summary_of_others(scenario, models, ranked));
   } else {
@@ -325,6 +325,10 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
     if (result.ranking.empty()) continue;
     name = result.candidates[result.ranking[first_by(result, order)].candidate].name;
   }
+  Json& exact = first["without_errors"];
+  if (const auto row = first_without_errors(result)) {
+    exact = result.candidates[result.ranking[*row].candidate].name;
+  }
   const RankWork& work = result.work;
   Json document{{"scenario", scenario.name},
                 {"measure", measure_name(result.measure)},
@@ -342,6 +346,7 @@ std::string ranking_json(const Scenario& asked, View<const Model> models, const 
                   {"undrawn", result.futures.undrawn},
                   {"combinations", result.futures.combinations},
                   {"left_out", result.futures.left_out},
+                  {"smooth", result.futures.smooth},
                   {"risk", risk_name(result.futures.risk)}}},
                 {"infeasible", infeasible_name(result.infeasible)},
                 {"order", order_name(result.order)},

@@ -175,8 +175,9 @@ std::string ranking_text(const Scenario& asked, View<const Model> models, const 
   for (const std::string& words : detail::not_separable_words(result, shown)) {
     text += escape_terminal(words) + "\n";
   }
-  if (const std::string words = detail::other_order_words(result); !words.empty()) {
-    text += escape_terminal(words) + "\n";
+  for (const std::string& words :
+       {detail::other_order_words(result), detail::without_errors_words(result)}) {
+    if (!words.empty()) text += escape_terminal(words) + "\n";
   }
   for (const std::string& words : detail::pushed_words(scenario, result, shown)) {
     text += escape_terminal(words) + "\n";

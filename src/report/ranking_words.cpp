@@ -210,6 +210,14 @@ std::string other_order_words(const RankResult& result) {
                    quoted(result, other), *its.score, *mine.score);
 }
 
+std::string without_errors_words(const RankResult& result) {
+  const std::size_t other = first_without_errors(result).value_or(0);
+  if (other == 0) return {};
+  return fmt::format("Errors of states decide: without them {} is first, {:.2g} against {:.2g}",
+                     quoted(result, other), result.ranking[other].futures.front().score,
+                     result.ranking.front().futures.front().score);
+}
+
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked) {
   std::string likeliest = outcome_of_likeliest(scenario, ranked);
   if (ranked.futures.size() < 2) return likeliest;

@@ -55,6 +55,10 @@ std::vector<std::string> pushed_words(const Scenario& scenario, const RankResult
 /// both agree.
 std::string other_order_words(const RankResult& result);
 
+/// That another candidate would be first without errors of states, one sentence; empty where none
+/// is or where that is not known.
+std::string without_errors_words(const RankResult& result);
+
 /// What a candidate leads to, one sentence of plain text: "hits the lorry after 1.48 s at 23.1
 /// m/s".
 std::string outcome_words(const Scenario& scenario, const CandidateResult& ranked);

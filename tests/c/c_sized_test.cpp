@@ -124,7 +124,7 @@ TEST(CApi, MembersThatASmallerStructLacksTakeTheirDefaults) {
   body.surface = 77;
   EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_OK)
       << error.message;
-  crashrank_rank_options options{sizeof(std::size_t), 99, 1000, 1, 0, 99, 1};
+  crashrank_rank_options options{sizeof(std::size_t), 99, 1000, 1, 0, 99, 1, 1};
   const Models models = make_models();
   ASSERT_EQ(add_box(models.get()), CRASHRANK_OK);
   crashrank_ranking* answer = nullptr;

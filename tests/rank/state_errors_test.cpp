@@ -201,6 +201,34 @@ Scene gap_scene(bool of_cars) {
   return scene;
 }
 
+TEST(StateErrors, SmoothScoresAreThoseOfSmallStatedErrors) {
+  Scene scene = gap_scene(false);
+  RankOptions smooth;
+  smooth.smooth = true;
+  const RankResult result = scene.ranked(smooth);
+  EXPECT_TRUE(result.futures.smooth);
+  EXPECT_EQ(result.futures.sampled, smooth_futures);
+  EXPECT_EQ(result.candidates[result.ranking.front().candidate].name, "brake");
+  const std::optional<std::size_t> exact = first_without_errors(result);
+  ASSERT_TRUE(exact.has_value());
+  EXPECT_EQ(result.candidates[result.ranking[*exact].candidate].name, "through");
+  EXPECT_FALSE(first_without_errors(scene.ranked()).has_value());
+
+  // The walls at both sides do not move, so they have no errors.
+  scene.scenario.ego.uncertainty = small_errors;
+  for (ScenarioActor& actor : scene.scenario.actors) {
+    if (actor.name == "follower") actor.perception = small_errors;
+  }
+  RankOptions stated;
+  stated.sampled_futures = smooth_futures;
+  EXPECT_EQ(scores_of(scene.ranked(stated)), scores_of(result));
+  // Stated errors remain, and as many futures as asked.
+  scene.scenario.ego.uncertainty.position_m = 0.2;
+  smooth.sampled_futures = 32;
+  stated.sampled_futures = 32;
+  EXPECT_EQ(scores_of(scene.ranked(smooth)), scores_of(scene.ranked(stated)));
+}
+
 TEST(StateErrors, ATightGapLosesItsFirstPlace) {
   Scene scene = gap_scene(false);
   const RankResult exact = scene.ranked();

@@ -51,6 +51,7 @@ struct FutureSummary {
   std::size_t left_out = 0;
   RiskMeasure risk;               ///< measure that combines the scores of all futures
   bool has_state_errors = false;  ///< positions, headings and speeds are drawn with errors
+  bool smooth = false;            ///< RankOptions::smooth was requested
 };
 
 /// Outcome of a candidate in futures that are equivalent for it: all bodies that act in its crash,

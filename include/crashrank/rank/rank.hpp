@@ -53,6 +53,12 @@ CRASHRANK_API const char* order_name(RankOrder order) noexcept;
 /// Errors: usage, listing the names.
 CRASHRANK_API Result<RankOrder> order_from_name(const std::string& name);
 
+/// What RankOptions::smooth adds: less than perception and localisation of vehicles leave open, and
+/// more than the steps that a contact takes from catching to slipping. A design choice.
+inline constexpr StateUncertainty small_errors{0.05, 0.0035, 0.1};
+/// Most futures that are drawn for these errors alone.
+inline constexpr std::size_t smooth_futures = 16;
+
 /// How candidates are ranked.
 struct RankOptions {
   std::optional<Measure> measure;  ///< absent: the scenario's
@@ -69,6 +75,11 @@ struct RankOptions {
   std::size_t sampled_futures = 64;
   Infeasible infeasible = Infeasible::demote;  ///< of candidates that the ego cannot follow
   RankOrder order = RankOrder::score;          ///< `Ranker` refuses `upper`: it has no samples
+  /// Gives `small_errors` to every moving body whose state has none. Scores are then means over
+  /// these, so no candidate is first for a centimetre by which a catch becomes a slip. A scenario
+  /// with one future is drawn in `smooth_futures` of them, or in `sampled_futures` if they are
+  /// fewer; it costs as many times as much.
+  bool smooth = false;
   bool records_motion = false;  ///< fills in CandidateResult::motion; `Ranker` ignores it
   ImpactOptions impact;         ///< `start_is_apart` is set internally
   /// Called before each simulation and after each candidate with the number of candidates evaluated
@@ -161,7 +172,8 @@ struct CandidateResult {
   /// unless it does not count (Infeasible::keep), `feasible`, also where the score is not.
   bool searched = false;
   bool collides = false;  ///< the ego has a contact in the likeliest future
-  /// The first contact in the likeliest future if the crash was not evaluated.
+  /// The first contact in the likeliest future if the crash was not evaluated, or not explained in
+  /// time: then contacts, damage and samples are absent although the score may be known.
   std::optional<FirstTouch> first_touch;
   /// Contacts of the ego in the order of their begin times: the first, from the exact search, then
   /// those of the simulated scene.
@@ -408,6 +420,11 @@ CRASHRANK_API Result<RankResult> rank(const Scenario& scenario, View<const Model
 /// candidates that infeasibility does not demote, ties to the earlier row; 0 for an empty ranking.
 /// Linear in the candidates; safe from any thread.
 CRASHRANK_API std::size_t first_by(const RankResult& result, RankOrder order) noexcept;
+
+/// Row of the ranking that would be first without errors of states: the least score in the
+/// likeliest future. Absent if there are no such errors, if the scenario allows several
+/// combinations or if a score is not known. Linear in the candidates; safe from any thread.
+CRASHRANK_API std::optional<std::size_t> first_without_errors(const RankResult& result) noexcept;
 
 /// Number of samples of unknown parameters, without the numerical ones.
 CRASHRANK_API std::size_t range_sample_count(const RankResult& result) noexcept;

@@ -1,5 +1,6 @@
 #include "crashrank/rank/anytime/ranker.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -22,7 +23,10 @@ Result<RankResult> rank_within(const Scenario& scenario, View<const Model> model
   Result<Ranker> ranker = Ranker::prepare(scenario, models, prepared);
   if (!ranker) return ranker.error();
   const RankerAnswer answer = ranker->rank(*candidates, budget);
-  return ranker->explain(*candidates, answer, budget.cancel);
+  const double explained_s = budget.deadline_s < std::numeric_limits<double>::infinity()
+                                 ? std::max(budget.deadline_s, least_explanation_s)
+                                 : budget.deadline_s;
+  return ranker->explain(*candidates, answer, budget.cancel, explained_s);
 }
 
 }  // namespace crashrank

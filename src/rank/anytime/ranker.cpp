@@ -23,6 +23,15 @@ using detail::CandidateState;
 using detail::Deadline;
 using detail::seconds_between;
 
+Deadline ends_after(double seconds, Deadline::Clock::time_point start,
+                    const std::atomic<bool>* cancel) noexcept {
+  constexpr double longest_s = 1e6;
+  if (!(seconds < longest_s)) return Deadline(cancel);
+  return Deadline(start + std::chrono::duration_cast<Deadline::Clock::duration>(
+                              std::chrono::duration<double>(std::max(seconds, 0.0))),
+                  cancel);
+}
+
 }  // namespace
 
 Ranker::Ranker(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -232,14 +241,7 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
   // Reserve for the work after the last check of the clock: sorting and hashing.
   const auto count = static_cast<double>(candidates.size());
   const double finishing_s = 4e-6 + 40e-9 * count * std::log2(count + 2.0);
-  Deadline deadline(budget.cancel);
-  constexpr double longest_s = 1e6;
-  if (budget.deadline_s < longest_s) {
-    const double seconds = std::max(budget.deadline_s - finishing_s, 0.0);
-    deadline = Deadline(start + std::chrono::duration_cast<Deadline::Clock::duration>(
-                                    std::chrono::duration<double>(seconds)),
-                        budget.cancel);
-  }
+  const Deadline deadline = ends_after(budget.deadline_s - finishing_s, start, budget.cancel);
   answer.effort.prepare_s = s.prepare_s;
   s.begin(candidates);
   if (s.rounds.await(deadline)) {
@@ -252,7 +254,8 @@ RankerAnswer Ranker::rank(View<const Candidate> candidates, const RankBudget& bu
 }
 
 Result<RankResult> Ranker::explain(View<const Candidate> candidates, const RankerAnswer& answer,
-                                   const std::atomic<bool>* cancel) {
+                                   const std::atomic<bool>* cancel, double limit_s) {
+  const auto start = Deadline::Clock::now();
   return detail::guarded([&]() -> Result<RankResult> {
     State& s = *state_;
     if (!answer.status) return answer.status.error();
@@ -270,18 +273,20 @@ Result<RankResult> Ranker::explain(View<const Candidate> candidates, const Ranke
     }
     result.candidates.assign(candidates.begin(), candidates.end());
     result.ranking.resize(answer.ranking.size());
-    const Deadline deadline(cancel);
-    s.explain_all(candidates, answer, deadline, result);
+    const Deadline deadline = ends_after(limit_s, start, cancel);
+    bool in_time = s.explain_all(candidates, answer, deadline, result);
     // Crashes of the samples can reach further than the nominal ones.
     for (int repeats = 0; detail::include_needed_actors(s.scene, s.needed, repeats, s.rings);
          ++repeats) {
-      s.explain_all(candidates, answer, deadline, result);
+      in_time = s.explain_all(candidates, answer, deadline, result);
     }
+    // Samples compare candidates, so they say nothing where some have none.
+    if (!in_time) result.samples.clear();
     result.futures = s.scene.futures.summary;
     for (const RankedCandidate& ranked : answer.ranking) {
       if (ranked.in_race) result.in_race.push_back(ranked.candidate);
     }
-    result.complete = answer.complete && !deadline.expired();
+    result.complete = answer.complete;
     result.infeasible = s.scene.infeasible;
     detail::drop_infeasible(result);
     result.proved = answer.proved;

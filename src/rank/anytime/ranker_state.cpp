@@ -124,22 +124,31 @@ void Ranker::State::begin(View<const Candidate> candidates) noexcept {
   needs_left_out = false;
 }
 
-void Ranker::State::explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
+bool Ranker::State::explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
                                 const Deadline& deadline, RankResult& result) {
   detail::Scratch scratch;
-  scratch.stop = {&Deadline::stop, const_cast<Deadline*>(&deadline)};
+  const Deadline cancelled = deadline.without_time();
+  bool in_time = true;
   for (std::size_t i = 0; i < answer.ranking.size(); ++i) {
     const RankedCandidate& ranked = answer.ranking[i];
     CandidateResult& full = result.ranking[i];
-    if (ranked.known && !deadline.expired()) {
+    full = {};
+    // What has no contact is found quickly, and its distances order it.
+    const bool has_contact = ranked.collides || ranked.collision_probability > 0.0;
+    scratch.stop = {&Deadline::stop, const_cast<Deadline*>(has_contact ? &deadline : &cancelled)};
+    if (ranked.known && !scratch.stopped()) {
       full = detail::evaluate(scene, candidates[ranked.candidate], scratch, result.work);
-    } else {
+    }
+    if (!full.score) {
+      in_time = in_time && !ranked.known;
+      full = {};
+      if (ranked.known) full.score = ranked.score;
       full.feasible = ranked.feasible;
       full.collides = ranked.collides;
       full.score_interval = ranked.interval;
       if (ranked.known || ranked.stage >= RankStage::searched) {
         full.searched = true;
-        full.score_estimate = ranked.estimate;
+        if (!ranked.known) full.score_estimate = ranked.estimate;
         full.collision_probability = ranked.collision_probability;
         if (ranked.collides) {
           full.first_touch = {ranked.actor, ranked.time_of_impact_s, ranked.closing_speed_mps};
@@ -149,6 +158,7 @@ void Ranker::State::explain_all(View<const Candidate> candidates, const RankerAn
     full.candidate = ranked.candidate;
   }
   scratch.add_needed(needed);
+  return in_time;
 }
 
 void Ranker::State::write_answer(RankerAnswer& answer, std::size_t all) noexcept {

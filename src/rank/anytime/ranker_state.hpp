@@ -53,9 +53,10 @@ struct CRASHRANK_HIDDEN Ranker::State {
                          RankerEffort& effort) noexcept;
   /// Resets all candidates to their upper bounds. Does not touch what running workers use.
   void begin(View<const Candidate> candidates) noexcept;
-  /// Evaluates the candidates of an answer in full. Marks in `needed` the actors that were left out
-  /// of the futures and that a crash reaches.
-  void explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
+  /// Evaluates the candidates of an answer in full, the first first. Marks in `needed` the actors
+  /// that were left out of the futures and that a crash reaches. Returns false if the deadline left
+  /// known ones without contacts and samples.
+  bool explain_all(View<const Candidate> candidates, const RankerAnswer& answer,
                    const detail::Deadline& deadline, RankResult& result);
   /// Writes the answer from the first `all` states. Does not touch what running workers use.
   void write_answer(RankerAnswer& answer, std::size_t all) noexcept;

@@ -169,6 +169,19 @@ TEST(Ranker, ExplainingACompleteAnswerEqualsRank) {
       EXPECT_EQ(p.within_numerical_error, q.within_numerical_error);
       EXPECT_EQ(p.sample_scores, q.sample_scores);
     }
+    // What time does not suffice for keeps its score and its first contact.
+    const Result<RankResult> brief = ranker->explain(plain.candidates, answer, nullptr, 0.0);
+    ASSERT_TRUE(brief.ok());
+    EXPECT_TRUE(brief->complete);
+    EXPECT_TRUE(brief->samples.empty());
+    for (std::size_t i = 0; i < plain.ranking.size(); ++i) {
+      const CandidateResult& p = plain.ranking[i];
+      const CandidateResult& q = brief->ranking[i];
+      EXPECT_EQ(p.score, q.score);
+      EXPECT_EQ(p.place, q.place);
+      EXPECT_TRUE(q.contacts.empty());
+      EXPECT_EQ(p.collides, q.first_touch.has_value());
+    }
     // Partial answers are explained without samples.
     RankBudget none;
     none.work = 0;

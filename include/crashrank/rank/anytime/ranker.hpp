@@ -196,10 +196,13 @@ public:
   /// Returns the result of `crashrank::rank` for an answer. If the answer is complete, the results
   /// are equal, including samples and intervals (HarmOptions::intervals). Otherwise there are no
   /// samples; known candidates have contacts and damage, the others intervals, and places are given
-  /// as far as they are decided. Takes unbounded time and allocates. Any thread may set `cancel`;
-  /// candidates that are not evaluated by then get bounds on their scores.
+  /// as far as they are decided. Allocates, and evaluates the known candidates once more, the first
+  /// first, on the calling thread. After `limit_s` or when any thread sets `cancel` the rest
+  /// keeps score and first touch alone (FirstTouch), and there are no samples; the candidate under
+  /// way is ended.
   Result<RankResult> explain(View<const Candidate> candidates, const RankerAnswer& answer,
-                             const std::atomic<bool>* cancel = nullptr);
+                             const std::atomic<bool>* cancel = nullptr,
+                             double limit_s = std::numeric_limits<double>::infinity());
 
 private:
   struct State;
@@ -207,8 +210,13 @@ private:
   std::unique_ptr<State> state_;
 };
 
+/// Shortest time that `rank_within` spends on the explanation of an answer with a deadline, s: what
+/// a person who waits for a table does not mind. A design choice.
+inline constexpr double least_explanation_s = 1.0;
+
 /// Ranks like `crashrank::rank` within a budget: prepares a Ranker, ranks the candidates of the
-/// scenario and explains the answer after the deadline. Without a budget use `rank`, which shares
+/// scenario and explains the answer after the deadline, for as long as the deadline or
+/// `least_explanation_s`. Without a budget use `rank`, which shares
 /// all work among threads. Policy and depth have no effect. Errors: as `rank`.
 CRASHRANK_API Result<RankResult> rank_within(const Scenario& scenario, View<const Model> models,
                                              const RankOptions& options, const RankBudget& budget);
