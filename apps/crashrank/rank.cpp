@@ -222,6 +222,9 @@ int run(const RankArguments& options) {
   how.order = *order;
   how.records_motion = options.motion;
   how.smooth = options.smooth;
+  // The table alone shows no more.
+  const bool in_full = options.json || !options.report.empty() || !options.damage_folder.empty();
+  if (!in_full && options.top > 0) how.damaged_places = options.top;
   if (const Result<BuildOptions> build = options.tree.build_options(); !build) {
     return fail(build.error());
   }

@@ -654,7 +654,7 @@ CRASHRANK_API crashrank_status crashrank_ranking_place(const crashrank_ranking* 
                                                        crashrank_error* error);
 /// Whether the candidate under `index` is separable from the next one: 1 or 0, -1 where the scores
 /// read simulated crashes and no samples were taken (or it is the last). 0 where they tie, score
-/// alike, the order reverses in more than 5 % of the samples, or half the steps or 1 mm aside
+/// alike, the order reverses in more than 5 % of the samples, or longer steps or 1 mm aside
 /// may turn it. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_ranking_separable(const crashrank_ranking* ranking,
                                                            size_t index, int32_t* separable,

@@ -355,7 +355,9 @@ def rank(
     Ranking
     """
     given = as_scenario(scenario, base, allow)
-    request = as_request(measure, workers, risk, infeasible, order, profile, futures, motion, smooth)
+    request = as_request(
+        measure, workers, risk, infeasible, order, profile, futures, motion, smooth
+    )
     budget = as_budget(deadline_s, work_budget, first_place_only)
     if motion and (deadline_s is not None or work_budget is not None or first_place_only):
         raise usage(

@@ -48,9 +48,21 @@ def test_measures_are_those_of_the_command(measure):
 def test_risk_profile_futures_and_order_reach_the_engine():
     path = DATA / "scenarios/oncoming_may_turn.json"
     profile = DATA / "profiles/everybody_alike.json"
-    words = ["--risk", "cvar:0.8", "--profile", profile, "--futures", 32, "--order", "upper", "--smooth"]
+    words = [
+        "--risk",
+        "cvar:0.8",
+        "--profile",
+        profile,
+        "--futures",
+        32,
+        "--order",
+        "upper",
+        "--smooth",
+    ]
     told = run_command("rank", path, *words)
-    mine = crashrank.rank(path, risk="cvar:0.8", profile=profile, futures=32, order="upper", smooth=True)
+    mine = crashrank.rank(
+        path, risk="cvar:0.8", profile=profile, futures=32, order="upper", smooth=True
+    )
     assert without_times(mine.to_dict()) == without_times(told)
 
 

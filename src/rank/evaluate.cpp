@@ -178,7 +178,7 @@ double max_score(const Scene& scene, const Candidate& candidate,
 CandidateResult finish_outcome(const Scene& scene, SimulatedOutcome& outcome,
                                PrecomputedPairs& found, Scratch& scratch, RankWork& work) {
   CandidateResult result = std::move(outcome.result);
-  for (std::size_t i = 0; i < outcome.plans.size(); ++i) {
+  for (std::size_t i = 0; scene.finds_damage && i < outcome.plans.size(); ++i) {
     const std::size_t k = i - std::min(i, result.contacts.size());
     const bool is_further = i >= result.contacts.size();
     BodyDamage& a = is_further ? result.further[k].damage_a : result.contacts[i].ego;

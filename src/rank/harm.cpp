@@ -168,22 +168,26 @@ std::vector<HarmSample> harm_samples(const HarmOptions& options) {
   for (const double friction : ends(r.least_friction, r.most_friction)) {
     for (const double strength : ends(r.least_strength, r.most_strength)) {
       for (const double restitution : ends(r.least_restitution, r.most_restitution)) {
+        const bool moves_alike = friction == options.friction && strength == 1.0;
         for (const RiskModel model : models) {
           for (const double occupant : speeds) {
             for (const double outside : speeds) {
-              samples.push_back(
-                  {friction, strength, restitution, model, occupant, outside, 1.0, 0.0});
+              samples.push_back({friction, strength, restitution, model, occupant, outside,
+                                 moves_alike ? 1.0 : sample_step, 0.0, false});
             }
           }
         }
       }
     }
   }
-  constexpr double shift_m = 0.001;
-  samples.resize(samples.size() + numerical_samples, nominal);
-  samples[samples.size() - 3].step = 0.5;
-  samples[samples.size() - 2].shift_m = shift_m;
-  samples[samples.size() - 1].shift_m = -shift_m;
+  HarmSample numerical = nominal;
+  numerical.numerical = true;
+  numerical.step = sample_step;
+  constexpr double aside_m = 0.001;
+  for (const double shift_m : {0.0, aside_m, -aside_m}) {
+    numerical.shift_m = shift_m;
+    samples.push_back(numerical);
+  }
   return samples;
 }
 

@@ -3,12 +3,14 @@
 #include "crashrank/internal/base/guarded.hpp"
 #include "rank/evaluate.hpp"
 #include "rank/evaluate_on_workers.hpp"
+#include "rank/measure_table.hpp"
 #include "rank/order.hpp"
 #include "rank/progress.hpp"
 #include "rank/reach.hpp"
 #include "rank/scene.hpp"
 #include "scenario/scenario_check.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <utility>
@@ -51,6 +53,28 @@ Status evaluate_in_futures(detail::Scene& scene, const RankOptions& options, Ran
   return done;
 }
 
+/// Finds the damage in the first places by another simulation of the nominal sample.
+void add_damage(detail::Scene& scene, std::size_t places, RankResult& result) {
+  scene.finds_damage = true;
+  scene.samples.clear();
+  detail::Scratch scratch;
+  for (std::size_t row = 0; row < std::min(places, result.ranking.size()); ++row) {
+    CandidateResult& ranked = result.ranking[row];
+    if (!ranked.score || !ranked.collides) continue;
+    CandidateResult damaged =
+        detail::evaluate(scene, result.candidates[ranked.candidate], scratch, result.work);
+    for (std::size_t i = 0; i < ranked.contacts.size(); ++i) {
+      ranked.contacts[i].ego = std::move(damaged.contacts[i].ego);
+      ranked.contacts[i].other = std::move(damaged.contacts[i].other);
+    }
+    for (std::size_t i = 0; i < ranked.further.size(); ++i) {
+      ranked.further[i].damage_a = std::move(damaged.further[i].damage_a);
+      ranked.further[i].damage_b = std::move(damaged.further[i].damage_b);
+    }
+    ranked.ego = std::move(damaged.ego);
+  }
+}
+
 Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> models,
                                  const RankOptions& options) {
   if (Status shared = detail::check_workers(options.workers); !shared) return shared.error();
@@ -77,10 +101,12 @@ Result<RankResult> rank_or_throw(const Scenario& scenario, View<const Model> mod
   const std::size_t count = result.candidates.size();
   result.ranking.resize(count);
   result.work = scene->work;
+  scene->finds_damage = detail::scored_by_damage(scene->measure) || options.damaged_places >= count;
   const Status evaluated = evaluate_in_futures(*scene, options, result);
   if (!evaluated) return evaluated.error();
   for (std::size_t i = 0; i < count; ++i) result.ranking[i].candidate = i;
   detail::sort_ranking(result);
+  if (!scene->finds_damage) add_damage(*scene, options.damaged_places, result);
   return result;
 }
 

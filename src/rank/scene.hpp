@@ -80,6 +80,7 @@ struct Scene {
   EgoLimits limits;
   Infeasible infeasible = Infeasible::demote;
   bool records_motion = false;
+  bool finds_damage = true;  ///< of every contact of the likeliest future
   Road road;
   double grip = 0.8;  ///< friction of the tyres on the road
   PlanTrajectories trajectories;

@@ -77,6 +77,7 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
         lacks_force(scene, scratch.chain, first);
     found.reported =
         report_contacts(scene, scratch.chain, touch, scratch.order, result, found.plans);
+    if (!scene.finds_damage) found.plans.clear();
     for (const Contact& contact : result.contacts) note_speed(contact, found.summary);
     for (const FurtherContact& contact : result.further) note_speed(contact, found.summary);
     std::size_t last = 0;

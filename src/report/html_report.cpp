@@ -151,7 +151,7 @@ private:
       out_ += fmt::format(
           "<p class='note' id='separability'>Every place is separable from the next: no order "
           "reverses "
-          "in more than {:.0f} % of {} samples of what is not known, nor with half the steps "
+          "in more than {:.0f} % of {} samples of what is not known, nor with longer steps "
           "or 1 mm aside{}.</p>\n",
           100.0 * separable_share, range_sample_count(result_),
           result_.futures.method == FutureMethod::sampled

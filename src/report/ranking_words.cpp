@@ -271,7 +271,7 @@ std::string reason_words(const Scenario& scenario, View<const Model> models,
     text += ". The two are not separable: in another sample of futures their order may reverse";
   } else if (!first.separable) {
     text +=
-        ". The two are not separable: simulated with half the steps or 1 mm aside, their order may "
+        ". The two are not separable: simulated with longer steps or 1 mm aside, their order may "
         "reverse";
   }
   return text + "." + other_view(scenario, models, result, first, second);

@@ -166,7 +166,7 @@ struct Inseparable {
       case Doubt::samples:
         break;
       default:
-        return "half the steps or 1 mm aside may turn their order";
+        return "longer steps or 1 mm aside may turn their order";
     }
     const std::string least = fmt::format("{:.0f}", 100.0 * least_share);
     const std::string most = fmt::format("{:.0f}", 100.0 * most_share);

@@ -3,6 +3,7 @@
 #include "crashrank/rank/rank.hpp"
 
 #include "oracle/random.hpp"
+#include "rank/random_scene.hpp"
 #include "rank/scenes.hpp"
 #include "rank/shipped_cast.hpp"
 
@@ -254,6 +255,36 @@ TEST(Damage, ReachesAsDeepAsTheSimulatedCrush) {
     EXPECT_GT(region.min.y(), 3.0 + static_cast<double>(car.bounds().min.y()) - 0.01);
     EXPECT_LT(region.max.y(), 3.0 + static_cast<double>(car.bounds().max.y()) + 0.01);
     EXPECT_LT(region.max.z(), car.bounds().max.z() + 0.01F);
+  }
+}
+
+TEST(Damage, OfTheFirstPlacesAloneIsThatOfAll) {
+  for (std::uint64_t seed = 410; seed < 414; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Scene scene = scenes::congestion(seed);
+    RankOptions options;
+    options.measure = Measure::harm;
+    const RankResult all = scene.ranked(options);
+    options.damaged_places = 2;
+    for (const unsigned workers : {1U, 2U}) {
+      options.workers = workers;
+      const RankResult some = scene.ranked(options);
+      ASSERT_EQ(some.ranking.size(), all.ranking.size());
+      for (std::size_t row = 0; row < all.ranking.size(); ++row) {
+        const CandidateResult& p = all.ranking[row];
+        const CandidateResult& q = some.ranking[row];
+        EXPECT_EQ(p.candidate, q.candidate);
+        EXPECT_EQ(p.score, q.score);
+        EXPECT_EQ(p.sample_scores, q.sample_scores);
+        const bool shown = row < 2;
+        EXPECT_EQ(q.ego.triangles, shown ? p.ego.triangles : std::vector<std::uint32_t>());
+        ASSERT_EQ(p.contacts.size(), q.contacts.size());
+        for (std::size_t i = 0; shown && i < p.contacts.size(); ++i) {
+          EXPECT_EQ(p.contacts[i].ego.triangles, q.contacts[i].ego.triangles);
+          EXPECT_EQ(p.contacts[i].other.triangles, q.contacts[i].other.triangles);
+        }
+      }
+    }
   }
 }
 

@@ -245,14 +245,14 @@ void print_outliers(std::vector<Outlier> outliers) {
 }
 
 // Campaigns set CRASHRANK_SCENE_COUNT and CRASHRANK_SCENE_SEED.
-TEST(SceneSensitivity, AMillimetreAndHalvedStepsChangeScoresLittle) {
+TEST(SceneSensitivity, AMillimetreAndLongerStepsChangeScoresLittle) {
   const std::uint64_t begin = wished("CRASHRANK_SCENE_SEED", 1);
   const std::uint64_t count = wished("CRASHRANK_SCENE_COUNT", 60);
   std::printf("seeds from %llu, %llu scenes\n", static_cast<unsigned long long>(begin),
               static_cast<unsigned long long>(count));
   ScoreChanges moved;
   ScoreChanges moved_pair;
-  ScoreChanges halved;
+  ScoreChanges longer;
   ScoreChanges aside;
   std::vector<Outlier> outliers;
   std::size_t contacts = 0;
@@ -270,7 +270,7 @@ TEST(SceneSensitivity, AMillimetreAndHalvedStepsChangeScoresLittle) {
     crowded += p.crowded ? 1U : 0U;
     ASSERT_GT(p.sample_scores.size(), numerical_samples);
     const double* const numerical = p.sample_scores.data() + p.sample_scores.size() - 3;
-    halved.add(*p.score, numerical[0]);
+    longer.add(*p.score, numerical[0]);
     aside.add(*p.score, numerical[1]);
     aside.add(*p.score, numerical[2]);
     oracle::Random random(seed + 1'000'000);
@@ -297,7 +297,7 @@ TEST(SceneSensitivity, AMillimetreAndHalvedStepsChangeScoresLittle) {
   moved.print("1 mm at the start");
   if (!moved_pair.all.empty()) moved_pair.print("1 mm at the start, contacts of the ego alone");
   aside.print("1 mm aside at first contact");
-  halved.print("half the steps");
+  longer.print("longer steps");
   print_outliers(outliers);
   // The goal is 95 % of all scenes; short runs have few scenes, so chance allows some more
   // outliers.

@@ -73,7 +73,7 @@ Told by_harm() {
   result.measure = Measure::harm;
   result.complete = true;
   result.samples.resize(129 + numerical_samples);
-  for (std::size_t i = 129; i < result.samples.size(); ++i) result.samples[i].step = 0.5;
+  for (std::size_t i = 129; i < result.samples.size(); ++i) result.samples[i].numerical = true;
   result.harm.weights.cyclist = 0.75;
   result.harm.weights.people_in_bus = 31.0;
   CandidateResult& hit = result.ranking[1];
@@ -103,7 +103,7 @@ TEST(RankingText, TellsNoDigitThatTheIntervalLeavesOpen) {
   close.result.ranking[1].overtaken = 0.0;
   close.result.ranking[1].within_numerical_error = true;
   const std::string aside = ranking_text(close.scenario, close.models, close.result);
-  EXPECT_NE(aside.find("not separable (half the steps or 1 mm aside may turn their order)"),
+  EXPECT_NE(aside.find("not separable (longer steps or 1 mm aside may turn their order)"),
             std::string::npos)
       << aside;
   EXPECT_EQ(text.find("0.21"), std::string::npos) << text;
@@ -132,7 +132,7 @@ TEST(RankingText, NeighboursInARowHaveOneLineForEachReason) {
   EXPECT_NE(
       text.find("rank 1 to 4 not separable from the next (the order reverses in 10 to 38 % of "
                 "129 samples)\n"
-                "rank 4 and 5 not separable (half the steps or 1 mm aside may turn their order)\n"
+                "rank 4 and 5 not separable (longer steps or 1 mm aside may turn their order)\n"
                 "rank 5 and 6 not separable (the order reverses in 30 % of 129 samples)\n"),
       std::string::npos)
       << text;

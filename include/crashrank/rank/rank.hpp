@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +81,9 @@ struct RankOptions {
   /// with one future is drawn in `smooth_futures` of them, or in `sampled_futures` if they are
   /// fewer; it costs as many times as much.
   bool smooth = false;
+  /// Number of places, from the first, of which damaged triangles and parts are found: of others
+  /// damage is empty. The measures `polygons` and `area` find all.
+  std::size_t damaged_places = std::numeric_limits<std::size_t>::max();
   bool records_motion = false;  ///< fills in CandidateResult::motion; `Ranker` ignores it
   ImpactOptions impact;         ///< `start_is_apart` is set internally
   /// Called before each simulation and after each candidate with the number of candidates evaluated

@@ -98,8 +98,8 @@ CRASHRANK_API double most_harm(const HarmExposure& exposure, const HarmOptions& 
 
 /// The samples of a set of options, always in the same order: first the nominal one, then every
 /// corner of the ranges (2 frictions, 2 strengths, 2 restitutions, 4 models, 2 × 2 speeds: 128;
-/// equal ends count once), then three `is_numerical` ones with nominal parameters: half the steps,
-/// and the ego 1 mm to the left and to the right.
+/// equal ends count once), then three `is_numerical` ones with nominal parameters: the ego
+/// where it is, 1 mm to the left and 1 mm to the right. All but the nominal one have `sample_step`.
 CRASHRANK_API std::vector<HarmSample> harm_samples(const HarmOptions& options);
 
 /// `harm_of` in one of the samples; `exposure` is that of the contact simulated in the sample. With
