@@ -193,6 +193,33 @@ void doubt_outlines(const Scenario& scenario, const RankResult& result,
                         first ? ", the first place among them" : "")));
 }
 
+/// Steps that the wheels of a vehicle can mount: no higher than about their radius.
+void doubt_kerbs(const Scenario& scenario, View<const Model> models, const RankResult& result,
+                 std::vector<std::string>& doubts) {
+  constexpr double wheel_radius_m = 0.3;
+  Counted kerbs;
+  for (std::size_t i = 0; i < result.actors.size(); ++i) {
+    const RankedBody& body = result.actors[i];
+    if (std::isfinite(body.mass_kg) || !body.has_outline) continue;
+    const Box bounds = models[body.model].mesh.bounds();
+    const double height_m =
+        static_cast<double>(bounds.max.z()) - std::max(0.0, static_cast<double>(bounds.min.z()));
+    if (height_m > wheel_radius_m) continue;
+    const auto hits = [i](const CandidateResult& ranked) {
+      return std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
+                         [i](const Contact& contact) { return contact.actor == i; });
+    };
+    if (std::none_of(result.ranking.begin(), result.ranking.end(), hits)) continue;
+    kerbs.add(fmt::format("'{}' ({:.2f} m)", scenario.actors[i].name, height_m));
+  }
+  if (kerbs.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} fixed, is hit and no higher than a wheel's radius, which wheels may mount: here it stops "
+      "what overlaps it in height, or lets all else pass; leave it out, or state it as the road's "
+      "end: {}",
+      kerbs.many("body is", "bodies are"), kerbs.examples()));
+}
+
 void doubt_manoeuvres(const Scenario& scenario, const RankResult& result,
                       std::vector<std::string>& doubts) {
   const double speed = std::abs(scenario.ego.speed_mps);
@@ -377,6 +404,7 @@ std::vector<std::string> ranking_doubts(const Scenario& asked, View<const Model>
   doubt_starts(scenario, result, doubts);
   doubt_forces(scenario, result, doubts);
   doubt_outlines(scenario, result, doubts);
+  doubt_kerbs(scenario, models, result, doubts);
   doubt_manoeuvres(scenario, result, doubts);
   doubt_horizon(scenario, result, doubts);
   if (result.futures.undrawn > 0) {

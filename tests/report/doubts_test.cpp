@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -374,6 +375,16 @@ TEST(Doubts, BodiesWithoutOutlineAreNamedAndMayHangOverTheRoad) {
       "them); if that is wrong");
   told.result.ranking[1].contacts[0].contact_without_force = true;
   EXPECT_EQ(told.doubts().size(), 3U);
+}
+
+TEST(Doubts, AStepThatWheelsMayMountIsTold) {
+  constexpr double fixed = std::numeric_limits<double>::infinity();
+  Sound told;
+  told.set_car(box_body(4.0, 0.3, 0.2), fixed, {30.0, 0.0, 0.0});
+  told.expect_one(
+      "1 body is fixed, is hit and no higher than a wheel's radius, which wheels may mount: ");
+  told.set_car(box_body(4.0, 0.3, 0.5), fixed, {30.0, 0.0, 0.0});
+  EXPECT_TRUE(told.doubts().empty());
 }
 
 TEST(Doubts, TwoOthersThatOverlapAtTimeZeroAreTold) {
