@@ -195,11 +195,12 @@ Status write_picture(const std::string& path, const OutputKind& kind, const std:
   return out->close();
 }
 
-/// Three views of the mesh, with the rear axle of what has a vehicle's size and shows its wheels.
+/// Three views of the mesh, with the rear axle of what has a vehicle's size, does not seem `turned`
+/// and shows its wheels.
 Status draw_picture_of(const ImportedMesh& imported, std::shared_ptr<const Profile> profile,
-                       const std::string& path) {
+                       bool turned, const std::string& path) {
   ThreeViewOptions options;
-  if (profile && detail::has_vehicle_size(imported.quality.extent_m)) {
+  if (profile && !turned && detail::has_vehicle_size(imported.quality.extent_m)) {
     VehicleFacts facts;
     facts.kind = BodyKind::truck;  // whose axles are never guessed
     const Result<Vehicle> vehicle = describe_vehicle(imported.mesh, facts, std::move(profile));
@@ -265,16 +266,16 @@ int run(const InspectArguments& options) {
           write_picture(options.profile, svg_picture, profile_picture(**profile, name));
       if (!drawn) return fail(drawn.error());
     }
-    if (!options.picture.empty()) {
-      const Status drawn =
-          draw_picture_of(*imported, profile ? *profile : nullptr, options.picture);
-      if (!drawn) return fail(drawn.error());
-    }
     const std::string odd = profile ? profile_warning(**profile, imported->mesh) : std::string();
     if (!odd.empty()) imported->warnings.push_back(odd);
     const ImportTransform transform =
         compiled ? compiled->stored.transform : *options.mesh.transform();
     const std::string hint = orientation_hint(imported->quality, transform, compiled.has_value());
+    if (!options.picture.empty()) {
+      const Status drawn =
+          draw_picture_of(*imported, profile ? *profile : nullptr, !hint.empty(), options.picture);
+      if (!drawn) return fail(drawn.error());
+    }
     if (options.json) {
       const std::lock_guard<std::mutex> lock(mutex);
       files.push_back(to_json(file, *imported, hint));

@@ -146,7 +146,7 @@ class Ranking(Sequence[RankedCandidate]):
 
     __slots__ = ("__weakref__", "_document", "_ranked")
 
-    _ranked: _core.Ranked | _Unpickled
+    _ranked: _core.Ranked
     _document: dict[str, Any]
 
     scenario: str
@@ -170,7 +170,7 @@ class Ranking(Sequence[RankedCandidate]):
     actors: tuple[Record, ...]
     work: Record
 
-    def __init__(self, ranked: _core.Ranked | _Unpickled) -> None:
+    def __init__(self, ranked: Any) -> None:
         self._ranked = ranked
         self._document = json.loads(ranked.json())
 

@@ -228,7 +228,9 @@ private:
     for (int y = panel.y - text_px / 2; y < panel.y + panel.height; y += text_px) {
       sheet_.fill(x, y, letter_px, text_px / 2, axle_colour);
     }
-    sheet_.text(x, panel.y - 2 * text_px, fmt::format("rear axle x={:.3g} m", x_m), axle_colour);
+    if (panel.up != 1) return;
+    sheet_.text(x, panel.y + panel.height + text_px / 2, fmt::format("rear axle x={:.3g} m", x_m),
+                axle_colour);
   }
 
   /// Arrows from the origin of the body's axes.

@@ -77,8 +77,8 @@ std::vector<Silhouette> silhouettes(const Image& image) {
 
 Image draw(const TriangleMesh& mesh, bool marks) {
   ThreeViewOptions options;
-  options.width_px = 800;
-  options.height_px = 600;
+  options.width_px = 600;
+  options.height_px = 450;
   options.marks = marks;
   return *draw_three_views(mesh, options);
 }
@@ -91,7 +91,7 @@ TEST(ThreeViews, SilhouettesHaveTheBoundsOfTheMesh) {
     const std::vector<Silhouette> views = silhouettes(draw(mesh, false));
     ASSERT_EQ(views.size(), 3U);
     const auto px = static_cast<float>(views[0].width()) / extent.x();
-    EXPECT_GT(px, 60.0F);  // for a metre: the sheet is made use of
+    EXPECT_GT(px, 40.0F);  // for a metre: the sheet is made use of
     EXPECT_NEAR(static_cast<float>(views[0].height()), px * extent.y(), 2.0F);
     EXPECT_NEAR(static_cast<float>(views[1].width()), px * extent.x(), 2.0F);
     EXPECT_NEAR(static_cast<float>(views[1].height()), px * extent.z(), 2.0F);
@@ -184,6 +184,7 @@ TEST(ThreeViews, BodiesOfAnyShapeAndPlaceFitTheSheet) {
         vertex = (vertex.cwiseProduct(size).array() + away).matrix();
       }
       ThreeViewOptions options;
+      options.width_px = options.height_px = 400;
       options.rear_axle_x_m = static_cast<double>(mesh.bounds().center().x());
       EXPECT_TRUE(draw_three_views(mesh, options).ok());
     }
