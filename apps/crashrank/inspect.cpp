@@ -11,6 +11,8 @@
 #include "crashrank/internal/report/table.hpp"
 #include "crashrank/mesh/import.hpp"
 #include "crashrank/model/model.hpp"
+#include "crashrank/report/ranking.hpp"
+#include "crashrank/vehicle/vehicle.hpp"
 #include "report/orientation.hpp"
 
 #include <fmt/format.h>
@@ -30,6 +32,7 @@ struct InspectArguments {
   std::vector<std::string> files;
   bool json = false;
   std::string profile;
+  std::string picture;
   MeshArguments mesh;
 };
 
@@ -185,25 +188,55 @@ Result<ImportedMesh> look_at(const std::string& file, const MeshArguments& argum
   return mesh;
 }
 
-Status draw_profile(const std::string& path, const std::string& mesh_file, const Profile& profile) {
-  Result<OutputFile> out = OutputFile::open(path, svg_picture);
+Status write_picture(const std::string& path, const OutputKind& kind, const std::string& content) {
+  Result<OutputFile> out = OutputFile::open(path, kind);
   if (!out) return out.error();
-  out->write(profile_picture(profile, std::filesystem::path(mesh_file).filename().string()));
+  out->write(content);
   return out->close();
 }
 
+/// Three views of the mesh, with the rear axle of what has a vehicle's size, does not seem `turned`
+/// and shows its wheels.
+Status draw_picture_of(const ImportedMesh& imported, std::shared_ptr<const Profile> profile,
+                       bool turned, const std::string& path) {
+  ThreeViewOptions options;
+  if (profile && !turned && detail::has_vehicle_size(imported.quality.extent_m)) {
+    VehicleFacts facts;
+    facts.kind = BodyKind::truck;  // whose axles are never guessed
+    const Result<Vehicle> vehicle = describe_vehicle(imported.mesh, facts, std::move(profile));
+    if (vehicle && vehicle->wheelbase_m > 0.0) options.rear_axle_x_m = vehicle->rear_axle_x_m;
+  }
+  const Result<Image> image = draw_three_views(imported.mesh, options);
+  if (!image) return image.error();
+  const Result<std::string> bytes = png(*image);
+  return bytes ? write_picture(path, png_picture, *bytes) : Status(bytes.error());
+}
+
+/// Whether a picture that an option asks for can be drawn and written.
+Status check_picture(const std::string& option, const std::string& path, const OutputKind& kind,
+                     const std::vector<std::string>& files) {
+  if (path.empty()) return Success{};
+  if (files.size() != 1) {
+    return make_error(ErrorCode::usage, option + " draws one mesh, so it needs exactly one MESH");
+  }
+  if (is_standard(path)) {
+    return make_error(ErrorCode::usage,
+                      option + " needs a file: the answer goes to standard output");
+  }
+  return can_be_written(path, kind, files);
+}
+
+Status check_pictures(const InspectArguments& options) {
+  if (same_place(options.profile, options.picture)) {
+    return make_error(ErrorCode::usage, "--profile and --picture name the same file",
+                      "name two files");
+  }
+  const Status sound = check_picture("--profile", options.profile, svg_picture, options.files);
+  return sound ? check_picture("--picture", options.picture, png_picture, options.files) : sound;
+}
+
 int run(const InspectArguments& options) {
-  if (!options.profile.empty() && options.files.size() != 1) {
-    return fail(
-        make_error(ErrorCode::usage, "--profile draws one mesh, so it needs exactly one MESH"));
-  }
-  if (is_standard(options.profile)) {
-    return fail(
-        make_error(ErrorCode::usage, "--profile needs a file: the answer goes to standard output"));
-  }
-  if (const Status sound = can_be_written(options.profile, svg_picture, options.files); !sound) {
-    return fail(sound.error());
-  }
+  if (const Status sound = check_pictures(options); !sound) return fail(sound.error());
   if (const Status single = one_standard_input(options.files); !single) return fail(single.error());
   int code = exit_done;
   Json files = Json::array();
@@ -228,7 +261,9 @@ int run(const InspectArguments& options) {
     const auto profile = profile_of(file, imported->mesh, compiled);
     if (!options.profile.empty()) {
       if (!profile) return fail(profile.error());
-      const Status drawn = draw_profile(options.profile, file, **profile);
+      const std::string name = std::filesystem::path(file).filename().string();
+      const Status drawn =
+          write_picture(options.profile, svg_picture, profile_picture(**profile, name));
       if (!drawn) return fail(drawn.error());
     }
     const std::string odd = profile ? profile_warning(**profile, imported->mesh) : std::string();
@@ -236,6 +271,11 @@ int run(const InspectArguments& options) {
     const ImportTransform transform =
         compiled ? compiled->stored.transform : *options.mesh.transform();
     const std::string hint = orientation_hint(imported->quality, transform, compiled.has_value());
+    if (!options.picture.empty()) {
+      const Status drawn =
+          draw_picture_of(*imported, profile ? *profile : nullptr, !hint.empty(), options.picture);
+      if (!drawn) return fail(drawn.error());
+    }
     if (options.json) {
       const std::lock_guard<std::mutex> lock(mutex);
       files.push_back(to_json(file, *imported, hint));
@@ -261,10 +301,12 @@ void add_inspect(CLI::App& app, Action& action) {
   command->add_flag("--json", options->json, "Answer in JSON");
   add_file(*command, "--profile", options->profile,
            "Draw the outlines that a crash sees, by height, into this SVG file");
+  add_file(*command, "--picture", options->picture,
+           "Draw the mesh as it is used, with axes, ground and rear axle, into this PNG file");
   options->mesh.add_to(*command);
   command->footer(
       "Examples:\n  crashrank inspect car.obj --scale 0.001 --up +y --forward -z\n"
-      "  crashrank inspect car.obj --profile outlines.svg");
+      "  crashrank inspect car.obj --profile outlines.svg --picture car.png");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -44,6 +44,7 @@ struct OutputKind {
 };
 
 inline constexpr OutputKind svg_picture{"an SVG picture", "<svg "};
+inline constexpr OutputKind png_picture{"a PNG picture", "\x89PNG"};
 
 /// Whether both are, or would be, the same file or folder; links are followed.
 bool same_place(const std::string& a, const std::string& b);

@@ -1,5 +1,6 @@
 #include "catalogue.hpp"
 
+#include "bicycle.hpp"
 #include "car.hpp"
 #include "human.hpp"
 #include "motorcycle.hpp"
@@ -57,6 +58,24 @@ const std::vector<Entry>& catalogue() {
       {"wall", "Brick wall, 10 m by 2.5 m", "building", 1600, 0.28, build_wall, 0.0, 11250.0,
        93800.0, Vec3(0.125, 0.0, 1.25), "on the ground in the middle of the face towards -x",
        "A one-brick wall of 0.25 m at 1,800 kg/m3."},
+      {"bicycle", "City bicycle with adult rider", "bicycle", 9000, 0.040, build_bicycle, 1.06,
+       94.0, 5.9, Vec3(0.31, 0.0, 0.99), "centre of the rear axle on the ground",
+       "Wheels of 622 mm rims; mass, and 0.25 m of radius of gyration in yaw, of the benchmark "
+       "bicycle with rider (Meijaard, Papadopoulos, Ruina and Schwab, Proc. R. Soc. A 463, 2007)."},
+      {"child", "Child of six years, 1.14 m, walking", "pedestrian", 3000, 0.028, build_child, 0.0,
+       23.4, 0.18, Vec3(0.02, 0.0, 0.63), "on the ground under the pelvis",
+       "Height and mass of the Hybrid III dummy of a six-year-old child (49 CFR 572 subpart N); "
+       "the "
+       "adult's proportions and radius of gyration scaled by height."},
+      {"tree", "Avenue tree, trunk of 0.40 m at the ground", "pole", 1500, 0.15, build_tree, 0.0,
+       700.0, 350.0, Vec3(0.0, 0.0, 3.2), "on the ground on the trunk's axis",
+       "A choice: trunks above 0.10 m count as fixed objects (AASHTO Roadside Design Guide); the "
+       "crown begins 2.9 m over the ground."},
+      {"guard_rail", "Steel guard rail, two spans of 4 m", "barrier", 1500, 0.13, build_guard_rail,
+       0.0, 180.0, 800.0, Vec3(0.0, 0.0, 0.55), "on the ground in the middle, the rail along x",
+       "The W beam of EN 1317 systems in common use: 310 mm high, 81 mm deep, 3 mm thick, upper "
+       "edge "
+       "0.75 m over the ground, posts 4 m apart; 12 kg for each metre of beam."},
   };
   return entries;
 }

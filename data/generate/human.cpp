@@ -147,4 +147,13 @@ Model build_pedestrian(double edge) {
   return build_person(s, "", edge);
 }
 
+Model build_child(double edge) {
+  constexpr double scale = 1.14 / 1.75;
+  Model model = build_pedestrian(edge / scale);
+  for (NamedMesh& part : model.parts) {
+    for (Vec3& vertex : part.mesh.vertices) vertex *= scale;
+  }
+  return model;
+}
+
 }  // namespace generate

@@ -22,4 +22,7 @@ Model build_person(const Posture& posture, const std::string& prefix, double edg
 /// Somebody of 1.75 m walking along +x, the ground under the pelvis as origin.
 Model build_pedestrian(double edge);
 
+/// A child of 1.14 m walking along +x: the adult, smaller.
+Model build_child(double edge);
+
 }  // namespace generate

@@ -89,3 +89,8 @@ __all__ = [
     "rank",
     "rank_table",
 ]
+
+
+def __dir__() -> list[str]:
+    """List the public names alone."""
+    return sorted(__all__)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._checks import as_count
 from ._errors import no_candidate
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def place_outline(outline: NDArray[np.float64], pose: NDArray[np.float64]) -> ND
     return np.asarray(outline @ np.array([[c, s], [-s, c]]) + [x, y])
 
 
-def plot(ranking: Ranking, ranked: _core.Ranked, candidate: str | None, top: int) -> Figure:
+def plot(ranking: Ranking, ranked: _core.Ranked, candidate: object, top: int) -> Figure:
     """Return a figure with the plan and the scores; see `Ranking.plot`."""
     from ._tables import missing
 
@@ -39,9 +40,10 @@ def plot(ranking: Ranking, ranked: _core.Ranked, candidate: str | None, top: int
     except ImportError:
         raise missing("matplotlib", "notebook") from None
     names = [each.candidate for each in ranking]
-    if candidate is not None and candidate not in names:
+    if isinstance(candidate, str) and candidate not in names:
         raise no_candidate(candidate)
-    index = 0 if candidate is None else names.index(candidate)
+    place = names.index(candidate) if isinstance(candidate, str) else candidate or 0
+    index = as_count(place, "candidate", -len(names), len(names) - 1)
     figure = NotebookFigure(figsize=(12, 4.8), layout="constrained")
     plan, scores = figure.subplots(1, 2, width_ratios=(3, 2))
     _draw_plan(plan, ranking, ranked, index)

@@ -109,12 +109,39 @@ def _body_motion(members: dict[str, Any]) -> BodyMotion:
     return BodyMotion(body, *(np.array(column) for column in columns))
 
 
+class _Unpickled:
+    """What is left of a ranking elsewhere: the answer and its table, without the bodies."""
+
+    def __init__(self, document: str, table: str, interrupted: bool) -> None:
+        self._document = document
+        self._table = table
+        self.interrupted = interrupted
+
+    def json(self) -> str:
+        return self._document
+
+    def text(self) -> str:
+        return self._table
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise usage(
+            "",
+            "the ranking was pickled, and its bodies were not",
+            "draw it or write its report where it was ranked",
+        )
+
+
 class Ranking(Sequence[RankedCandidate]):
     """The candidates of a scenario, least harmful first.
 
     A sequence of `RankedCandidate`. The members of the JSON answer are attributes: ``measure``,
     ``measure_unit``, ``complete``, ``proved``, ``basis``, ``in_race``, ``warnings``,
     ``stability``, ...
+
+    A pickled ranking keeps its answer and its table; `report` and `plot` need the one that was
+    ranked. Copies are the ranking itself: it never changes.
     """
 
     __slots__ = ("__weakref__", "_document", "_ranked")
@@ -143,9 +170,20 @@ class Ranking(Sequence[RankedCandidate]):
     actors: tuple[Record, ...]
     work: Record
 
-    def __init__(self, ranked: _core.Ranked) -> None:
+    def __init__(self, ranked: Any) -> None:
         self._ranked = ranked
         self._document = json.loads(ranked.json())
+
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
+        """Pickle the answer and its table."""
+        kept = _Unpickled(self.to_json(), str(self), self.interrupted)
+        return Ranking, (kept,)
+
+    def __copy__(self) -> Ranking:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Ranking:
+        return self
 
     def __getattr__(self, name: str) -> Any:
         if not name.startswith("_") and name in self._document:
@@ -241,13 +279,14 @@ class Ranking(Sequence[RankedCandidate]):
             ) from error
 
     @checked_call
-    def plot(self, *, candidate: str | None = None, top: int = 12) -> Figure:
+    def plot(self, *, candidate: str | int | None = None, top: int = 12) -> Figure:
         """Draw the plan of one candidate, and scores with intervals; needs matplotlib.
 
         Parameters
         ----------
-        candidate : str, optional
-            Whose plan is drawn. Default: the best.
+        candidate : str or int, optional
+            Whose plan is drawn, by name or by place from 0, from the last with -1. Default: the
+            best.
         top : int
             Most candidates whose scores are drawn.
 
@@ -359,6 +398,8 @@ def rank(
         measure, workers, risk, infeasible, order, profile, futures, motion, smooth
     )
     budget = as_budget(deadline_s, work_budget, first_place_only)
+    if deadline_s is not None and deadline_s < 0:
+        raise usage("deadline_s", f"is {deadline_s:g} s", "give 0 s or more, or leave it out")
     if motion and (deadline_s is not None or work_budget is not None or first_place_only):
         raise usage(
             "motion",

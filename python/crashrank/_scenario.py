@@ -6,7 +6,7 @@ import dataclasses
 import json
 import math
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,8 @@ class Scenario:
     The format is that of scenario files (``data/scenario.schema.json``): SI units, degrees,
     x forward, y left, z up, poses from body to world. Checked when it is made; the models are
     read when they are first needed and kept. A scenario never changes, and any number of threads
-    may use it.
+    may use it. Copies are the scenario itself. A pickled one names its files by absolute paths and
+    reads them again; models from memory are pickled with it.
 
     Parameters
     ----------
@@ -52,9 +53,10 @@ class Scenario:
         For keys and values that are not accepted; ``place`` is the key path.
     """
 
-    __slots__ = ("__weakref__", "_situation")
+    __slots__ = ("__weakref__", "_origin", "_situation")
 
     _situation: _core.Situation
+    _origin: tuple[Callable[..., Scenario], tuple[object, ...]]
 
     @checked_call
     def __init__(
@@ -75,6 +77,16 @@ class Scenario:
         bodies = _as_bodies(models, plain)
         self._read(_to_json(plain), base, bodies, allow)
 
+    def __reduce__(self) -> tuple[Callable[..., Scenario], tuple[object, ...]]:
+        """Pickle the text, or the path of the file, that it was read from."""
+        return self._origin
+
+    def __copy__(self) -> Scenario:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Scenario:
+        return self
+
     @classmethod
     @checked_call
     def load(cls, path: object, *, allow: Iterable[object] = ()) -> Scenario:
@@ -89,7 +101,9 @@ class Scenario:
             Further folders in which meshes may lie.
         """
         scenario = cls.__new__(cls)
-        scenario._situation = _core.read_scenario_file(as_path(path, "path"), _as_paths(allow), {})
+        file, folders = as_path(path, "path"), _as_paths(allow)
+        scenario._situation = _core.read_scenario_file(file, folders, {})
+        scenario._origin = (_load_again, (_absolute(file), [_absolute(each) for each in folders]))
         return scenario
 
     @classmethod
@@ -173,8 +187,12 @@ class Scenario:
     ) -> None:
         folder = "." if base is None else as_path(base, "base")
         file = os.path.join(folder, _JSON_FILE)
+        folders = _as_paths(allow)
+        models = {name: Model._of(body) for name, body in bodies.items()}
+        places = (_absolute(folder), [_absolute(each) for each in folders])
+        self._origin = (_read_again, (text, models, *places))
         try:
-            self._situation = _core.read_scenario_text(text, file, _as_paths(allow), bodies)
+            self._situation = _core.read_scenario_text(text, file, folders, bodies)
         except BadInputError as error:
             if base is None and "lies outside" in error.reason:
                 raise bad_input(error.place, error.reason, _GIVE_BASE) from None
@@ -218,6 +236,20 @@ class Scenario:
     def __repr__(self) -> str:
         """Return name and number of actors."""
         return f"Scenario({self.name!r}, {len(self.actors)} actors)"
+
+
+def _absolute(path: str) -> str:
+    return os.path.abspath(path)
+
+
+def _load_again(path: str, allow: list[str]) -> Scenario:
+    """Return the scenario of a file; what a pickled one is made by."""
+    return Scenario.load(path, allow=allow)
+
+
+def _read_again(text: str, models: dict[str, Model], base: str, allow: list[str]) -> Scenario:
+    """Return the scenario of a text; what a pickled one is made by."""
+    return Scenario.from_json(text, base=base, models=models, allow=allow)
 
 
 def as_scenario(value: object, base: object, allow: Iterable[object]) -> Scenario:

@@ -77,6 +77,10 @@ def test_stubs_and_marker_are_there():
     assert "Any" not in re.sub(r"#.*", "", stub)
 
 
+def test_public_names_alone_are_listed():
+    assert dir(crashrank) == sorted(crashrank.__all__)
+
+
 def test_public_names_are_documented():
     for name in crashrank.__all__:
         value = getattr(crashrank, name)

@@ -1,6 +1,8 @@
 """Rankings have the bits of the command's, for every shipped scenario."""
 
+import copy
 import json
+import multiprocessing
 import os
 import pickle
 import re
@@ -256,8 +258,70 @@ def test_plots_show_the_candidates(tmp_path, truck_ranking):
         .axes[0]
         .get_title()
     )
-    with pytest.raises(crashrank.UsageError):
-        truck_ranking.plot(candidate="none")
+    last = truck_ranking[-1].candidate
+    for place in (-1, len(truck_ranking) - 1, last):
+        assert truck_ranking.plot(candidate=place).axes[0].get_title().startswith(last)
+    for wrong in ("none", len(truck_ranking), -1 - len(truck_ranking), 1.0, True):
+        with pytest.raises(crashrank.UsageError):
+            truck_ranking.plot(candidate=wrong)
+
+
+def test_rankings_are_copied_and_pickled(truck_ranking, tmp_path):
+    assert copy.copy(truck_ranking) is truck_ranking
+    assert copy.deepcopy([truck_ranking])[0] is truck_ranking
+    for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+        again = pickle.loads(pickle.dumps(truck_ranking, protocol))
+        assert again.to_json() == truck_ranking.to_json()
+        assert str(again) == str(truck_ranking)
+        assert list(again) == list(truck_ranking)
+        assert again.interrupted is truck_ranking.interrupted
+    twice = pickle.loads(pickle.dumps(again))
+    assert twice.best == truck_ranking.best
+    for draw in (twice.plot, lambda: twice.report(tmp_path / "report.html"), twice._repr_html_):
+        with pytest.raises(crashrank.UsageError, match="was pickled"):
+            draw()
+    assert not (tmp_path / "report.html").exists()
+
+
+def scores(answer):
+    return [(row.candidate, row.score, row.score_interval) for row in answer]
+
+
+def rank_in_a_process(scenario):
+    return crashrank.rank(scenario)
+
+
+def test_scenarios_are_copied_pickled_and_ranked_by_processes(truck_ranking, monkeypatch, tmp_path):
+    monkeypatch.chdir(ROOT)
+    relative = "data/scenarios/oncoming_truck.json"
+    document = json.loads((ROOT / relative).read_text())
+    sedan = crashrank.load_model(DATA / "models/sedan.obj")
+    name = document["ego"]["model"]
+    scenarios = [
+        crashrank.Scenario.load(relative),
+        crashrank.Scenario(document, base="data/scenarios", allow=["data"]),
+        crashrank.Scenario.from_json(
+            json.dumps(document), base="data/scenarios", models={name: sedan}, allow=["data"]
+        ),
+    ]
+    expected = [scores(crashrank.rank(scenario)) for scenario in scenarios]
+    assert expected[0] == expected[1] == scores(truck_ranking)
+    assert all(copy.copy(each) is each is copy.deepcopy(each) for each in scenarios)
+    pickled = [pickle.dumps(scenario) for scenario in scenarios]
+    monkeypatch.chdir(tmp_path)  # relative paths lead nowhere now
+    again = [pickle.loads(each) for each in pickled]
+    assert [scores(crashrank.rank(scenario)) for scenario in again] == expected
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        answers = pool.map(rank_in_a_process, scenarios[:2])
+    assert [scores(answer) for answer in answers] == expected[:2]
+
+
+@pytest.mark.parametrize("deadline_s", [-1, -1e-9, -float("inf")])
+def test_negative_deadlines_are_refused(deadline_s):
+    with pytest.raises(crashrank.UsageError) as error:
+        crashrank.rank(DATA / "scenarios/oncoming_truck.json", deadline_s=deadline_s)
+    assert error.value.place == "deadline_s"
+    assert "\n" not in str(error.value)
 
 
 def test_progress_is_told_and_may_end_the_ranking():

@@ -13,9 +13,9 @@ namespace crashrank {
 namespace {
 
 using detail::Colour;
+using detail::samples;
 using Eigen::Vector3f;
 
-constexpr int samples = 2;  // across and down a pixel
 constexpr float radians = 3.14159265F / 180.0F;
 constexpr Colour first_paint{0.10F, 0.22F, 0.42F};
 constexpr Colour other_paint{0.46F, 0.40F, 0.31F};
@@ -111,33 +111,6 @@ detail::Viewer aim(const detail::PictureScene& scene, const PictureOptions& opti
   return camera;
 }
 
-Image averaged(const std::vector<Colour>& fine, int width, int height) {
-  Image image;
-  image.width = width;
-  image.height = height;
-  image.rgb.reserve(3 * fine.size() / samples / samples);
-  const auto stride = static_cast<std::size_t>(width) * samples;
-  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
-    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
-      Colour sum;
-      for (std::size_t j = 0; j < samples; ++j) {
-        for (std::size_t i = 0; i < samples; ++i) {
-          const Colour& c = fine[(y * samples + j) * stride + x * samples + i];
-          // Bright spots are clipped before averaging, or their borders would stay jagged.
-          sum.red += std::min(c.red, 1.0F);
-          sum.green += std::min(c.green, 1.0F);
-          sum.blue += std::min(c.blue, 1.0F);
-        }
-      }
-      constexpr float share = 1.0F / (samples * samples);
-      for (const float channel : {sum.red, sum.green, sum.blue}) {
-        image.rgb.push_back(detail::srgb(channel * share));
-      }
-    }
-  }
-  return image;
-}
-
 }  // namespace
 
 Result<Image> draw_picture(View<const PictureBody> bodies, const PictureOptions& options) {
@@ -156,8 +129,8 @@ Result<Image> draw_picture(View<const PictureBody> bodies, const PictureOptions&
   detail::Raster raster(width, height);
   detail::rasterise(scene.triangles, camera, raster);
   detail::add_ground(scene, camera, raster);
-  return averaged(detail::shade(scene, camera, raster, samples, options.edges), options.width_px,
-                  options.height_px);
+  return detail::averaged(detail::shade(scene, camera, raster, options.edges), options.width_px,
+                          options.height_px);
 }
 
 double azimuth_of_damage_deg(const PictureBody& body) {

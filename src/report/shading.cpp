@@ -11,7 +11,6 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float pi = 3.14159265F;
-constexpr Colour background{0.92F, 0.93F, 0.95F};
 constexpr Colour ground_colour{0.72F, 0.72F, 0.71F};
 
 Colour scaled(const Colour& c, float by) { return {c.red * by, c.green * by, c.blue * by}; }
@@ -116,14 +115,8 @@ struct Spot {
 
 class Shader {
 public:
-  Shader(const PictureScene& scene, const Viewer& camera, const Raster& raster, int scale,
-         bool edges)
-      : scene_(scene),
-        camera_(camera),
-        raster_(raster),
-        light_(scene, camera),
-        scale_(scale),
-        edges_(edges) {}
+  Shader(const PictureScene& scene, const Viewer& camera, const Raster& raster, bool edges)
+      : scene_(scene), camera_(camera), raster_(raster), light_(scene, camera), edges_(edges) {}
 
   Colour at(int x, int y) const {
     const std::size_t i = raster_.at(x, y);
@@ -209,7 +202,7 @@ private:
 
   /// How dark an edge is drawn: nothing where the triangles are hardly larger than its line.
   float edge_strength(std::uint32_t index, float distance_px) const {
-    const auto scale = static_cast<float>(scale_);
+    constexpr float scale = samples;
     const float line = 1.0F - distance_px / (0.6F * scale);
     if (line <= 0.0F) return 0.0F;
     const std::array<Vector3f, 3>& t = scene_.triangles[index];
@@ -229,7 +222,6 @@ private:
   static constexpr std::size_t tap_count = 10;
   Taps<tap_count> taps_;
   KeyLight light_;
-  int scale_;
   bool edges_;
 };
 
@@ -251,13 +243,40 @@ void add_ground(const PictureScene& scene, const Viewer& camera, Raster& raster)
 }
 
 std::vector<Colour> shade(const PictureScene& scene, const Viewer& camera, const Raster& raster,
-                          int scale, bool edges) {
-  const Shader shader(scene, camera, raster, scale, edges);
+                          bool edges) {
+  const Shader shader(scene, camera, raster, edges);
   std::vector<Colour> colours(raster.triangle.size());
   for (int y = 0; y < raster.height; ++y) {
     for (int x = 0; x < raster.width; ++x) colours[raster.at(x, y)] = shader.at(x, y);
   }
   return colours;
+}
+
+Image averaged(const std::vector<Colour>& fine, int width, int height) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  image.rgb.reserve(3 * fine.size() / samples / samples);
+  const auto stride = static_cast<std::size_t>(width) * samples;
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
+      Colour sum;
+      for (std::size_t j = 0; j < samples; ++j) {
+        for (std::size_t i = 0; i < samples; ++i) {
+          const Colour& c = fine[(y * samples + j) * stride + x * samples + i];
+          // Bright spots are clipped before averaging, or their borders would stay jagged.
+          sum.red += std::min(c.red, 1.0F);
+          sum.green += std::min(c.green, 1.0F);
+          sum.blue += std::min(c.blue, 1.0F);
+        }
+      }
+      constexpr float share = 1.0F / (samples * samples);
+      for (const float channel : {sum.red, sum.green, sum.blue}) {
+        image.rgb.push_back(srgb(channel * share));
+      }
+    }
+  }
+  return image;
 }
 
 }  // namespace crashrank::detail

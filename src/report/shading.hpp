@@ -1,5 +1,6 @@
 #pragma once
 
+#include "crashrank/report/ranking.hpp"
 #include "report/palette.hpp"
 #include "report/raster.hpp"
 
@@ -20,6 +21,9 @@ struct PictureScene {
   float ground_z = 0.0F;  ///< the lowest point
 };
 
+inline constexpr int samples = 2;  ///< of a raster, across and down a pixel of the final picture
+inline constexpr Colour background{0.92F, 0.93F, 0.95F};
+
 /// Marks a pixel of the raster that shows the ground.
 inline constexpr std::uint32_t ground = nothing - 1;
 
@@ -27,9 +31,12 @@ inline constexpr std::uint32_t ground = nothing - 1;
 void add_ground(const PictureScene& scene, const Viewer& camera, Raster& raster);
 
 /// Colours the raster: a key light with shadows, a sky, darker in corners (ambient occlusion).
-/// `scale` is the raster's pixels a pixel of the final picture; with `edges` the triangles' edges
-/// are drawn. Linear colours, row by row.
+/// With `edges` the triangles' edges are drawn. Linear colours, row by row; the raster has
+/// `samples` pixels across and down a pixel of the final picture.
 std::vector<Colour> shade(const PictureScene& scene, const Viewer& camera, const Raster& raster,
-                          int scale, bool edges);
+                          bool edges);
+
+/// The final picture of this size from what `shade` returns.
+Image averaged(const std::vector<Colour>& fine, int width, int height);
 
 }  // namespace crashrank::detail

@@ -1,6 +1,7 @@
 #include "cli/program.hpp"
 
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <cstddef>
 #include <string>
@@ -71,6 +72,50 @@ TEST(Inspect, DrawsOutlinesByHeightOfAMeshAndOfItsModel) {
   ASSERT_EQ(place.crashrank({"inspect", "high.obj", "--profile", "high.svg"}).code, 0);
   EXPECT_NE(place.read("high.svg").find("nothing between 0 and 4 m"), std::string::npos);
   EXPECT_EQ(times(place.read("high.svg"), " m, forward to the right"), 0U);
+}
+
+TEST(Inspect, DrawsThreeViewsOfAMeshAndOfItsModelAsAPng) {
+  const Workplace place;
+  place.write("box.obj", cli_test::box_obj("body", -1, -0.9, 0.2, 3, 0.9, 1.5));
+  const Outcome run = place.crashrank({"inspect", "box.obj", "--picture", "mesh.png"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::string bytes = place.read("mesh.png");
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  image.format = PNG_FORMAT_RGB;
+  std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
+  EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0) << image.message;
+  EXPECT_EQ(image.width, 1200U);
+  EXPECT_EQ(image.height, 900U);
+  ASSERT_EQ(place.crashrank({"compile", "box.obj", "-o", "box.crm"}).code, 0);
+  ASSERT_EQ(place.crashrank({"inspect", "box.crm", "--picture", "model.png"}).code, 0);
+  EXPECT_TRUE(place.read("model.png") == bytes);
+}
+
+TEST(Inspect, PicturesThatCannotBeDrawnOrWrittenAreRefused) {
+  const Workplace place;
+  place.write("box.obj", cli_test::box_obj("body", -1, -0.9, 0.2, 3, 0.9, 1.5));
+  place.write("notes.txt", "kept\n");
+  using Words = std::vector<std::string>;
+  for (const std::string option : {"--picture", "--profile"}) {
+    for (const auto& [words, reason] : std::vector<std::pair<Words, std::string>>{
+             {{"box.obj", "box.obj", option, "x"}, option + " draws one mesh"},
+             {{"box.obj", option, "-"}, option + " needs a file"},
+             {{"box.obj", option, "box.obj"}, "would be written over what is read"},
+             {{"box.obj", option, "notes.txt"}, "notes.txt"},
+             {{"box.obj", option, "no/x"}, "no/x: cannot write"},
+             {{"box.obj", "--picture", "x", "--profile", "./x"}, "name the same file"}}) {
+      SCOPED_TRACE(reason);
+      Words arguments{"inspect"};
+      arguments.insert(arguments.end(), words.begin(), words.end());
+      const Outcome run = place.crashrank(arguments);
+      EXPECT_NE(run.code, 0);
+      EXPECT_TRUE(cli_test::is_one_message(run.err)) << run.err;
+      EXPECT_NE(run.err.find(reason), std::string::npos) << run.err;
+    }
+  }
+  EXPECT_EQ(place.read("notes.txt"), "kept\n");
 }
 
 TEST(Inspect, BodiesThatACrashDoesNotSeeAreTold) {

@@ -80,10 +80,11 @@ TEST_P(Models, HasNoDegenerateTriangleAndFewNeedles) {
 
 INSTANTIATE_TEST_SUITE_P(All, Models,
                          testing::Values("hatch", "sedan", "truck", "motorcycle", "pedestrian",
-                                         "jersey_barrier", "pole", "wall"),
+                                         "jersey_barrier", "pole", "wall", "bicycle", "child",
+                                         "tree", "guard_rail"),
                          [](const auto& tested) { return tested.param; });
 
-TEST(Catalogue, EveryModelIsTested) { EXPECT_EQ(generate::catalogue().size(), 8U); }
+TEST(Catalogue, EveryModelIsTested) { EXPECT_EQ(generate::catalogue().size(), 12U); }
 
 TEST(Catalogue, CarsAreOfTheSizeOfRealOnesAndSymmetric) {
   for (const char* const name : {"hatch", "sedan"}) {

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -122,6 +123,23 @@ struct PictureOptions {
 /// a field of view outside 1 to 120 or an elevation outside -89 to 89 degrees.
 CRASHRANK_API Result<Image> draw_picture(View<const PictureBody> bodies,
                                          const PictureOptions& options = {});
+
+/// What a sheet of three views shows.
+struct ThreeViewOptions {
+  int width_px = 1200;                  ///< pixels
+  int height_px = 900;                  ///< pixels
+  std::optional<double> rear_axle_x_m;  ///< marked where it is known
+  bool marks = true;  ///< axes, ground, axle, sizes and words; else the body alone
+};
+
+/// Draws a mesh in body axes from above, from its right and from its front, parallel and to one
+/// scale, each part in a colour of its own. Marks: the axes (x red, y green, z blue) at the origin
+/// and the ground, z = 0, where they are at most half the body's longest side away from it, the
+/// rear axle, the size and a length scale. Triangles with coordinates that are not finite are left
+/// out. Cost: as `draw_picture`. Errors: usage for no triangle, or a width or height outside 400 to
+/// 4096.
+CRASHRANK_API Result<Image> draw_three_views(const TriangleMesh& mesh,
+                                             const ThreeViewOptions& options = {});
 
 /// Where a body's damage lies: the mean direction of its damaged triangles, seen from the body's
 /// middle, as an azimuth in world axes; 0 without damage. A camera 30 to 60 degrees beside it

@@ -19,6 +19,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -65,6 +68,10 @@ Result<std::uint64_t> check_lines(const Request& request) {
     const Status whole = check_ply(STDIN_FILENO);
     if (!whole) return whole.error();
   }
+  if (request.extension == "ac") {
+    const Status sound = check_ac3d_places(STDIN_FILENO);
+    if (!sound) return sound.error();
+  }
   return std::uint64_t{0};
 }
 
@@ -97,9 +104,46 @@ double number_in(const aiMetadata* metadata, const char* key, double otherwise) 
   return otherwise;
 }
 
+// A chunk's number and its bytes within the file; a number of 0 where there is none.
+struct Chunk3ds {
+  std::uint16_t number = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+// The first chunk of one of these numbers among those from `begin` to `end`.
+Chunk3ds find_chunk(std::uint16_t number, std::size_t begin, std::size_t end) {
+  constexpr std::size_t head = 6;  // number and size, the head included
+  for (std::string bytes; (bytes = read_at(STDIN_FILENO, begin, head)).size() == head;) {
+    Chunk3ds chunk;
+    std::uint32_t size = 0;
+    std::memcpy(&chunk.number, bytes.data(), sizeof chunk.number);
+    std::memcpy(&size, bytes.data() + sizeof chunk.number, sizeof size);
+    if (size < head || size > end - begin) return {};
+    if (chunk.number == number) return {number, begin + head, begin + size};
+    begin += size;
+  }
+  return {};
+}
+
+// What the parser divided a 3DS file's coordinates by: its master scale, the length in inches of
+// the modeller's units. Coordinates count in file units.
+double master_scale() {
+  const Chunk3ds file = find_chunk(0x4d4d, 0, std::numeric_limits<std::uint32_t>::max());
+  const Chunk3ds editor = find_chunk(0x3d3d, file.begin, file.end);
+  const Chunk3ds scale = find_chunk(0x0100, editor.begin, editor.end);
+  float value = 0.0F;
+  const std::string bytes = read_at(STDIN_FILENO, scale.begin, sizeof value);
+  if (scale.number != 0 && bytes.size() == sizeof value) {
+    std::memcpy(&value, bytes.data(), sizeof value);
+  }
+  return value != 0.0F && std::isfinite(value) ? static_cast<double>(value) : 1.0;
+}
+
 // FBX states centimetres per unit, 1 where it says nothing; the parser reads it and leaves the
 // coordinates alone.
 Result<double> metres_per_unit(const aiScene& scene, const Request& request) {
+  if (request.extension == "3ds") return master_scale();
   if (request.extension != "fbx") return 1.0;
   const double centimetres = number_in(scene.mMetaData, "UnitScaleFactor", 1.0);
   if (!(centimetres > 0.0) || !std::isfinite(centimetres)) {

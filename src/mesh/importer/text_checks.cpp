@@ -8,9 +8,11 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <optional>
 #include <string_view>
 
@@ -114,6 +116,47 @@ Result<std::uint64_t> check_off_lines(int descriptor) {
     }
   }
   return surfaces;
+}
+
+Status check_ac3d_places(int descriptor) {
+  ObjLines lines(descriptor);
+  std::string name;
+  bool has_vertices = false;
+  bool moved = false;
+  bool turned = false;
+  for (ObjLine line; lines.next(line);) {
+    std::string_view rest = line.text;
+    const std::string_view word = take_word(rest);
+    const auto differs = [&rest](std::initializer_list<double> usual) {
+      return std::any_of(usual.begin(), usual.end(), [&rest](double wanted) {
+        const std::string_view text = take_word(rest);
+        double number = wanted;
+        std::from_chars(text.data(), text.data() + text.size(), number);
+        return number != wanted;
+      });
+    };
+    if (word == "OBJECT") {
+      has_vertices = moved = turned = false;
+      name.clear();
+    } else if (word == "name") {
+      name = take_word(rest);
+    } else if (word == "loc") {
+      moved = differs({0, 0, 0});
+    } else if (word == "rot") {
+      turned = differs({1, 0, 0, 0, 1, 0, 0, 0, 1});
+    } else if (word == "numvert") {
+      has_vertices = whole_number(take_word(rest)).value_or(0) > 0;
+    } else if (word == "kids" && has_vertices && moved &&
+               (turned || whole_number(take_word(rest)).value_or(0) > 0)) {
+      Error error = make_error(ErrorCode::bad_input,
+                               "object " + detail::quoted(name, 40) + " has vertices, loc and " +
+                                   (turned ? "rot" : "kids") + ", which the parser misplaces",
+                               "export it with objects at the origin, or moved by groups");
+      error.place = "line " + std::to_string(line.number);
+      return error;
+    }
+  }
+  return Success{};
 }
 
 std::string describe_binary_stl(int descriptor) {

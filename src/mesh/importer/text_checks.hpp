@@ -15,6 +15,11 @@ namespace crashrank::importer {
 /// Errors: bad_input, naming the line. Reads the descriptor by position, once.
 Result<std::uint64_t> check_off_lines(int descriptor);
 
+/// Refuses AC3D objects that the parser misplaces: it turns an object's vertices after moving them,
+/// and does not move the objects below one that has vertices. Errors: bad_input, naming the line.
+/// Reads the descriptor by position, once.
+Status check_ac3d_places(int descriptor);
+
 /// A warning where the text of an STL file ends within a facet or without "endsolid"; empty
 /// otherwise, and for binary files. Reads the descriptor by position, once.
 std::string describe_stl_cut(int descriptor);
