@@ -1,9 +1,8 @@
 # crashrank_embed(TARGET NAME FILE): puts a file's bytes into the library, to be read as
-# crashrank::detail::embedded_NAME() (report/page/embedded.hpp). An empty FILE gives no bytes.
+# crashrank::detail::embedded_NAME() (report/page/embedded.hpp).
 function(crashrank_embed target name file)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_${name}.cpp)
-  if(file)
-    file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 #include "report/page/embedded.hpp"
 
 __asm__(".pushsection .rodata\n"
@@ -24,16 +23,7 @@ std::string_view embedded_@name@() {
 }
 }  // namespace crashrank::detail
 ]])
-    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES
-      OBJECT_DEPENDS ${file})
-  else()
-    file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
-#include "report/page/embedded.hpp"
-
-namespace crashrank::detail {
-std::string_view embedded_@name@() { return {}; }
-}  // namespace crashrank::detail
-]])
-  endif()
+  set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES
+    OBJECT_DEPENDS ${file})
   target_sources(${target} PRIVATE ${source})
 endfunction()

@@ -9,16 +9,13 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/crashrank/_core.pyi DESTINATION ${pack
   COMPONENT python)
 install(TARGETS crashrank_cli crashrank-import RUNTIME DESTINATION ${package} COMPONENT python)
 
-# Headers and scripts that are compiled in, by the name of their licence text.
+# Headers that are compiled in, by the name of their licence text.
 find_path(cli_headers CLI/CLI.hpp REQUIRED)
 find_path(json_headers nlohmann/json.hpp REQUIRED)
 find_path(eigen_headers Eigen/Core PATH_SUFFIXES eigen3 REQUIRED)
 find_path(tinygltf_headers tiny_gltf.h REQUIRED)
 set(compiled_in "CLI11=${cli_headers}/CLI/CLI.hpp" "nlohmann-json=${json_headers}/nlohmann/json.hpp"
   "eigen=${eigen_headers}/Eigen/Core" "tinygltf=${tinygltf_headers}/tiny_gltf.h")
-if(CRASHRANK_THREE_JS)
-  list(APPEND compiled_in "three.js=${CRASHRANK_THREE_JS}")
-endif()
 file(GLOB nanobind_licence ${NB_DIR}/../nanobind-*.dist-info/licenses/LICENSE)
 if(NOT nanobind_licence)
   message(FATAL_ERROR "nanobind's licence text is not beside ${NB_DIR}")

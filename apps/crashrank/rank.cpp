@@ -185,6 +185,14 @@ Status check_motion(const RankArguments& options) {
   return Success{};
 }
 
+/// Whether the report plays what happens; an answer within a budget has no motion to play.
+bool is_played(const RankArguments& options, const Scenario& scenario) {
+  const std::size_t generated =
+      scenario.grid ? scenario.grid->accelerations * scenario.grid->steerings : 0;
+  return !options.report.empty() && !options.bounded() &&
+         scenario.listed.size() + generated <= most_played_candidates;
+}
+
 int run(const RankArguments& options) {
   if (const Status sound = check_motion(options); !sound) return fail(sound.error());
   if (options.json && is_standard(options.report)) {
@@ -220,7 +228,6 @@ int run(const RankArguments& options) {
   const Result<RankOrder> order = order_from_name(options.order);
   if (!order) return fail(order.error());
   how.order = *order;
-  how.records_motion = options.motion;
   how.smooth = options.smooth;
   // The table alone shows no more.
   const bool in_full = options.json || !options.report.empty() || !options.damage_folder.empty();
@@ -233,6 +240,7 @@ int run(const RankArguments& options) {
   const Result<HarmOptions> harm = read_harm(options, *scenario);
   if (!harm) return fail(harm.error());
   how.harm = *harm;
+  how.records_motion = options.motion || is_played(options, *scenario);
   // Where the answer goes is seen to before the work.
   std::vector<std::string> inputs{options.scenario, options.profile};
   for (const ScenarioModel& model : scenario->models) inputs.push_back(model.path);
@@ -261,7 +269,7 @@ int run(const RankArguments& options) {
     return ranking_text(*scenario, *models, result, text);
   };
   auto ends_itself = std::make_optional<EndsItself>();
-  const Result<RankResult> ranked = [&] {
+  Result<RankResult> ranked = [&] {
     Progress progress("ranking");
     how.on_progress = [&](std::size_t evaluated, std::size_t candidates) {
       progress.update(evaluated, candidates);
@@ -275,6 +283,7 @@ int run(const RankArguments& options) {
     if (error.file.empty()) error.file = scenario_file;
     return fail(error);
   }
+  ranked->has_motion = options.motion;  // what the page plays is no part of the JSON answer
   if (is_interrupted()) {
     warnings.push_back(ranking_progress(*ranked));
     if (!options.report.empty() || !options.damage_folder.empty()) {
@@ -399,7 +408,7 @@ void add_rank(CLI::App& app, Action& action) {
       ->type_name("FOLDER")
       ->check(named);
   add_file(*command, "--report", options->report,
-           "HTML page with table, plans, parts and a 3-D view of both bodies; - is standard "
+           "HTML page with the decision, the scene as it moves, and all candidates; - is standard "
            "output, without the table")
       ->check([](const std::string& text) {
         return text.empty() ? std::string("names no file") : std::string();

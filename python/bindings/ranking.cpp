@@ -85,6 +85,13 @@ std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const R
     ranked->warnings = situation->warnings();
     if (progress.cancel) return;
     ranked->result = rank_now(*situation, how, within, progress);
+    if (bounded(within) || how.records_motion || !ranked->result.complete ||
+        ranked->result.candidates.size() > most_played_candidates) {
+      return;
+    }
+    how.records_motion = true;
+    how.on_progress = {};
+    ranked->replay = how;
   });
   if (ranked->result.ranking.empty() && ranked->interrupted) {
     // Nothing is known yet: there is no partial answer.
@@ -104,10 +111,21 @@ std::string json_of(const Ranked& ranked) {
   return ranking_json(ranked.scenario, ranked.situation->models(), ranked.result, ranked.warnings);
 }
 
-std::string html_of(const Ranked& ranked, std::size_t drawn) {
+std::string html_of(const Ranked& ranked, std::size_t drawn, bool is_small) {
   const nb::gil_scoped_release unlocked;
   HtmlReportOptions options;
   options.drawn = drawn;
+  if (is_small) {
+    options.model_triangles = 800;
+    options.still = false;
+  }
+  if (ranked.replay) {
+    Result<RankResult> played = rank(ranked.scenario, ranked.situation->models(), *ranked.replay);
+    if (played) {
+      played->elapsed_s = ranked.result.elapsed_s;
+      return html_report(ranked.scenario, ranked.situation->models(), *played, options);
+    }
+  }
   return html_report(ranked.scenario, ranked.situation->models(), ranked.result, options);
 }
 
@@ -168,7 +186,8 @@ void bind_rankings(nb::module_& module) {
   nb::class_<Ranked>(module, "Ranked", "A ranking with its scenario and models.")
       .def("json", &json_of, "The document that `crashrank rank --json` prints.")
       .def("text", &text_of, "The table that `crashrank rank` prints.")
-      .def("html", &html_of, nb::arg("drawn"), "The report, one page.")
+      .def("html", &html_of, nb::arg("drawn"), nb::arg("is_small") = false,
+           "The report, one page; a small one has coarse meshes and no still picture.")
       .def("candidate_paths", &candidate_paths, nb::arg("times_s").noconvert(),
            "x, y, heading by rank and time; m, rad, world.")
       .def("actor_paths", &actor_paths, nb::arg("times_s").noconvert(),

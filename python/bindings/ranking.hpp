@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Ranked {
   RankResult result;
   std::vector<std::string> warnings;  ///< of the meshes, and of how the ranking ended
   bool interrupted = false;
+  /// With these its report ranks again and records the motion that it plays; absent where there is
+  /// none, or where the result has it.
+  std::optional<RankOptions> replay;
 };
 
 }  // namespace crashrank::python

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
@@ -261,12 +260,15 @@ class Ranking(Sequence[RankedCandidate]):
     def report(self, path: object, *, drawn: int = 24) -> None:
         """Write the report: one HTML page that works offline.
 
+        Ranks again to record the motion that the page plays, unless `rank` was asked for it or
+        had a budget.
+
         Parameters
         ----------
         path : path
             The file to write. Replaced where it exists.
         drawn : int
-            Most candidates drawn in plan and in 3-D, best first; 0 for all.
+            Most candidates that the page plays and describes, best first; 0 for all.
         """
         file = as_path(path, "path")
         page = self._ranked.html(as_count(drawn, "drawn", 0, 2**31))
@@ -301,12 +303,16 @@ class Ranking(Sequence[RankedCandidate]):
         return plot(self, self._ranked, candidate, as_count(top, "top", 1, 1000))
 
     def _repr_html_(self) -> str:
-        """Return the report in a frame that may run its own script and nothing else."""
-        page = html.escape(self._ranked.html(8), quote=True)
+        """Return a small report in a frame that may run its own script and nothing else.
+
+        `report` writes the whole one.
+        """
+        # Its data is full of double quotes: in single ones they stay as they are.
+        page = self._ranked.html(3, True).replace("&", "&amp;").replace("'", "&#39;")
         return (
             '<iframe sandbox="allow-scripts" referrerpolicy="no-referrer" '
             'style="width:100%;height:640px;border:0" title="crashrank report" '
-            f'srcdoc="{page}"></iframe>'
+            f"srcdoc='{page}'></iframe>"
         )
 
     def __str__(self) -> str:

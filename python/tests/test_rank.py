@@ -236,6 +236,8 @@ def test_the_report_is_that_of_the_command(tmp_path, truck_ranking):
     inside = truck_ranking._repr_html_()
     assert inside.startswith('<iframe sandbox="allow-scripts"')
     assert "allow-same-origin" not in inside
+    assert len(inside) < 200_000
+    assert '"motion"' in mine
     with pytest.raises(crashrank.NotFoundError) as error:
         truck_ranking.report(tmp_path / "none/here.html")
     assert error.value.file.endswith("none/here.html")

@@ -19,6 +19,11 @@ std::string row_of(const std::string& names, double time_s, double closing_mps,
       fixed_text(b.exposure_mps, 1));
 }
 
+/// What the contact does to both bodies, after SAE J224; fixed ones have no code.
+std::string codes(const BodyOutcome& a, const BodyOutcome& b) {
+  return a.cdc + (a.cdc.empty() || b.cdc.empty() ? "" : " / ") + b.cdc;
+}
+
 }  // namespace
 
 std::string contact_table(const Scenario& scenario, Measure measure,
@@ -28,22 +33,30 @@ std::string contact_table(const Scenario& scenario, Measure measure,
       "<table class='parts contacts'><caption>contacts</caption><thead><tr><th>bodies</th>"
       "<th>after s</th><th>closing m/s</th><th>exposure m/s, first</th><th>second</th>";
   if (has_harm) html += "<th>harm</th>";
+  html += "<th>energy kJ</th><th>CDC</th>";
   html += "</tr></thead><tbody>\n";
   for (const AnyContact& contact : contacts_in_order(ranked)) {
     double harm = 0.0;
+    double dissipated_j = 0.0;
+    std::string cdc;
     if (contact.own != nullptr) {
       const Contact& own = *contact.own;
       html += row_of("ego / " + contact_name(scenario, own), own.time_of_impact_s,
                      own.closing_speed_mps, own.severity.ego, own.severity.other);
       harm = own.severity.harm;
+      dissipated_j = own.severity.dissipated_j;
+      cdc = codes(own.severity.ego, own.severity.other);
     } else {
       const FurtherContact& further = *contact.further;
       html += row_of(pair_name(scenario, further), further.time_s, further.closing_speed_mps,
                      further.outcome_a, further.outcome_b);
       harm = further.harm;
+      dissipated_j = further.dissipated_j;
+      cdc = codes(further.outcome_a, further.outcome_b);
     }
     if (has_harm) html += "<td class='n'>" + harm_text(harm) + "</td>";
-    html += "</tr>\n";
+    html += fmt::format("<td class='n'>{:.0f}</td><td>{}</td></tr>\n", 1e-3 * dissipated_j,
+                        escape_xml(cdc));
   }
   return html + "</tbody></table>\n";
 }

@@ -3,17 +3,19 @@
 #include "crashrank/internal/report/escape.hpp"
 #include "report/base64.hpp"
 #include "report/contact_table.hpp"
-#include "report/crash_summary.hpp"
 #include "report/damage_summary.hpp"
+#include "report/decision.hpp"
 #include "report/future_words.hpp"
 #include "report/manoeuvre_words.hpp"
 #include "report/page/embedded.hpp"
+#include "report/page_data.hpp"
+#include "report/page_mesh.hpp"
+#include "report/page_rows.hpp"
 #include "report/parts_table.hpp"
 #include "report/plan_view.hpp"
 #include "report/ranking_words.hpp"
 #include "report/score_text.hpp"
 #include "report/still_picture.hpp"
-#include "report/view_data.hpp"
 
 #include <fmt/format.h>
 
@@ -26,48 +28,52 @@
 namespace crashrank {
 namespace {
 
-using detail::DamageSummary;
-
 class Page {
 public:
-  Page(const Scenario& scenario, View<const Model> models, const RankResult& result,
-       const HtmlReportOptions& options)
-      : scenario_(scenario), models_(models), result_(result), plan_(scenario, models, result) {
+  /// `scenario` is the likeliest future of `asked`.
+  Page(const Scenario& asked, const Scenario& scenario, View<const Model> models,
+       const RankResult& result, const HtmlReportOptions& options)
+      : scenario_(scenario),
+        models_(models),
+        result_(result),
+        plan_(scenario, models, result),
+        has_still_(options.still) {
     const std::size_t all = result.ranking.size();
     const std::size_t drawn = options.drawn == 0 ? all : std::min(options.drawn, all);
     for (std::size_t place = 0; place < drawn; ++place) places_.push_back(place);
     if (drawn < all) places_.push_back(all - 1);
     scores_ = detail::score_texts(result);
-    data_ = detail::view_data(scenario, models, result, places_, options.model_triangles);
+    full_bar_ = detail::full_bar(result);
+    data_ = detail::page_data(asked, scenario, models, result, scores_, places_,
+                              options.model_triangles);
   }
 
   std::string html() {
     head();
-    verdict();
-    if (has_view()) {
-      view();
-    } else if (detail::embedded_three().empty()) {
-      out_ +=
-          "<p class='note'>The 3-D view is missing: this crashrank was built without "
-          "three.js.</p>\n";
+    if (!result_.ranking.empty()) {
+      decision();
+      stage();
+      table();
+      uncertainty();
+      out_ += "<div id='candidates'>\n";
+      for (const std::size_t place : places_) candidate(place);
+      out_ += "</div>\n";
     }
-    table();
-    for (const std::size_t place : places_) candidate(place);
     foot();
     return std::move(out_);
   }
 
 private:
-  bool has_view() const { return !detail::embedded_three().empty() && !places_.empty(); }
-
-  bool has_futures() const { return result_.futures.method != FutureMethod::certain; }
-
-  bool is_drawn(std::size_t place) const {
-    return std::binary_search(places_.begin(), places_.end(), place);
-  }
-
   const std::string& name_of(std::size_t place) const {
     return result_.candidates[result_.ranking[place].candidate].name;
+  }
+
+  void paragraph(const std::string& text) { out_ += "<p>" + escape_xml(text) + "</p>\n"; }
+
+  void list(const std::string& title, const std::vector<std::string>& items) {
+    out_ += "<div><h3>" + title + "</h3>\n<ul>";
+    for (const std::string& item : items) out_ += "<li>" + escape_xml(item) + "</li>\n";
+    out_ += "</ul></div>\n";
   }
 
   void head() {
@@ -75,278 +81,293 @@ private:
         "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>\n"
         "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; "
         "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n"
-        "<meta name='viewport' content='width=device-width, initial-scale=1'>\n<title>";
+        "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
+        "<meta name='color-scheme' content='light dark'>\n<title>";
     out_ += escape_xml(scenario_.name) + " - crashrank</title>\n<style>";
     out_ += detail::embedded_style();
     out_ += "</style></head><body>\n<header><h1>" + escape_xml(scenario_.name) + "</h1>\n";
-    if (!scenario_.description.empty()) {
-      out_ += "<p>" + escape_xml(scenario_.description) + "</p>\n";
+    if (!scenario_.description.empty()) paragraph(scenario_.description);
+    out_ += "</header>\n<main>\n";
+    if (result_.ranking.empty()) out_ += "<p class='note'>There is no candidate to rank.</p>\n";
+  }
+
+  /// How full the bar of a score is, 0 to 100 %, as a style.
+  std::string share_style(double value) const {
+    const double share = full_bar_ > 0.0 && std::isfinite(value) ? value / full_bar_ : 0.0;
+    return fmt::format("style='--share:{:.1f}%'", 100.0 * std::clamp(share, 0.0, 1.0));
+  }
+
+  void decision() {
+    const detail::Decision decision = detail::decision_of(scenario_, result_, scores_);
+    const CandidateResult& best = result_.ranking.front();
+    out_ += fmt::format("<section class='decision {}' {} aria-label='Decision'>\n<h2>{}</h2>\n",
+                        decision.is_clear ? "clear" : "crash",
+                        share_style(best.score.value_or(0.0)), escape_xml(decision.sentence));
+    out_ += "<p class='next'>" + escape_xml(decision.next) + "</p>\n<div class='why'>\n";
+    people();
+    list("How sure", decision.sure);
+    std::vector<std::string> against = decision.against;
+    for (const std::string& doubt : ranking_doubts(scenario_, models_, result_)) {
+      against.push_back("Doubtful: " + doubt + ".");
     }
+    if (against.empty()) against.emplace_back("Nothing that is known.");
+    list("What speaks against it", against);
+    out_ += "</div>\n";
+    if (result_.ranking.size() > 1) {
+      out_ += "<details><summary>Why it stands before the next, in numbers</summary>\n";
+      paragraph(detail::reason_words(scenario_, models_, result_, scores_, 0));
+      out_ += "</details>\n";
+    }
+    out_ += "</section>\n";
+  }
+
+  /// Who is in danger in the first row, and in the second.
+  void people() {
+    out_ += "<div><h3>Who may be hurt</h3>\n";
+    const CandidateResult& best = result_.ranking.front();
+    const CandidateResult* const next = result_.ranking.size() > 1 ? &result_.ranking[1] : nullptr;
+    std::vector<std::size_t> bodies;
+    const auto add = [&bodies](const CandidateResult& ranked) {
+      for (const PersonRisk& risk : ranked.people) {
+        if (risk.persons > 0.0 &&
+            std::find(bodies.begin(), bodies.end(), risk.body) == bodies.end()) {
+          bodies.push_back(risk.body);
+        }
+      }
+    };
+    add(best);
+    if (next != nullptr) add(*next);
+    if (bodies.empty()) {
+      out_ += result_.measure == Measure::harm
+                  ? "<p>Nobody comes to harm.</p></div>\n"
+                  : "<p>The measure is one of the crash, not of harm to people.</p></div>\n";
+      return;
+    }
+    out_ += fmt::format("<table class='people'><thead><tr><th>who</th><th>chance to be {}</th>",
+                        detail::outcome_participle(result_.harm.model));
+    out_ += next != nullptr ? "<th>next best</th></tr></thead><tbody>\n" : "</tr></thead><tbody>\n";
+    for (const std::size_t body : bodies) {
+      out_ += "<tr><th scope='row'>" + escape_xml(who(best, next, body)) + "</th>";
+      out_ += chance_cell(best, body);
+      if (next != nullptr) out_ += chance_cell(*next, body);
+      out_ += "</tr>\n";
+    }
+    out_ += "</tbody></table></div>\n";
+  }
+
+  static const PersonRisk* risk_of(const CandidateResult& ranked, std::size_t body) {
+    const auto found = std::find_if(ranked.people.begin(), ranked.people.end(),
+                                    [body](const PersonRisk& risk) { return risk.body == body; });
+    return found == ranked.people.end() ? nullptr : &*found;
+  }
+
+  /// "saloon, 2 persons"
+  std::string who(const CandidateResult& best, const CandidateResult* next,
+                  std::size_t body) const {
+    const PersonRisk* risk = risk_of(best, body);
+    if (risk == nullptr && next != nullptr) risk = risk_of(*next, body);
+    const std::string name = body == ego_body ? "our own car" : scenario_.actors[body].name;
+    if (risk == nullptr || risk->persons == 1.0) return name;
+    return fmt::format("{}, {:g} persons", name, risk->persons);
+  }
+
+  static std::string chance_cell(const CandidateResult& ranked, std::size_t body) {
+    const PersonRisk* const risk = risk_of(ranked, body);
+    if (risk == nullptr) return "<td>not hit</td>";
+    return fmt::format("<td><span class='chance' style='--share:{:.1f}%'></span>{}</td>",
+                       100.0 * risk->probability, detail::chance_words(risk->probability));
+  }
+
+  /// The winner's scene as a picture, for print and for browsers without WebGL.
+  void still() {
+    if (!has_still_) return;
+    const Result<std::string> drawn = detail::still_picture(scenario_, models_, result_, 0);
+    if (!drawn) return;
+    const std::string caption =
+        escape_xml(name_of(0)) + (result_.ranking.front().contacts.empty()
+                                      ? ", at the end of the plan"
+                                      : ", at first contact; damage is red");
+    out_ += "<figure class='still'><img src='data:image/png;base64,";
+    out_ += detail::base64(drawn->data(), drawn->size());
+    out_ += "' alt='" + caption + "'><figcaption>" + caption + "</figcaption></figure>\n";
+  }
+
+  void stage() {
+    if (places_.empty()) return;
+    out_ +=
+        "<section class='stage' id='stage' aria-label='The scene, moving'>\n"
+        "<div class='choose'><label>Show <select id='shown'></select></label>\n"
+        "<label>beside <select id='beside'><option value=''>nothing</option></select></label>\n"
+        "<span id='told' role='status'></span></div>\n<div id='views'></div>\n"
+        "<div class='clock'><button type='button' id='play'>Play</button>\n"
+        "<input id='time' type='range' min='0' step='0.01' value='0' aria-label='Time'>\n"
+        "<output id='now' for='time'></output>\n"
+        "<label><input id='slow' type='checkbox' checked> slow at contacts</label>\n"
+        "<canvas id='trace' role='img' aria-label='Exposure of each body over "
+        "time'></canvas></div>\n"
+        "<p class='hint'>Space plays, arrows step, N and P go from contact to contact. In a "
+        "picture "
+        "that has focus: drag to move or turn, wheel or pinch to come nearer, 0 for all.</p>\n";
+    still();
+    const bool is_played = std::any_of(places_.begin(), places_.end(), [this](std::size_t place) {
+      const CandidateResult& ranked = result_.ranking[place];
+      return !ranked.contacts.empty() && ranked.motion.empty();
+    });
+    if (is_played) {
+      out_ +=
+          "<p class='note'>The motion after first contacts was not recorded: the pictures end "
+          "there.</p>\n";
+    }
+    if (data_.is_coarser) {
+      out_ += fmt::format(
+          "<p class='hint'>Meshes of more than {} triangles are drawn with fewer.</p>\n",
+          detail::most_page_triangles);
+    }
+    out_ +=
+        "<noscript><p class='note'>The moving scene needs JavaScript.</p></noscript>\n"
+        "</section>\n";
+  }
+
+  void table() {
     const auto free =
         std::count_if(result_.ranking.begin(), result_.ranking.end(), [](const CandidateResult& r) {
           return r.score && !r.collides && !(r.collision_probability > 0.0);
         });
+    out_ += "<section class='table' aria-label='Ranking'><h2>All candidates</h2>\n";
     out_ += fmt::format(
         "<p class='facts'>{} candidates, {} other{} on the road, {} {}touch nothing. Ranked by {} "
-        "[{}], lower is better, in {:.1f} ms{}.</p></header>\n",
+        "[{}], lower is better, in {:.1f} ms{}.</p>\n",
         result_.ranking.size(), scenario_.actors.size(), scenario_.actors.size() == 1 ? "" : "s",
         free, result_.complete ? "" : "are known to ", measure_name(result_.measure),
         escape_xml(measure_unit(result_.measure)), result_.elapsed_s * 1e3,
         result_.complete ? "" : "; the answer is partial");
-    for (const std::string& doubt : ranking_doubts(scenario_, models_, result_)) {
-      out_ += "<p class='note'>Doubtful: " + escape_xml(doubt) + ".</p>\n";
+    out_ += fmt::format(
+        "<div class='tools'><label>Filter <input id='filter' type='search'></label>\n"
+        "<span id='listed' role='status'></span>\n"
+        "<span class='legend'>0 <span class='scale'></span> {:.3g} {}</span></div>\n",
+        full_bar_, escape_xml(measure_unit(result_.measure)));
+    out_ +=
+        "<div id='rows' tabindex='0' role='region' aria-label='Candidates, scrollable'>"
+        "<table class='ranking'><thead><tr>";
+    const std::string score_title = std::string(measure_name(result_.measure)) + " [" +
+                                    escape_xml(measure_unit(result_.measure)) + "]";
+    for (const std::string& title : {std::string("place"), std::string("manoeuvre"), score_title,
+                                     std::string("first contact"), std::string("warnings")}) {
+      out_ += "<th scope='col'>" + title + "</th>";
     }
+    out_ += "</tr></thead><tbody>\n";
+    for (const std::size_t place : places_) row(place);
+    out_ += "</tbody></table></div>\n";
+    if (places_.size() < result_.ranking.size()) {
+      out_ += fmt::format(
+          "<p class='hint'>{} candidates are drawn and described: the best and the worst.</p>\n",
+          places_.size());
+    }
+    out_ += "</section>\n";
   }
 
-  void verdict() {
-    if (result_.ranking.empty()) return;
-    out_ += fmt::format("<section class='verdict {}'><h2>", how_bad());
-    out_ += !result_.proved                    ? "Best guess so far: "
-            : result_.measure == Measure::harm ? "Least harmful: "
-                                               : "Least destructive: ";
-    out_ += escape_xml(name_of(0));
-    if (result_.ranking[0].sharing > 1) {
-      out_ += fmt::format(", tied with {} more", result_.ranking[0].sharing - 1);
+  /// What the page shows without its script; page/table.js builds the same.
+  void row(std::size_t place) {
+    const detail::PageRow row = detail::page_row(scenario_, result_, scores_, place);
+    out_ += fmt::format("<tr data-row='{}' class='{}'><td class='place'>{}{}</td><td>{}", place,
+                        row.bracket, row.place, row.bracket == "tied" ? " tied" : "",
+                        escape_xml(row.name));
+    if (row.manoeuvre != row.name) {
+      out_ += "<span class='words'>" + escape_xml(row.manoeuvre) + "</span>";
     }
-    out_ += "</h2>\n";
-    out_ += result_.ranking.size() > 1
-                ? "<p>" +
-                      escape_xml(detail::reason_words(scenario_, models_, result_, scores_, 0)) +
-                      "</p>\n"
-                : "<p>It is the only candidate.</p>\n";
-    if (!result_.proved) {
-      out_ += "<p class='note'>The first place is not proved; still in the race: ";
-      for (std::size_t i = 0; i < result_.in_race.size(); ++i) {
-        if (i > 0) out_ += ", ";
-        out_ += escape_xml(result_.candidates[result_.in_race[i]].name);
-      }
-      out_ += "</p>\n";
-    }
-    const std::vector<std::string> futures = detail::future_words(scenario_, result_);
-    if (!futures.empty()) {
-      out_ += "<p class='note' id='futures'>";
-      for (std::size_t i = 0; i < futures.size(); ++i) {
-        out_ += (i > 0 ? "<br>" : "") + escape_xml(futures[i]);
-      }
-      out_ += "</p>\n";
-    }
+    out_ += fmt::format("</td><td class='score' {}><span class='bar'></span>{}",
+                        share_style(row.value), row.score);
+    if (!row.interval.empty()) out_ += "<span class='interval'>" + row.interval + "</span>";
+    out_ += "</td><td>" + escape_xml(row.contact) + "</td><td>";
+    if (!row.warnings.empty()) out_ += "<em>" + escape_xml(row.warnings) + "</em>";
+    out_ += "</td></tr>\n";
+  }
+
+  void uncertainty() {
+    std::vector<std::string> lines = detail::future_words(scenario_, result_);
     const std::vector<std::string> pushed =
         detail::pushed_words(scenario_, result_, result_.ranking.size());
-    if (!pushed.empty()) {
-      out_ += "<p class='note'>Hurt by a contact between others:";
-      for (const std::string& words : pushed) out_ += "<br>" + escape_xml(words);
-      out_ += "</p>\n";
+    std::vector<std::string> open = detail::not_separable_words(result_, result_.ranking.size());
+    out_ +=
+        "<section class='uncertainty' aria-label='Uncertainty'><h2>What is not known</h2>\n"
+        "<div id='futures'></div>\n";
+    if (!lines.empty()) list("Futures", lines);
+    out_ += "<div id='stability'></div>\n";
+    constexpr std::size_t shown = 12;
+    if (open.size() > shown) {
+      const std::string more = fmt::format("and {} more pairs", open.size() - shown);
+      open.resize(shown);
+      open.push_back(more);
     }
-    const std::vector<std::string> open =
-        detail::not_separable_words(result_, result_.ranking.size());
-    if (!open.empty()) {
-      constexpr std::size_t shown = 12;
-      out_ += "<p class='note' id='separability'>";
-      for (std::size_t i = 0; i < std::min(shown, open.size()); ++i) {
-        out_ += (i > 0 ? "; " : "") + escape_xml(open[i]);
-      }
-      if (open.size() > shown) out_ += fmt::format("; and {} more pairs", open.size() - shown);
-      out_ += ".</p>\n";
-    } else if (!result_.samples.empty() && result_.ranking.size() > 1) {
-      out_ += fmt::format(
-          "<p class='note' id='separability'>Every place is separable from the next: no order "
-          "reverses "
-          "in more than {:.0f} % of {} samples of what is not known, nor with longer steps "
-          "or 1 mm aside{}.</p>\n",
+    if (open.empty() && !result_.samples.empty() && result_.ranking.size() > 1) {
+      open.push_back(fmt::format(
+          "Every place is separable from the next: no order reverses in more than {:.0f} % of {} "
+          "samples of what is not known, nor with half the steps or 1 mm aside{}.",
           100.0 * separable_share, range_sample_count(result_),
           result_.futures.method == FutureMethod::sampled
               ? ", and every difference exceeds two standard errors of the sample of futures"
-              : "");
+              : ""));
     }
+    if (!open.empty()) list("Places", open);
+    if (!pushed.empty()) list("Hurt by a contact between others", pushed);
     out_ += "</section>\n";
-  }
-
-  /// Colour of the verdict: how much harm even the best choice does.
-  const char* how_bad() const {
-    const CandidateResult& best = result_.ranking.front();
-    if (result_.measure != Measure::harm || !best.score) return "unweighted";
-    constexpr double few = 0.02;
-    constexpr double many = 0.2;
-    return *best.score < few ? "slight" : *best.score < many ? "grave" : "severe";
-  }
-
-  bool simulated() const { return needs_crash(result_.measure); }
-
-  /// The winner's scene as a picture, for print and for browsers without WebGL.
-  void still() {
-    const Result<std::string> drawn = detail::still_picture(scenario_, models_, result_, 0);
-    if (!drawn) return;
-    out_ += "<figure class='still'><img alt='' src='data:image/png;base64,";
-    out_ += detail::base64(drawn->data(), drawn->size());
-    out_ += "'><figcaption>" + escape_xml(name_of(0)) +
-            (result_.ranking.front().contacts.empty() ? ", at the end of the plan"
-                                                      : ", at first contact; damage is red") +
-            "</figcaption></figure>\n";
-  }
-
-  void view() {
-    out_ += "<section class='stage'>\n";
-    still();
-    out_ +=
-        "<div id='view'><p id='view-note'>The 3-D view needs a browser "
-        "with JavaScript and WebGL.</p></div>\n"
-        "<noscript><style>#view { height: auto; }</style></noscript>\n"
-        "<div class='controls'><b id='view-title'></b> <label>pull apart <input id='apart' "
-        "type='range' min='0' max='3' step='0.05' value='0'></label> "
-        "<span>drag to turn, wheel to come nearer; damage is red</span></div>\n";
-    if (data_.left_out) {
-      out_ += "<p class='note'>Models of very many triangles are left out of the 3-D view.</p>\n";
-    }
-    out_ += "</section>\n";
-  }
-
-  void table() {
-    double top = 0.0;
-    for (const CandidateResult& ranked : result_.ranking) {
-      top = std::max(top, ranked.score.value_or(ranked.score_interval.highest));
-    }
-    out_ +=
-        "<section class='wide'><h2>Ranking</h2>\n<table class='ranking'><thead><tr><th>rank</th>"
-        "<th>candidate</th><th>";
-    out_ += std::string(measure_name(result_.measure)) + " [" +
-            escape_xml(measure_unit(result_.measure)) + "]</th>";
-    if (simulated()) out_ += "<th>interval</th><th class='roomy'>may rank</th>";
-    if (has_futures()) out_ += "<th>collides</th>";
-    out_ += has_futures() ? "<th>likeliest hits</th>" : "<th>hits</th>";
-    out_ +=
-        "<th class='roomy'>after s</th><th class='roomy'>closing m/s</th></tr></thead>"
-        "<tbody>\n";
-    for (std::size_t place = 0; place < result_.ranking.size(); ++place) row(place, top);
-    out_ += "</tbody></table></section>\n";
-  }
-
-  void row(std::size_t place, double top) {
-    const CandidateResult& ranked = result_.ranking[place];
-    const double score = ranked.score.value_or(ranked.score_interval.highest);
-    const double width = top > 0.0 && std::isfinite(score) ? 110.0 * score / top : 0.0;
-    out_ += fmt::format("<tr data-place='{}'><td class='n'>{}</td>", place + 1,
-                        detail::place_text(ranked));
-    out_ += is_drawn(place) ? fmt::format("<td><a href='#c{}'>", place + 1) : std::string("<td>");
-    out_ += escape_xml(name_of(place)) + (is_drawn(place) ? "</a>" : "");
-    const std::string mark = detail::manoeuvre_mark(ranked);
-    out_ += (mark.empty() ? "" : " <em>" + mark + "</em>") + "</td>";
-    out_ += fmt::format("<td class='score'><span class='bar' style='width:{:.1f}px'></span>{}</td>",
-                        width, scores_[place]);
-    if (simulated()) {
-      out_ += "<td class='n'>" + detail::interval_text(ranked) + "</td><td class='n roomy'>" +
-              detail::places_text(ranked) + "</td>";
-    }
-    if (has_futures()) {
-      out_ += "<td class='n'>" +
-              (ranked.score || ranked.searched ? detail::percent_text(ranked.collision_probability)
-                                               : std::string()) +
-              "</td>";
-    }
-    if (ranked.first_touch) {
-      const FirstTouch& touch = *ranked.first_touch;
-      out_ += fmt::format(
-          "<td>{}</td><td class='n roomy'>{:.3f}</td><td class='n roomy'>{}</td></tr>\n",
-          escape_xml(scenario_.actors[touch.actor].name), touch.time_of_impact_s,
-          detail::fixed_text(touch.closing_speed_mps, 1));
-      return;
-    }
-    if (ranked.contacts.empty()) {
-      out_ += "<td colspan='3' class='free'>";
-      out_ += escape_xml(detail::passing_words(scenario_, ranked));
-      out_ += "</td></tr>\n";
-      return;
-    }
-    const Contact& first = ranked.contacts.front();
-    std::string hit;
-    for (const std::size_t actor : detail::hit_actors(ranked)) {
-      hit += hit.empty() ? detail::contact_name(scenario_, first)
-                         : ", " + scenario_.actors[actor].name;
-    }
-    for (const detail::FurtherPair& pair : detail::further_pairs(ranked)) {
-      hit += ", " + detail::pair_name(scenario_, *pair.first);
-    }
-    out_ += fmt::format(
-        "<td><details><summary>{}</summary>{}</details></td><td class='n roomy'>{:.3f}</td>"
-        "<td class='n roomy'>{}</td></tr>\n",
-        escape_xml(hit), outcome_lines(ranked), first.time_of_impact_s,
-        detail::fixed_text(first.closing_speed_mps, 1));
-  }
-
-  std::string outcome_lines(const CandidateResult& ranked) const {
-    const Contact& first = ranked.contacts.front();
-    const DamageSummary ego = detail::summary_of(ranked.ego, models_[scenario_.ego.model].mesh);
-    const DamageSummary other = detail::summary_of_others(scenario_, models_, ranked);
-    std::string parts;
-    for (std::size_t i = 0; i < std::min<std::size_t>(4, ego.parts.size()); ++i) {
-      if (i > 0) parts += ", ";
-      parts += ego.parts[i];
-    }
-    if (ego.parts.size() > 4) parts += fmt::format(" and {} more", ego.parts.size() - 4);
-    std::string lines =
-        fmt::format("after {:.3f} s, closing with {} m/s, {} along the normal",
-                    first.time_of_impact_s, detail::fixed_text(first.closing_speed_mps, 1),
-                    detail::fixed_text(first.normal_speed_mps, 1));
-    if (simulated()) lines += severity_lines(ranked);
-    lines += fmt::format("<br>damaged m²: ego {}, others {}", detail::fixed_text(ego.area_m2, 2),
-                         detail::fixed_text(other.area_m2, 2));
-    if (!parts.empty()) lines += "<br>ego's parts: " + escape_xml(parts);
-    return lines;
-  }
-
-  /// As many digits as the ranges leave of anything.
-  static std::string severity_lines(const CandidateResult& ranked) {
-    const detail::CrashSummary ego = detail::crash_of_ego(ranked);
-    const detail::CrashSummary others = detail::crash_of_others(ranked);
-    return fmt::format(
-        "<br>exposure m/s: ego {}, others up to {}<br>crush m: ego {}, others up to {}"
-        "<br>harm: ego {}, others {}",
-        detail::fixed_text(ego.exposure_mps, 1), detail::fixed_text(others.exposure_mps, 1),
-        detail::fixed_text(ego.crush_m, 2), detail::fixed_text(others.crush_m, 2),
-        detail::harm_text(ego.harm), detail::harm_text(others.harm));
   }
 
   void candidate(std::size_t place) {
     const CandidateResult& ranked = result_.ranking[place];
     out_ +=
-        fmt::format("<section class='candidate' id='c{}'><h2>{}. {}{}</h2>\n", place + 1,
+        fmt::format("<section class='candidate' id='c{}'><h3>{}. {}{}</h3>\n", place + 1,
                     ranked.place, escape_xml(name_of(place)), ranked.sharing > 1 ? " (tied)" : "");
-    out_ += "<p>It " + escape_xml(detail::outcome_words(scenario_, ranked)) + ": " +
-            escape_xml(detail::score_words(ranked, scores_[place], result_.measure)) + ". " +
-            escape_xml(detail::manoeuvre_words(scenario_, ranked));
-    if (place > 0 && place + 1 < result_.ranking.size() && is_drawn(place + 1)) {
-      out_ += std::string(ranked.place == result_.ranking[place + 1].place
-                              ? " Tied with the next: "
-                              : " Why it stands before the next: ") +
-              escape_xml(detail::reason_words(scenario_, models_, result_, scores_, place));
+    paragraph("It " + detail::outcome_words(scenario_, ranked) + ": " +
+              detail::score_words(ranked, scores_[place], result_.measure) + ". " +
+              detail::manoeuvre_words(scenario_, ranked));
+    if (place > 0 && place + 1 < places_.size()) {
+      paragraph((ranked.place == result_.ranking[place + 1].place ? "Tied with the next: "
+                                                                  : "Why before the next: ") +
+                detail::reason_words(scenario_, models_, result_, scores_, place));
     }
-    out_ += "</p>\n<div class='columns'>\n" + plan_.draw(place);
-    out_ += "<div>\n";
+    out_ += "<div class='columns'>\n" + plan_.draw(place) + "<div>\n";
+    if (!ranked.people.empty()) candidate_people(ranked);
     if (!ranked.contacts.empty()) {
-      if (has_view()) {
-        out_ += fmt::format("<button data-place='{}'>show in 3-D</button>\n", place + 1);
-      }
       out_ += detail::contact_table(scenario_, result_.measure, ranked);
-      out_ += detail::parts_table("ego", models_[scenario_.ego.model].mesh, ranked.ego);
-      for (const detail::DamagedBody& body : detail::damaged_others(scenario_, models_, ranked)) {
-        out_ +=
-            detail::parts_table(scenario_.actors[body.actor].name,
-                                detail::mesh_of_actor(scenario_, models_, body.actor), body.damage);
-      }
     }
-    out_ += "</div></div></section>\n";
+    out_ += "</div></div>\n";
+    if (!ranked.contacts.empty()) damage(ranked);
+    out_ += "</section>\n";
+  }
+
+  void damage(const CandidateResult& ranked) {
+    out_ += "<div class='damage'><div>";
+    out_ += detail::parts_table("ego", models_[scenario_.ego.model].mesh, ranked.ego);
+    for (const detail::DamagedBody& body : detail::damaged_others(scenario_, models_, ranked)) {
+      out_ +=
+          "</div>\n<div>" +
+          detail::parts_table(scenario_.actors[body.actor].name,
+                              detail::mesh_of_actor(scenario_, models_, body.actor), body.damage);
+    }
+    out_ += "</div></div>\n";
+  }
+
+  void candidate_people(const CandidateResult& ranked) {
+    out_ += fmt::format(
+        "<table class='parts'><caption>people</caption><thead><tr><th>who</th>"
+        "<th>persons</th><th>{}</th><th>exposure km/h</th></tr></thead><tbody>\n",
+        detail::outcome_participle(result_.harm.model));
+    for (const PersonRisk& risk : ranked.people) {
+      out_ += fmt::format(
+          "<tr><td>{}</td><td class='n'>{:g}</td><td class='n'>{}</td><td class='n'>{:.0f}</td>"
+          "</tr>\n",
+          risk.body == ego_body ? "ego" : escape_xml(scenario_.actors[risk.body].name),
+          risk.persons, detail::chance_words(risk.probability), 3.6 * risk.exposure_mps);
+    }
+    out_ += "</tbody></table>\n";
   }
 
   void foot() {
-    if (places_.size() < result_.ranking.size()) {
-      out_ += fmt::format("<p class='more'>{} candidates are drawn: the best and the worst.</p>\n",
-                          places_.size());
-    }
     out_ +=
-        "<footer>Made by crashrank. Plans: the ego blue, what it hits sand, the shaded outline "
-        "its start, the arrow the closing velocity, damage red, a ring where two others collide. "
-        "Damage is what the "
-        "bodies pass through of each other, as rigid ones, in the simulated contact, not a "
-        "deformation.";
+        "</main>\n<footer>Made by crashrank. The ego is blue, others are sand, damage is red; a "
+        "ring is where two others collide. Damage is what the bodies pass through of each other, "
+        "as rigid ones, in the simulated contact; dents are drawn to the simulated crush.";
     if (result_.measure != Measure::harm) {
       out_ += " The measure is one of the crash, not of harm to people.";
     } else {
@@ -355,27 +376,13 @@ private:
       }
     }
     out_ += "</footer>\n";
-    if (has_view()) {
-      out_ += "<script>";
-      add_script(detail::embedded_three());
-      out_ += "</script>\n<script type='application/json' id='view-data'>";
-      out_ += data_.json;
-      out_ += "</script>\n<script>";
-      out_ += detail::embedded_view();
+    if (!places_.empty()) {
+      out_ += "<script type='application/json' id='page-data'>" + data_.json + "</script>\n";
+      out_ += "<script>\n\"use strict\";\n";
+      for (const std::string_view part : detail::embedded_scripts()) out_ += part;
       out_ += "</script>\n";
     }
     out_ += "</body></html>\n";
-  }
-
-  // A script's own strings might hold what ends its element.
-  void add_script(std::string_view text) {
-    constexpr std::string_view end = "</script";
-    for (std::size_t at = text.find(end); at != std::string_view::npos; at = text.find(end)) {
-      out_ += text.substr(0, at);
-      out_ += "<\\/script";
-      text.remove_prefix(at + end.size());
-    }
-    out_ += text;
   }
 
   const Scenario& scenario_;
@@ -384,7 +391,9 @@ private:
   detail::PlanView plan_;
   std::vector<std::size_t> places_;  // drawn, rising
   std::vector<std::string> scores_;  // by row
-  detail::ViewData data_;
+  double full_bar_ = 0.0;
+  bool has_still_;
+  detail::PageData data_;
   std::string out_;
 };
 
@@ -392,9 +401,9 @@ private:
 
 std::string html_report(const Scenario& scenario, View<const Model> models,
                         const RankResult& result, const HtmlReportOptions& options) {
-  if (!is_uncertain(scenario)) return Page(scenario, models, result, options).html();
+  if (!is_uncertain(scenario)) return Page(scenario, scenario, models, result, options).html();
   const Scenario shown = likeliest_future(scenario);
-  return Page(shown, models, result, options).html();
+  return Page(scenario, shown, models, result, options).html();
 }
 
 }  // namespace crashrank

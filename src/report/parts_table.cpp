@@ -47,11 +47,17 @@ std::vector<PartDamage> damage_by_part(const TriangleMesh& mesh, const BodyDamag
   return parts;
 }
 
+/// "front_bumper" as people write it.
+std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 }  // namespace
 
 std::string parts_table(const std::string& title, const TriangleMesh& mesh,
                         const BodyDamage& damage) {
-  constexpr std::size_t shown = 12;
+  constexpr std::size_t shown = 8;
   std::string html = "<table class='parts'><caption>" + escape_xml(title) +
                      "</caption><thead><tr><th>part</th><th>damaged m²</th><th>of the part</th>"
                      "</tr></thead><tbody>\n";
@@ -59,10 +65,9 @@ std::string parts_table(const std::string& title, const TriangleMesh& mesh,
   for (std::size_t i = 0; i < std::min(shown, parts.size()); ++i) {
     const PartDamage& part = parts[i];
     const double share = part.whole_m2 > 0.0 ? 100.0 * part.area_m2 / part.whole_m2 : 0.0;
-    html += fmt::format(
-        "<tr><td>{}</td><td class='n'>{:.3f}</td><td class='n'><span class='bar' "
-        "style='width:{:.0f}px'></span>{:.0f} %</td></tr>\n",
-        escape_xml(part.name), part.area_m2, 0.5 * share, share);
+    html +=
+        fmt::format("<tr><td>{}</td><td class='n'>{:.3f}</td><td class='n'>{:.0f} %</td></tr>\n",
+                    escape_xml(spaced(part.name)), part.area_m2, share);
   }
   html += "</tbody></table>\n";
   if (parts.size() > shown) {

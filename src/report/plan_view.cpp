@@ -19,13 +19,24 @@ constexpr double half_width_m = 16.0;
 constexpr double half_height_m = 10.0;
 constexpr double pixels_per_m = 20.0;
 
-Outline outline_of(const TriangleMesh& mesh) {
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(mesh.vertices.size());
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    points.emplace_back(vertex.x(), vertex.y());
+/// Leaves out corners that lie within 2 cm of the line between those that stay.
+Outline thinned(const Outline& hull) {
+  constexpr double near_m = 0.02;
+  Outline kept;
+  std::size_t next = 0;
+  for (std::size_t first = 0; first < hull.size(); first = next) {
+    kept.push_back(hull[first]);
+    const auto is_straight = [&](std::size_t last) {
+      const Eigen::Vector2d along = (hull[last % hull.size()] - hull[first]).normalized();
+      for (std::size_t i = first + 1; i < last; ++i) {
+        const Eigen::Vector2d from = hull[i] - hull[first];
+        if (std::abs(along.x() * from.y() - along.y() * from.x()) > near_m) return false;
+      }
+      return true;
+    };
+    for (next = first + 1; next < hull.size() && is_straight(next + 1);) ++next;
   }
-  return convex_hull(std::move(points));
+  return kept;
 }
 
 Eigen::Vector2d ground(const Pose& pose, const Eigen::Vector2d& point) {
@@ -157,6 +168,15 @@ std::string way(const Canvas& canvas, const Motion& motion, double until_s) {
 }
 
 }  // namespace
+
+Outline outline_of(const TriangleMesh& mesh) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    points.emplace_back(vertex.x(), vertex.y());
+  }
+  return thinned(convex_hull(std::move(points)));
+}
 
 PlanView::PlanView(const Scenario& scenario, View<const Model> models, const RankResult& result)
     : scenario_(scenario), models_(models), result_(result) {

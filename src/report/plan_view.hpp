@@ -16,6 +16,9 @@ namespace crashrank::detail {
 
 using Outline = std::vector<Eigen::Vector2d>;
 
+/// What is seen of a mesh from above, in body coordinates, counter-clockwise.
+Outline outline_of(const TriangleMesh& mesh);
+
 /// Draws candidates from above at the moment of their first contact: outlines of all bodies near
 /// it, the ego's way there, what is damaged, the closing velocity, and where two others
 /// collide later. Prepared once a ranking.

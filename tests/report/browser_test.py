@@ -1,115 +1,225 @@
-"""Opens a report in headless Chromium: its script has to run to the end without an error, the
-3-D view has to show both bodies with red damage, and on desks, tablets and telephones nothing may
-stand beyond the right edge. Skipped where no Chromium is installed."""
+"""Opens reports in headless Chromium, light and dark, on desks, tablets and telephones: nothing may
+stand beyond the right edge, the slider moves bodies, keys, wheel and touches work, the table sorts,
+filters and opens, paper has pictures, and the console stays silent. Skipped without Chromium."""
 
+import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
-import zlib
+import unittest
 
-CRASHRANK, SCENARIO = sys.argv[1:3]
+from chromium import Browser, find_browser
 
-
-def pixels_of(png):
-    """Rows of RGB(A) bytes of an eight-bit PNG without interlace, and bytes a pixel."""
-    at, data, width, channels = 8, b"", 0, 0
-    while at < len(png):
-        size = int.from_bytes(png[at:at + 4], "big")
-        kind, body = png[at + 4:at + 8], png[at + 8:at + 8 + size]
-        if kind == b"IHDR":
-            width = int.from_bytes(body[:4], "big")
-            assert body[8] == 8 and body[12] == 0
-            channels = {2: 3, 6: 4}[body[9]]
-        if kind == b"IDAT":
-            data += body
-        at += 12 + size
-    raw, rows, above = zlib.decompress(data), [], bytes(width * channels)
-    stride = width * channels
-    for start in range(0, len(raw), stride + 1):
-        filtered, row = raw[start], bytearray(raw[start + 1:start + 1 + stride])
-        for i in range(stride):
-            left = row[i - channels] if i >= channels else 0
-            corner = above[i - channels] if i >= channels else 0
-            if filtered == 1:
-                row[i] = (row[i] + left) & 255
-            elif filtered == 2:
-                row[i] = (row[i] + above[i]) & 255
-            elif filtered == 3:
-                row[i] = (row[i] + (left + above[i]) // 2) & 255
-            elif filtered == 4:
-                guess = left + above[i] - corner
-                near = min((abs(guess - left), 0, left), (abs(guess - above[i]), 1, above[i]),
-                           (abs(guess - corner), 2, corner))
-                row[i] = (row[i] + near[2]) & 255
-        rows.append(bytes(row))
-        above = row
-    return rows, channels
+CRASHRANK, SCENARIOS = sys.argv[1:3]
+MOST_BYTES = 1_200_000
+READY = "document.body.dataset.view === 'ready'"
+# Pixels of the picture in 3-D: red ones are damage, blue ones the ego's paint.
+COUNT = """(() => {
+  const from = document.querySelector(".view-canvas");
+  const canvas = document.createElement("canvas");
+  canvas.width = from.width;
+  canvas.height = from.height;
+  const context = canvas.getContext("2d");
+  context.drawImage(from, 0, 0);
+  const data = context.getImageData(0, 0, canvas.width, canvas.height).data;
+  let red = 0, blue = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    red += data[i] > 130 && data[i + 1] < 70 && data[i + 2] < 70;
+    blue += data[i + 2] > data[i] + 40 && data[i + 2] > 60;
+  }
+  return [red, blue];
+})()"""
 
 
-def check_width(arguments, page, width):
-    """A window is never narrower than some 500 pixels; a frame in it is."""
-    with open(page, encoding="utf-8") as file:
-        text = file.read()
-    probe = ("<script>addEventListener('load', () => { const d = document.documentElement;"
-             "parent.document.title = d.scrollWidth + '/' + d.clientWidth; });</script></body>")
-    inner = os.path.join(os.path.dirname(page), "inner.html")
-    with open(inner, "w", encoding="utf-8") as file:
-        file.write(text.replace("</body>", probe))
-    outer = os.path.join(os.path.dirname(page), "outer.html")
-    with open(outer, "w", encoding="utf-8") as file:
-        file.write(f"<title>-</title><iframe src='inner.html' style='width:{width}px;height:900px'>"
-                   "</iframe>")
-    shown = subprocess.run(arguments + ["--allow-file-access-from-files", "--dump-dom",
-                                        "file://" + outer],
-                           capture_output=True, text=True, timeout=120, check=True)
-    told = re.search(r"<title>(\d+)/(\d+)</title>", shown.stdout)
-    assert told, shown.stdout[:300]
-    print("width", width, "needs", told[1], "of", told[2])
-    assert int(told[1]) <= int(told[2]) <= width
+class ReportTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.pages = {}
+        cls.browser = cls.enterClassContext(Browser())
+
+    def page(self, name):
+        if name not in self.pages:
+            path = os.path.join(self.folder, name + ".html")
+            scenario = os.path.join(SCENARIOS, name + ".json")
+            subprocess.run([CRASHRANK, "rank", scenario, "--report", path], check=True,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=300)
+            self.pages[name] = path
+        return self.pages[name]
+
+    def open(self, name, width=1400, dark=False, touch=False):
+        self.browser.messages.clear()
+        self.browser.shape(width, dark=dark, touch=touch)
+        self.browser.open(self.page(name))
+        self.browser.wait(READY)
+        return self.browser
+
+    def test_nothing_is_wider_than_the_page_and_the_console_is_silent(self):
+        for name in ("oncoming_truck", "oncoming_may_turn", "room_to_spare"):
+            self.assertLessEqual(os.path.getsize(self.page(name)), MOST_BYTES, name)
+            for width in (1400, 820, 390):
+                for dark in (False, True):
+                    with self.subTest(page=name, width=width, dark=dark):
+                        browser = self.open(name, width, dark, touch=width == 390)
+                        needed = browser.run("document.documentElement.scrollWidth")
+                        self.assertLessEqual(needed, width)
+                        shade = browser.run("getComputedStyle(document.body).backgroundColor")
+                        red = int(re.match(r"rgb\((\d+)", shade)[1])
+                        self.assertEqual(red < 128, dark)
+                        self.assertEqual(browser.messages, [])
+
+    def test_the_slider_moves_bodies_and_damage_is_red(self):
+        browser = self.open("oncoming_truck")
+        self.assertIn("in 100", browser.run("document.querySelector('h2').textContent"))
+        first = browser.run("stage.candidate.first")
+        start = browser.run("stage.clock.time")
+        self.assertAlmostEqual(start, max(0, first - 1), places=2)
+        before = browser.run("document.querySelector('.plan-canvas').toDataURL()")
+        red, blue = browser.run(COUNT)
+        self.assertEqual(red, 0)
+        self.assertGreater(blue, 100)
+        x = browser.run("stage.candidate.poseOf(EGO, stage.clock.time).x")
+        browser.run(f"""(() => {{ const slider = document.getElementById("time");
+            slider.value = {first + 0.4}; slider.dispatchEvent(new Event("input")); }})()""")
+        self.assertGreater(browser.run("stage.candidate.poseOf(EGO, stage.clock.time).x"), x + 5)
+        self.assertNotEqual(browser.run("document.querySelector('.plan-canvas').toDataURL()"),
+                            before)
+        browser.run("stage.views[0].view.fit(stage.candidate)")
+        self.assertGreater(browser.run(COUNT)[0], 10)
+
+    def test_keys_play_step_and_leap(self):
+        browser = self.open("oncoming_truck")
+        browser.run("document.querySelector('.plan-canvas').focus()")
+        start = browser.run("stage.clock.time")
+        browser.key("ArrowRight")
+        self.assertAlmostEqual(browser.run("stage.clock.time"), start + 0.05, places=3)
+        browser.key("n", "KeyN", "n")
+        self.assertAlmostEqual(browser.run("stage.clock.time"),
+                               browser.run("stage.candidate.first"), places=3)
+        browser.key("Home")
+        self.assertEqual(browser.run("stage.clock.time"), 0)
+        browser.key(" ", "Space", " ")
+        browser.wait("stage.clock.time > 0.1")
+        browser.key(" ", "Space", " ")
+        self.assertFalse(browser.run("stage.clock.isPlaying"))
+        self.assertEqual(browser.messages, [])
+
+    def test_the_wheel_scrolls_unless_the_picture_has_focus(self):
+        browser = self.open("oncoming_truck")
+        browser.run("document.querySelector('.plan-canvas').scrollIntoView({block: 'center'})")
+        place = "(() => { const b = document.querySelector('.plan-canvas')" \
+                ".getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()"
+        scroll, zoom = browser.run("scrollY"), browser.run("stage.views[0].plan.zoom")
+        browser.wheel(*browser.run(place), -60)
+        browser.wait(f"scrollY < {scroll}")
+        self.assertEqual(browser.run("stage.views[0].plan.zoom"), zoom)
+        browser.click(*browser.run(place))
+        scroll = browser.run("scrollY")
+        browser.wheel(*browser.run(place), -60)
+        browser.wait(f"stage.views[0].plan.zoom > {zoom}")
+        self.assertEqual(browser.run("scrollY"), scroll)
+
+    def test_two_fingers_come_nearer(self):
+        browser = self.open("oncoming_truck", 390, touch=True)
+        browser.run("document.querySelector('.plan-canvas').scrollIntoView({block: 'center'})")
+        x, y = browser.run("(() => { const b = document.querySelector('.plan-canvas')"
+                           ".getBoundingClientRect();"
+                           "return [b.x + b.width / 2, b.y + b.height / 2]; })()")
+        browser.touch([(x - 20, y), (x + 20, y)], [(x - 40, y), (x + 40, y)],
+                      [(x - 80, y), (x + 80, y)])
+        self.assertGreater(browser.run("stage.views[0].plan.zoom"), 1.5)
+
+    def test_two_candidates_play_in_step(self):
+        browser = self.open("oncoming_truck")
+        browser.run("""(() => { stage.beside.value = "1";
+            stage.beside.dispatchEvent(new Event("change")); })()""")
+        self.assertEqual(browser.run("document.querySelectorAll('.scene').length"), 2)
+        browser.run("stage.clock.set(1)")
+        self.assertEqual(browser.run("stage.views.map((view) => view.time)"), [1, 1])
+        self.assertLessEqual(browser.run("document.documentElement.scrollWidth"), 1400)
+        self.assertEqual(browser.messages, [])
+
+    def test_rows_sort_filter_and_open(self):
+        browser = self.open("oncoming_truck")
+        names = "[...document.querySelectorAll('tr[data-row] .open')].map((b) => b.textContent)"
+        ranked = browser.run(names)
+        browser.run("document.querySelectorAll('.ranking th button')[0].click()")
+        self.assertEqual(browser.run(names), ranked[::-1])
+        browser.run("""(() => { const box = document.getElementById("filter");
+            box.value = "lorry"; box.dispatchEvent(new Event("input")); })()""")
+        self.assertLess(len(browser.run(names)), len(ranked))
+        browser.run("document.querySelector('tr[data-row] .open').click()")
+        self.assertIn("CDC", browser.run("document.querySelector('tr.detail').textContent"))
+        row = int(browser.run("document.querySelector('tr[data-row]').dataset.row"))
+        self.assertEqual(browser.run("stage.candidate.row"), row)
+        self.assertEqual(browser.messages, [])
+
+    def test_ten_thousand_rows_are_drawn_where_they_are_seen(self):
+        with open(self.page("oncoming_truck"), encoding="utf-8") as file:
+            text = file.read()
+        opening = "id='page-data'>"
+        begin = text.index(opening) + len(opening)
+        end = text.index("</script>", begin)
+        data = json.loads(text[begin:end])
+        data["rows"] += [data["rows"][-1]] * 10_000
+        self.pages["many"] = os.path.join(self.folder, "many.html")
+        with open(self.pages["many"], "w", encoding="utf-8") as file:
+            file.write(text[:begin] + json.dumps(data).replace("<", "\\u003c") + text[end:])
+        browser = self.open("many")
+        rows = "document.querySelectorAll('tr[data-row]').length"
+        self.assertLess(browser.run(rows), 100)
+        browser.run("document.getElementById('rows').scrollTop = 230000")
+        browser.wait("Number(document.querySelector('tr[data-row]').dataset.row) > 4000")
+        self.assertLess(browser.run(rows), 100)
+        self.assertEqual(browser.messages, [])
+
+    def test_futures_have_strips_and_ghosts(self):
+        browser = self.open("oncoming_may_turn")
+        self.assertGreater(browser.run("document.querySelectorAll('.strip > span').length"), 2)
+        self.assertGreater(browser.run("document.querySelectorAll('.pictures canvas').length"), 1)
+        self.assertEqual(browser.run("ELSEWHERE.map(({p}) => p)"), [0.3])
+        self.assertGreater(browser.run("document.querySelectorAll('.bump polyline').length"), 1)
+
+    def test_paper_has_pictures_on_few_pages(self):
+        browser = self.open("oncoming_truck", dark=True)
+        paper = browser.print()
+        pages = len(re.findall(rb"/Type\s*/Page\b(?!s)", paper))
+        self.assertIn(pages, range(1, 5))
+        self.assertGreaterEqual(len(re.findall(rb"/Subtype\s*/Image", paper)), 2)
+        self.assertEqual(browser.messages, [])
+
+    def test_without_webgl_a_still_picture_stands_in(self):
+        with Browser("--disable-3d-apis") as browser:
+            browser.shape(1400)
+            browser.open(self.page("oncoming_truck"))
+            browser.wait(READY)
+            self.assertEqual(browser.run("document.querySelectorAll('.view-canvas').length"), 0)
+            self.assertGreater(browser.run("document.querySelector('.still img').clientWidth"), 300)
+            self.assertEqual(browser.run("document.querySelectorAll('.plan-canvas').length"), 1)
+
+    def test_axe_finds_nothing(self):
+        try:
+            subprocess.run(["npm", "install", "--silent", "--no-save", "--prefix", self.folder,
+                            "axe-core@4"], check=True, capture_output=True, timeout=90)
+        except (OSError, subprocess.SubprocessError) as error:
+            self.skipTest(f"axe-core cannot be installed: {error}")
+        with open(os.path.join(self.folder, "node_modules/axe-core/axe.min.js"),
+                  encoding="utf-8") as file:
+            axe = file.read()
+        for dark in (False, True):
+            browser = self.open("oncoming_may_turn", dark=dark)
+            browser.run(axe + "; 0")
+            found = browser.run(
+                "axe.run(document, {runOnly: ['wcag2a', 'wcag2aa', 'wcag21aa']}).then((told) => "
+                "told.violations.map((each) => each.id + ': ' + each.nodes.map("
+                "(node) => node.target + ' ' + node.failureSummary).join(' | ')))")
+            self.assertEqual(found, [])
 
 
-def main():
-    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which(
-        "google-chrome")
-    if not browser:
+if __name__ == "__main__":
+    if find_browser() is None:
         print("no Chromium to open the page with")
-        return 77
-    with tempfile.TemporaryDirectory() as folder:
-        page = os.path.join(folder, "report.html")
-        subprocess.run([CRASHRANK, "rank", SCENARIO, "--report", page], check=True,
-                       stdout=subprocess.DEVNULL, timeout=60)
-        with open(page, encoding="utf-8") as file:
-            if "built without three.js" in file.read():
-                print("crashrank was built without three.js")
-                return 77
-        arguments = [browser, "--headless=new", "--no-sandbox", "--disable-gpu", "--use-gl=angle",
-                     "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-                     "--user-data-dir=" + os.path.join(folder, "profile"), "--enable-logging=stderr",
-                     "--window-size=1200,1000", "--virtual-time-budget=8000"]
-        shown = subprocess.run(arguments + ["--dump-dom", "file://" + page], capture_output=True,
-                               text=True, timeout=120, check=True)
-        assert "Uncaught" not in shown.stderr, shown.stderr
-        assert 'data-view="ready"' in shown.stdout, shown.stderr
-        assert "Least harmful" in shown.stdout
-        for width in (1400, 820, 390):
-            check_width(arguments, page, width)
-        picture = os.path.join(folder, "page.png")
-        subprocess.run(arguments + ["--screenshot=" + picture, "file://" + page],
-                       capture_output=True, timeout=120, check=True)
-        with open(picture, "rb") as file:
-            rows, step = pixels_of(file.read())
-        red = blue = 0
-        for row in rows[200:700:2]:  # where the view stands
-            for i in range(0, len(row), 2 * step):
-                r, g, b = row[i], row[i + 1], row[i + 2]
-                red += r > 150 and g < 60 and b < 60
-                blue += b > r + 40 and b > 80
-        print("damaged pixels:", red, "of the ego:", blue)
-        assert red > 50 and blue > 500
-    return 0
-
-
-sys.exit(main())
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace crashrank {
 namespace {
@@ -18,8 +20,15 @@ std::size_t count(const std::string& text, const std::string& what) {
   return n;
 }
 
-// What the page says, without the library that it carries.
-std::string own_words(const std::string& page) { return page.substr(0, page.find("<script>")); }
+// What the page says, without its data and script.
+std::string own_words(const std::string& page) { return page.substr(0, page.find("<script")); }
+
+// What the page's script reads.
+nlohmann::json data_of(const std::string& page) {
+  const std::string opening = "<script type='application/json' id='page-data'>";
+  const std::size_t from = page.find(opening) + opening.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script", from) - from));
+}
 
 TEST(HtmlReport, LetsNoNameOutOfItsPlace) {
   Told told;
@@ -30,7 +39,7 @@ TEST(HtmlReport, LetsNoNameOutOfItsPlace) {
   told.result.candidates[1].name = evil;
   told.models[0].mesh.parts[0].name = evil;
   const std::string page = html_report(told.scenario, told.models, told.result);
-  EXPECT_EQ(count(page, "<img"), count(page, "<img alt='' src='data:image/png;base64,"));
+  EXPECT_EQ(count(page, "<img"), count(page, "<img src='data:image/png;base64,"));
   EXPECT_EQ(page.find('\x1b'), std::string::npos);
   EXPECT_EQ(count(page, "<script"), count(page, "</script"));
   EXPECT_GE(count(page, "&lt;img src=x"), 4U);
@@ -41,12 +50,12 @@ TEST(HtmlReport, ListsAndMarksContactsBetweenOthers) {
   told.result.measure = Measure::harm;
   told.push_into("third");
   const std::string page = html_report(told.scenario, told.models, told.result);
-  for (const char* words : {"<td>ego / wall</td><td class='n'>0.500</td>",
-                            "<td>wall / third</td><td class='n'>0.750</td><td class='n'>5.0</td>"
-                            "<td class='n'>6.2</td>",
-                            "<circle class='further'", "<title>wall / third, 0.750 s</title>",
-                            "Hurt by a contact between others:<br>hit: wall is pushed into third",
-                            "wall, second, wall / third"}) {
+  for (const char* words :
+       {"<td>ego / wall</td><td class='n'>0.500</td>",
+        "<td>wall / third</td><td class='n'>0.750</td><td class='n'>5.0</td>"
+        "<td class='n'>6.2</td>",
+        "<circle class='further'", "<title>wall / third, 0.750 s</title>",
+        "others</h3>\n<ul><li>hit: wall is pushed into third", "wall, second, wall / third"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
   }
   EXPECT_LT(page.find("<td>ego / wall</td>"), page.find("<td>wall / third</td>"));
@@ -72,7 +81,8 @@ TEST(HtmlReport, ListsEveryCandidateAndSaysThatThePlaceIsNotProved) {
   HtmlReportOptions options;
   options.drawn = 1;
   const std::string page = html_report(told.scenario, told.models, told.result, options);
-  EXPECT_EQ(count(page, "<tr data-place="), 3U);
+  EXPECT_EQ(data_of(page)["rows"].size(), 3U);
+  EXPECT_EQ(count(page, "<tr data-row="), 2U);  // without its script the page shows the drawn ones
   EXPECT_EQ(count(page, "<section class='candidate'"), 2U);  // the best and the worst
   for (const char* word : {"the answer is partial", "still in the race: miss, unknown",
                            "nothing, but grazes", "Best guess so far: miss"}) {
@@ -83,21 +93,61 @@ TEST(HtmlReport, ListsEveryCandidateAndSaysThatThePlaceIsNotProved) {
 TEST(HtmlReport, CarriesTheDamageThatWasTold) {
   Told told;
   told.push_into("third");
-  const std::string page = html_report(told.scenario, told.models, told.result);
-  const std::string opening = "<script type='application/json' id='view-data'>";
-  const std::size_t begin = page.find(opening);
-  if (begin == std::string::npos) {
-    EXPECT_NE(page.find("built without three.js"), std::string::npos);
-    return;
-  }
-  const std::size_t from = begin + opening.size();
-  const auto data = nlohmann::json::parse(page.substr(from, page.find("</script", from) - from));
-  ASSERT_EQ(data["scenes"].size(), 2U);  // of three candidates one hits; the best one does not
-  for (const auto& body : data["scenes"]["1"]["bodies"]) EXPECT_EQ(body["damaged"], "AA==");
-  const auto& bodies = data["scenes"]["2"]["bodies"];
-  ASSERT_EQ(bodies.size(), 4U);  // the wall, hit twice, stands in it once
-  for (const auto& body : bodies) EXPECT_EQ(body["damaged"], "AQ==");  // the first triangle
-  EXPECT_EQ(data["models"]["0"]["indices"], "AAAAAAEAAAACAAAA");       // 0, 1, 2
+  const auto data = data_of(html_report(told.scenario, told.models, told.result));
+  ASSERT_EQ(data["candidates"].size(), 3U);
+  EXPECT_TRUE(data["candidates"][0]["bodies"].empty());  // the best one hits nothing
+  const auto& bodies = data["candidates"][1]["bodies"];
+  ASSERT_EQ(bodies.size(), 4U);  // the wall, hit twice, is in it once
+  for (const auto& body : bodies) EXPECT_EQ(body["damage"], "AAE=");  // 0 intact, 1 damaged
+  EXPECT_EQ(data["candidates"][1]["contacts"].size(), 3U);
+  EXPECT_EQ(data["models"][0]["mesh"]["indices"], "AAABAAIA");  // 0, 1, 2
+}
+
+TEST(HtmlReport, PlaysTheSimulatedMotionFromWhereThePlanEnds) {
+  Told told;
+  told.scenario.horizon_s = 2.0;
+  Pose start;
+  start.translation = {-2.0, 0.0, 0.0};
+  ArcMotion plan;
+  plan.start = start;
+  plan.speed_mps = 4.0;
+  told.result.candidates[1].motion = plan;
+  BodyMotion motion;
+  // The centre of mass is 1 m before the origin, which is at 0 when the contact begins.
+  motion.t_s = {0.5, 1.0, 1.5};
+  motion.x_m = {1.0, 2.0, 2.0};
+  motion.y_m = {0.0, 0.0, 0.0};
+  motion.yaw_rad = {0.0, 0.0, 3.0};
+  motion.vx_mps = {4.0, 0.0, 0.0};
+  motion.vy_mps = {0.0, 0.0, 0.0};
+  motion.yaw_rate_radps = {0.0, 0.0, 0.0};
+  motion.pressed = {0, 1, 1};
+  told.result.ranking[1].motion = {motion};
+  const auto body =
+      data_of(html_report(told.scenario, told.models, told.result))["candidates"][1]["bodies"][0];
+  EXPECT_EQ(body["motion"]["t"], (std::vector<int>{500, 1000, 1500}));
+  EXPECT_EQ(body["motion"]["x"], (std::vector<int>{0, 1000, 2990}));
+  EXPECT_EQ(body["motion"]["a"], (std::vector<int>{0, 0, 30000}));
+  EXPECT_EQ(body["exposure"]["v"], (std::vector<int>{0, 0}));
+}
+
+TEST(HtmlReport, SaysWhatIsToBeDoneInOneSentence) {
+  Told told;
+  told.result.measure = Measure::harm;
+  told.result.ranking[0].grazes.clear();
+  const auto sentence = [&told] {
+    const std::string page = html_report(told.scenario, told.models, told.result);
+    const std::size_t from = page.find("<h2>") + 4;
+    return page.substr(from, page.find("</h2>") - from);
+  };
+  EXPECT_EQ(sentence(), "No crash needed: miss touches nothing.");
+  told.result.ranking[0].least_distance_m = 1.234;
+  told.result.ranking[0].nearest = 1;
+  EXPECT_EQ(sentence(), "No crash needed: miss touches nothing and stays 1.2 m away from second.");
+  std::swap(told.result.ranking[0], told.result.ranking[1]);
+  told.result.ranking[0].people = {{ego_body, 1.0, 0.1, 3.0, 0.0, 0.5},
+                                   {0, 2.0, 0.05, 3.0, 0.0, 0.5}};
+  EXPECT_EQ(sentence(), "Hit: about 19 in 100 that somebody is seriously hurt.");
 }
 
 }  // namespace

@@ -66,22 +66,29 @@ CRASHRANK_API std::string ranking_progress(const RankResult& result);
 /// for `rank`.
 CRASHRANK_API std::string scenario_plan(const Scenario& scenario, View<const Model> models);
 
+/// Most candidates whose motion the program and the Python package record for the page: up to a
+/// megabyte each.
+inline constexpr std::size_t most_played_candidates = 1000;
+
 /// What the page shows.
 struct HtmlReportOptions {
-  /// Candidates drawn in plan and in 3-D, best first, and the worst one; 0 for all. Every candidate
-  /// is in the table.
+  /// Candidates that are played and described, best first, and the worst one; 0 for all. Every
+  /// candidate is in the table.
   std::size_t drawn = 24;
-  /// Models of more triangles than this are left out of the 3-D view; the report says so.
-  std::size_t model_triangles = 400'000;
+  /// Meshes of more triangles than this are drawn with fewer; the report says so. At most 10,000.
+  std::size_t model_triangles = 10'000;
+  /// Holds a still picture of the first one, for browsers without WebGL, some 150 kB.
+  bool still = true;
 };
 
-/// One page for people, from what `rank` was given and what it answered: the ranked table, why the
-/// first beats the second, and for each drawn candidate a plan of the moment of impact, what is
-/// damaged by part, and both bodies in 3-D with the damage in red. The page is a single file that
-/// asks nothing of the network; it holds three.js where the library was built with it, and says so
-/// where it was not. Names come from files that are not trusted and are escaped. The same ranking
-/// gives the same bytes, but for the time that it took. Cost: about 40 bytes a triangle of each
-/// model shown, and as many bits a candidate.
+/// One page for people, from what `rank` was given and what it answered: the decision in a
+/// sentence, who may be hurt, the scene as it moves in plan and in 3-D with the damage in red, the
+/// ranked table, what is not known, and for each drawn candidate its contacts and damage by part.
+/// Without CandidateResult::motion (RankOptions::records_motion) the pictures end at first
+/// contacts. The page is a single file that asks nothing of the network. Names come from files that
+/// are not trusted and are escaped. The same ranking gives the same bytes, but for the time that it
+/// took. Cost: about 15 bytes a triangle of each model shown, some 30 kB a drawn candidate and 150
+/// bytes a row.
 CRASHRANK_API std::string html_report(const Scenario& scenario, View<const Model> models,
                                       const RankResult& result,
                                       const HtmlReportOptions& options = {});

@@ -1,0 +1,335 @@
+// The plan: the scene from above, drawn on a canvas, the ego's heading at the start to the right.
+
+// Draws what never moves; `to` carries world coordinates to the canvas.
+function drawRoad(context, to, width, height) {
+  const trace = (ring) => {
+    ring.forEach(([x, y], i) => {
+      const [px, py] = to(x, y);
+      if (i === 0) context.moveTo(px, py);
+      else context.lineTo(px, py);
+    });
+    context.closePath();
+  };
+  context.fillStyle = DATA.road.length > 0 ? COLOURS.ground : COLOURS.asphalt;
+  context.fillRect(0, 0, width, height);
+  for (const rings of DATA.road) {
+    context.beginPath();
+    rings.forEach(trace);
+    context.fillStyle = COLOURS.asphalt;
+    context.fill("evenodd");
+  }
+  // Borders of areas that meet are those of lanes.
+  context.strokeStyle = COLOURS.line;
+  context.lineWidth = 1.5;
+  for (const rings of DATA.road) {
+    context.beginPath();
+    rings.forEach(trace);
+    context.stroke();
+  }
+}
+
+// A line every ten metres within a box of the world.
+function drawGrid(context, to, [left, bottom, right, top]) {
+  context.strokeStyle = COLOURS.line;
+  context.globalAlpha = 0.5;
+  context.lineWidth = 1;
+  context.beginPath();
+  const stroke = (x0, y0, x1, y1) => {
+    context.moveTo(...to(x0, y0));
+    context.lineTo(...to(x1, y1));
+  };
+  for (let x = Math.ceil(left / 10) * 10; x <= right; x += 10) stroke(x, bottom, x, top);
+  for (let y = Math.ceil(bottom / 10) * 10; y <= top; y += 10) stroke(left, y, right, y);
+  context.stroke();
+  context.globalAlpha = 1;
+}
+
+class PlanPane {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.context = canvas.getContext("2d");
+    this.reset();
+  }
+
+  reset() {
+    this.zoom = 1;
+    this.shift = [0, 0];
+  }
+
+  move(dx, dy) {
+    this.shift[0] += dx;
+    this.shift[1] += dy;
+  }
+
+  nearer(factor, x, y) {
+    const zoom = clamp(this.zoom * factor, 0.4, 30);
+    const grown = zoom / this.zoom;
+    this.zoom = zoom;
+    const from = [x - this.width / 2, y - this.height / 2];
+    this.shift = this.shift.map((value, i) => from[i] - (from[i] - value) * grown);
+  }
+
+  // Fits the picture of a candidate to the canvas.
+  fit(candidate) {
+    this.turn = -poseOn(candidate.source.plan, 0).heading;
+    const c = Math.cos(this.turn);
+    const s = Math.sin(this.turn);
+    const points = sceneOf(candidate).map(([x, y]) => [c * x - s * y, s * x + c * y]);
+    const ends = [0, 1].map((axis) => {
+      const values = points.map((point) => point[axis]);
+      return [Math.min(...values), Math.max(...values)];
+    });
+    this.middle = ends.map(([low, high]) => (low + high) / 2);
+    this.extent = ends.map(([low, high]) => high - low + 5);
+  }
+
+  scaleOf() {
+    return this.zoom * Math.min(this.width / this.extent[0], this.height / this.extent[1], 40);
+  }
+
+  // World to canvas.
+  projection() {
+    const scale = this.scaleOf();
+    const c = Math.cos(this.turn) * scale;
+    const s = Math.sin(this.turn) * scale;
+    const left = this.width / 2 + this.shift[0] - this.middle[0] * scale;
+    const top = this.height / 2 + this.shift[1] + this.middle[1] * scale;
+    return (x, y) => [left + c * x - s * y, top - (s * x + c * y)];
+  }
+
+  // The box of the world that the canvas shows.
+  box() {
+    const scale = this.scaleOf();
+    const reach = Math.hypot(this.width, this.height) / 2 / scale +
+      Math.hypot(...this.shift) / scale;
+    const c = Math.cos(-this.turn);
+    const s = Math.sin(-this.turn);
+    const x = c * this.middle[0] - s * this.middle[1];
+    const y = s * this.middle[0] + c * this.middle[1];
+    return [x - reach, y - reach, x + reach, y + reach];
+  }
+
+  draw(candidate, time, shows) {
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.width = this.canvas.clientWidth;
+    this.height = this.canvas.clientHeight;
+    if (!(this.width > 0)) return;
+    this.canvas.width = Math.round(this.width * ratio);
+    this.canvas.height = Math.round(this.height * ratio);
+    const context = this.context;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.to = this.projection();
+    drawRoad(context, this.to, this.width, this.height);
+    drawGrid(context, this.to, this.box());
+    this.ways(candidate, time, shows);
+    for (const body of BODIES) this.body(candidate, body, time);
+    this.contacts(candidate, time);
+    this.labels(candidate, time);
+    this.scaleBar();
+  }
+
+  polyline(track, from, until) {
+    const context = this.context;
+    context.beginPath();
+    const steps = 40;
+    for (let i = 0; i <= steps; ++i) {
+      const pose = poseOn(track, mix(from, until, i / steps));
+      const point = this.to(pose.x, pose.y);
+      if (i === 0) context.moveTo(...point);
+      else context.lineTo(...point);
+    }
+    context.stroke();
+  }
+
+  polygon(corners) {
+    const context = this.context;
+    context.beginPath();
+    corners.forEach(([x, y], i) => {
+      if (i === 0) context.moveTo(...this.to(x, y));
+      else context.lineTo(...this.to(x, y));
+    });
+    context.closePath();
+  }
+
+  // Ways ahead, other candidates and other futures.
+  ways(candidate, time, shows) {
+    const context = this.context;
+    context.lineWidth = 1.5;
+    for (const other of shows.ghosts) {
+      context.globalAlpha = 0.55;
+      context.strokeStyle = COLOURS.ghost;
+      this.polyline(other.source.plan, 0, other.first ?? other.end);
+      this.polygon(outlineAt(EGO, other.poseOf(EGO, time)));
+      context.globalAlpha = 0.5;
+      context.stroke();
+    }
+    for (const {body, p, plan} of ELSEWHERE) {
+      context.globalAlpha = clamp(p + 0.15, 0.2, 0.9);
+      context.strokeStyle = COLOURS.future;
+      context.fillStyle = COLOURS.future;
+      context.setLineDash([5, 4]);
+      this.polyline(plan, 0, DATA.horizon);
+      context.setLineDash([]);
+      const pose = poseOn(plan, time);
+      this.polygon(outlineAt(body, pose));
+      context.stroke();
+      context.globalAlpha = clamp(p, 0.1, 0.7);
+      context.fill();
+    }
+    context.globalAlpha = 1;
+    for (const body of candidate.hit.filter((each) => each !== EGO)) {
+      if (modelOf(body).fixed) continue;
+      context.strokeStyle = COLOURS.other;
+      context.setLineDash([2, 4]);
+      this.polyline(candidate.planOf(body), 0, candidate.first ?? DATA.horizon);
+      context.setLineDash([]);
+    }
+    context.strokeStyle = COLOURS.ego;
+    context.lineWidth = 2.5;
+    this.polyline(candidate.source.plan, 0, Math.min(candidate.first ?? candidate.end, DATA.horizon));
+    context.lineWidth = 1.5;
+    for (const {time: part} of shows.parts) {
+      const pose = poseOn(candidate.source.plan, part);
+      context.fillStyle = COLOURS.mark;
+      context.beginPath();
+      context.arc(...this.to(pose.x, pose.y), 3.5, 0, 7);
+      context.fill();
+    }
+  }
+
+  body(candidate, body, time) {
+    const context = this.context;
+    const pose = candidate.poseOf(body, time);
+    const model = modelOf(body);
+    this.polygon(outlineAt(body, pose));
+    const isHit = candidate.hit.includes(body);
+    context.fillStyle = body === EGO ? COLOURS.ego : isHit ? COLOURS.other : COLOURS.still;
+    context.fill();
+    const damaged = candidate.isDamaged(body, time);
+    context.strokeStyle = damaged ? COLOURS.damage : COLOURS.ink;
+    context.lineWidth = damaged ? 2.5 : 0.75;
+    context.stroke();
+    if (model.fixed) return;
+    const front = Math.max(...model.outline.map(([forward]) => forward));
+    this.polygon([[front - 0.2, 0], [front - 0.9, 0.35], [front - 0.9, -0.35]].map(
+      ([forward, left]) => carry(pose, forward, left)));
+    context.fillStyle = "#fff";
+    context.fill();
+  }
+
+  contacts(candidate, time) {
+    const context = this.context;
+    for (const contact of candidate.contacts) {
+      const age = time - contact.t;
+      if (age < 0) continue;
+      const [x, y] = this.to(contact.at[0], contact.at[1]);
+      const flash = clamp(1 - age / 0.5, 0, 1);
+      context.globalAlpha = 0.35 + 0.65 * flash;
+      context.strokeStyle = COLOURS.damage;
+      context.lineWidth = 2;
+      context.beginPath();
+      context.arc(x, y, 5 + 14 * flash, 0, 7);
+      context.stroke();
+      context.globalAlpha = 1;
+      if (age < 1.2) this.kicks(contact, x, y);
+    }
+  }
+
+  // Changes of velocity, as arrows from the contact.
+  kicks(contact, x, y) {
+    contact.kicks.forEach((kick, side) => {
+      const [tipX, tipY] = this.to(contact.at[0] + 0.3 * kick[0], contact.at[1] + 0.3 * kick[1]);
+      if (Math.hypot(tipX - x, tipY - y) < 6) return;
+      drawArrow(this.context, [x, y], [tipX, tipY],
+        contact.bodies[side] === EGO ? COLOURS.ego : COLOURS.other);
+    });
+  }
+
+  // Names below the bodies; those that matter most first.
+  labels(candidate, time) {
+    const labels = new Labels(this.context, this.width, this.height);
+    const below = (body, pose, text, colour) => {
+      const [x] = this.to(...middleOfBody(body, pose));
+      const y = Math.max(...outlineAt(body, pose).map((corner) => this.to(...corner)[1]));
+      labels.add(text, x, y + 13, colour);
+    };
+    const hit = candidate.hit.filter((body) => body !== EGO);
+    const rest = BODIES.filter((body) => body !== EGO && !hit.includes(body));
+    for (const body of [EGO, ...hit]) {
+      below(body, candidate.poseOf(body, time), nameOf(body), COLOURS.ink);
+    }
+    for (const {body, p, plan} of ELSEWHERE) {
+      below(body, poseOn(plan, time), percent(p) + " " + nameOf(body), COLOURS.future);
+    }
+    for (const body of rest) below(body, candidate.poseOf(body, time), nameOf(body), COLOURS.soft);
+  }
+
+  scaleBar() {
+    const context = this.context;
+    const length = this.scaleOf() * 5;
+    const y = this.height - 10;
+    context.strokeStyle = COLOURS.ink;
+    context.lineWidth = 2;
+    context.beginPath();
+    context.moveTo(10, y);
+    context.lineTo(10 + length, y);
+    context.stroke();
+    drawLabel(context, "5 m", 10, y - 5, COLOURS.ink);
+  }
+}
+
+// Middle of what is seen of a body from above.
+function middleOfBody(body, pose) {
+  const ends = modelOf(body).outline.map(([forward]) => forward);
+  return carry(pose, (Math.min(...ends) + Math.max(...ends)) / 2, 0);
+}
+
+// Names on a picture; one that would cover another, or stand outside, is left out.
+class Labels {
+  constructor(context, width, height) {
+    this.context = context;
+    this.width = width;
+    this.height = height;
+    this.placed = [];
+  }
+
+  // `x` is the middle of the text, `y` its base.
+  add(text, x, y, colour) {
+    this.context.font = "12px system-ui, sans-serif";
+    const half = this.context.measureText(text).width / 2;
+    if (x < -half || x > this.width + half || y < 0 || y > this.height + 12) return;
+    const at = [clamp(x, half + 2, this.width - half - 2), clamp(y, 12, this.height - 4)];
+    const covers = ([otherX, otherY, otherHalf]) => Math.abs(otherY - at[1]) < 13 &&
+      Math.abs(otherX - at[0]) < half + otherHalf + 3;
+    if (this.placed.some(covers)) return;
+    this.placed.push([...at, half]);
+    drawLabel(this.context, text, at[0] - half, at[1], colour);
+  }
+}
+
+function drawArrow(context, from, to, colour) {
+  const angle = Math.atan2(to[1] - from[1], to[0] - from[0]);
+  const wing = (turn) => [to[0] - 9 * Math.cos(angle + turn), to[1] - 9 * Math.sin(angle + turn)];
+  for (const [width, style] of [[5, COLOURS.page], [2.5, colour]]) {
+    context.strokeStyle = style;
+    context.lineWidth = width;
+    context.beginPath();
+    context.moveTo(...from);
+    context.lineTo(...to);
+    context.moveTo(...wing(0.5));
+    context.lineTo(...to);
+    context.lineTo(...wing(-0.5));
+    context.stroke();
+  }
+}
+
+function drawLabel(context, text, x, y, colour) {
+  context.font = "12px system-ui, sans-serif";
+  context.lineJoin = "round";
+  context.lineWidth = 3;
+  context.strokeStyle = COLOURS.page;
+  context.strokeText(text, x, y);
+  context.fillStyle = colour;
+  context.fillText(text, x, y);
+}
+

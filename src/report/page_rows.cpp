@@ -1,0 +1,164 @@
+#include "report/page_rows.hpp"
+
+#include "crashrank/internal/report/escape.hpp"
+#include "report/decision.hpp"
+#include "report/manoeuvre_words.hpp"
+#include "report/ranking_words.hpp"
+#include "report/score_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace crashrank::detail {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// "lorry", "wall (overlaps at start), second, wall / third"; of all contacts in the likeliest
+/// future.
+std::string hit_names(const Scenario& scenario, const CandidateResult& ranked) {
+  std::string names;
+  for (const std::size_t actor : hit_actors(ranked)) {
+    names += names.empty() ? contact_name(scenario, ranked.contacts.front())
+                           : ", " + scenario.actors[actor].name;
+  }
+  for (const FurtherPair& pair : further_pairs(ranked)) {
+    names += ", " + pair_name(scenario, *pair.first);
+  }
+  return names;
+}
+
+std::string contact_words(const Scenario& scenario, const CandidateResult& ranked) {
+  const auto when = [](double time_s, double speed_mps) {
+    return fmt::format(" after {:.2f} s at {:.0f} km/h", time_s, 3.6 * speed_mps);
+  };
+  std::string words;
+  if (ranked.first_touch) {
+    const FirstTouch& touch = *ranked.first_touch;
+    words =
+        scenario.actors[touch.actor].name + when(touch.time_of_impact_s, touch.closing_speed_mps);
+  } else if (ranked.contacts.empty()) {
+    words = passing_words(scenario, ranked);
+  } else {
+    const Contact& first = ranked.contacts.front();
+    words = hit_names(scenario, ranked) + when(first.time_of_impact_s, first.closing_speed_mps);
+  }
+  if (ranked.futures.size() > 1) {
+    words += "; collides with " + percent_text(ranked.collision_probability);
+  }
+  return words;
+}
+
+}  // namespace
+
+PageRow page_row(const Scenario& scenario, const RankResult& result,
+                 const std::vector<std::string>& scores, std::size_t place) {
+  const CandidateResult& ranked = result.ranking[place];
+  const Candidate& candidate = result.candidates[ranked.candidate];
+  PageRow row;
+  row.place = std::to_string(ranked.place);
+  if (ranked.sharing > 1) {
+    row.bracket = "tied";
+  } else if (!ranked.separable && place + 1 < result.ranking.size()) {
+    row.bracket = "near";
+  }
+  row.name = candidate.name;
+  row.manoeuvre = plain_manoeuvre(scenario, candidate);
+  row.score = scores[place];
+  row.interval = interval_text(ranked);
+  row.value = ranked.score.value_or(ranked.score_estimate.value_or(ranked.score_interval.highest));
+  row.lowest = ranked.score_interval.lowest;
+  row.highest = std::max(row.value, ranked.score_interval.highest);
+  row.contact = contact_words(scenario, ranked);
+  if (ranked.first_touch) {
+    row.time_s = ranked.first_touch->time_of_impact_s;
+  } else if (!ranked.contacts.empty()) {
+    row.time_s = ranked.contacts.front().time_of_impact_s;
+  }
+  row.warnings = manoeuvre_mark(ranked);
+  const auto warn = [&row](const char* words) {
+    row.warnings += (row.warnings.empty() ? "" : ", ") + std::string(words);
+  };
+  if (std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
+                  [](const Contact& contact) { return contact.contact_without_force; })) {
+    warn("a contact without force");
+  }
+  if (ranked.crowded) warn("more contacts than are simulated");
+  return row;
+}
+
+double full_bar(const RankResult& result) {
+  double most = 0.0;
+  for (const CandidateResult& ranked : result.ranking) {
+    const double score = ranked.score.value_or(ranked.score_interval.highest);
+    if (std::isfinite(score)) most = std::max(most, score);
+  }
+  return most;
+}
+
+Json row_json(const PageRow& row) {
+  const auto number = [](double value) {
+    return std::isfinite(value) ? Json(std::stod(fmt::format("{:.4g}", value))) : Json(nullptr);
+  };
+  // The name of a listed manoeuvre is its description.
+  const bool is_named = row.name == row.manoeuvre;
+  return {row.place,
+          row.bracket,
+          escape_terminal(row.name),
+          is_named ? std::string() : escape_terminal(row.manoeuvre),
+          row.score,
+          row.interval,
+          number(row.value),
+          number(row.lowest),
+          number(row.highest),
+          escape_terminal(row.contact),
+          number(row.time_s),
+          escape_terminal(row.warnings)};
+}
+
+Json stability_json(const RankResult& result) {
+  constexpr std::size_t most_rows = 10;
+  const std::size_t samples = range_sample_count(result);
+  const std::size_t shown = std::min(most_rows, result.ranking.size());
+  if (samples < 2 || shown < 2) return nullptr;
+  std::vector<std::vector<double>> columns(samples);
+  for (const CandidateResult& ranked : result.ranking) {
+    if (ranked.sample_scores.size() < samples || !ranked.feasible) continue;
+    for (std::size_t i = 0; i < samples; ++i) columns[i].push_back(ranked.sample_scores[i]);
+  }
+  for (std::vector<double>& column : columns) std::sort(column.begin(), column.end());
+  // The nominal sample first, then those of each risk model together.
+  std::vector<std::size_t> order(samples);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin() + 1, order.end(), [&result](std::size_t p, std::size_t q) {
+    return result.samples[p].model < result.samples[q].model;
+  });
+  Json names = Json::array();
+  Json places = Json::array();
+  for (std::size_t row = 0; row < shown; ++row) {
+    const CandidateResult& ranked = result.ranking[row];
+    if (ranked.sample_scores.size() < samples || !ranked.feasible) continue;
+    Json line = Json::array();
+    for (const std::size_t i : order) {
+      const auto before =
+          std::lower_bound(columns[i].begin(), columns[i].end(), ranked.sample_scores[i]);
+      line.push_back(before - columns[i].begin() + 1);
+    }
+    names.push_back(escape_terminal(result.candidates[ranked.candidate].name));
+    places.push_back(std::move(line));
+  }
+  if (places.size() < 2) return nullptr;
+  Json groups = Json::array();
+  for (const std::size_t i : order) {
+    const std::string title = i == 0 ? "nominal" : risk_model_name(result.samples[i].model);
+    if (groups.empty() || groups.back()[0] != title) groups.push_back({title, 0});
+    groups.back()[1] = groups.back()[1].get<int>() + 1;
+  }
+  return {
+      {"names", std::move(names)}, {"places", std::move(places)}, {"groups", std::move(groups)}};
+}
+
+}  // namespace crashrank::detail
