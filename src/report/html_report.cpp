@@ -302,7 +302,7 @@ private:
     if (open.empty() && !result_.samples.empty() && result_.ranking.size() > 1) {
       open.push_back(fmt::format(
           "Every place is separable from the next: no order reverses in more than {:.0f} % of {} "
-          "samples of what is not known, nor with half the steps or 1 mm aside{}.",
+          "samples of what is not known, nor with longer steps or 1 mm aside{}.",
           100.0 * separable_share, range_sample_count(result_),
           result_.futures.method == FutureMethod::sampled
               ? ", and every difference exceeds two standard errors of the sample of futures"
