@@ -19,13 +19,7 @@
 #include <utility>
 #include <vector>
 
-#if defined(__linux__)
-#include <pthread.h>
-#include <sched.h>
-#endif
-
 namespace crashrank {
-
 namespace {
 
 /// A slot for a task. The worker may read it while the owner, which has recalled the task, writes
@@ -63,28 +57,6 @@ struct alignas(64) Mailbox {
     bell.notify_one();
   }
 };
-
-void pin_to_processor(std::thread& thread, std::uint32_t worker) {
-#if defined(__linux__)
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  if (pthread_getaffinity_np(thread.native_handle(), sizeof(allowed), &allowed) != 0) return;
-  const int count = CPU_COUNT(&allowed);
-  if (count == 0) return;
-  int skip = static_cast<int>(worker) % count;
-  for (std::size_t processor = 0; processor < CPU_SETSIZE; ++processor) {
-    if (!CPU_ISSET(processor, &allowed) || skip-- != 0) continue;
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(processor, &one);
-    pthread_setaffinity_np(thread.native_handle(), sizeof(one), &one);
-    return;
-  }
-#else
-  static_cast<void>(thread);
-  static_cast<void>(worker);
-#endif
-}
 
 }  // namespace
 
@@ -178,7 +150,6 @@ Result<WorkerPool> WorkerPool::start(const PoolOptions& options) {
     State* const raw = state.get();
     for (std::uint32_t worker = 0; worker < options.workers; ++worker) {
       state->threads.emplace_back([raw, worker] { raw->serve(worker); });
-      if (options.pinned) pin_to_processor(state->threads.back(), worker);
     }
     return WorkerPool(std::move(state));
   } catch (const std::bad_alloc&) {

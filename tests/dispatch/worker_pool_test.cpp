@@ -201,9 +201,6 @@ TEST(WorkerPool, RefusesNumbersOutOfRange) {
   PoolOptions options;
   options.spin_us = 2000;
   EXPECT_FALSE(WorkerPool::start(options).ok());
-  options = test::with_workers(4);
-  options.pinned = true;
-  EXPECT_TRUE(WorkerPool::start(options).ok());
 }
 
 }  // namespace

@@ -17,7 +17,6 @@ inline constexpr std::uint32_t max_workers = 64;
 /// Number of threads, and how they wait.
 struct PoolOptions {
   std::uint32_t workers = 4;  ///< threads beside the caller's, 0 to `max_workers`
-  bool pinned = false;        ///< worker i stays on processor i modulo their number
   /// Time for which an idle thread polls before it sleeps, µs, at most 1000. Negative: 20 where
   /// there are more processors than workers, 0 elsewhere, where polling would delay a worker.
   std::int32_t spin_us = -1;

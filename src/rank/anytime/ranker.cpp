@@ -118,7 +118,6 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     bodies.harm = scene->harm;
     PoolOptions threads;
     threads.workers = std::min(std::max(how.workers, 1U) - 1U, max_workers);
-    threads.pinned = options.pinned;
     threads.spin_us = options.spin_us;
     Result<WorkerPool> pool = WorkerPool::start(threads);
     if (!pool) return pool.error();

@@ -32,7 +32,6 @@ struct RankerOptions {
   /// Samples of the harm ranges are not evaluated, whatever HarmOptions::intervals says.
   RankOptions rank;
   RankerLimits limits;        ///< sizes for which memory is allocated
-  bool pinned = false;        ///< see PoolOptions
   std::int32_t spin_us = -1;  ///< see PoolOptions
 };
 
