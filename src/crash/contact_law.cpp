@@ -32,6 +32,22 @@ std::uint32_t ContactWorkspace::State::take_pair(std::size_t first, std::size_t 
   return static_cast<std::uint32_t>(pairs_in_use++);
 }
 
+bool ContactWorkspace::State::load_post(std::size_t body, const detail::FootLoad& load) {
+  detail::PressedBody& post = bodies[body];
+  const Vehicle& vehicle = *post.vehicle;
+  const bool held = !(post.foot_load > 1.0);
+  double free = 1.0;
+  if (held) {
+    const double before = post.foot_load;
+    post.foot_load = load.over(*vehicle.breakaway);
+    if (!(post.foot_load > 1.0)) return false;
+    free = (post.foot_load - 1.0) / (post.foot_load - before);
+  }
+  post.motion.inverse_mass = free / vehicle.mass_kg;
+  post.motion.inverse_inertia = free / vehicle.yaw_inertia_kgm2;
+  return held;
+}
+
 void ContactWorkspace::prepare(std::size_t pieces, std::size_t fixed_bodies) {
   State& state = *state_;
   state.bodies.reserve(fixed_bodies + 2);

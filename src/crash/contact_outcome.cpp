@@ -70,11 +70,12 @@ ContactOutcome ContactRun::outcome(bool swapped) const {
   result.dissipated_j = dissipated_j();
   // The powers at the middles of steps add up to the dissipated energy except for the integration
   // error; scale them to match it.
+  const double deflection_j = std::min(deflection_j_, result.dissipated_j);
   const double sum = crush_first_j_ + crush_second_j_ + friction_j_;
-  const double scale = sum > 0.0 ? result.dissipated_j / sum : 0.0;
+  const double scale = sum > 0.0 ? (result.dissipated_j - deflection_j) / sum : 0.0;
   result.friction_j = scale * friction_j_;
   first.crush_energy_j = scale * crush_first_j_;
-  second.crush_energy_j = scale * crush_second_j_;
+  second.crush_energy_j = scale * crush_second_j_ + deflection_j;
   result.point_m = origin_m_;
   result.begin_point_m = origin_m_ + Vector3d(begin_point_m_.x(), begin_point_m_.y(), 0.0);
   if (point_weight_ > 0.0) {

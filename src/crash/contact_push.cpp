@@ -78,7 +78,7 @@ void ContactRun::apply_impulses() {
   add_share(on_first_, seconds, step_first_.whole);
   add_share(state_->pairs[pairs_[0]].on_second, seconds, step_second_.whole);
   const double lost = before - kinetic_energy_j();
-  lost_since_rebound_j_ += lost;
+  lost_since_rebound_j_ += lost - seconds * totals_.deflection_w;
   dissipated_j_ += lost;
   const double impulse = seconds * force;
   impulse_ns_ += impulse;
@@ -152,10 +152,7 @@ void ContactRun::rebound(double speed_mps) {
   }
   dissipated_j_ += before - kinetic_energy_j();
   restitution_ = std::max(restitution_, e);
-  lost_since_rebound_j_ = 0.0;
-  max_pressing_since_rebound_ = 0.0;
-  max_closing_since_rebound_mps_ = 0.0;
-  max_speed_since_rebound_mps_ = 0.0;
+  begin_compression();
 }
 
 }  // namespace crashrank::detail

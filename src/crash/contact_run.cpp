@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace crashrank::detail {
 namespace {
@@ -42,6 +43,7 @@ void BodyPair::begin(std::size_t a, std::size_t b) {
   in_first = {};
   in_second = {};
   earlier_first_m = earlier_second_m = 0.0;
+  deflected_x_m = deflected_y_m = 0.0;
   struck = false;
   begin_further_contact(last_end_step = 0);
 }
@@ -50,6 +52,30 @@ double BodyPair::intrusion_m(bool of_first_body) const {
   const PassRecord& own = of_first_body ? in_first : in_second;
   const PassRecord& other = of_first_body ? in_second : in_first;
   return static_cast<double>(std::max(own.intrusion_own, other.intrusion_other));
+}
+
+double BodyPair::height_m() const {
+  Box pressed = in_first.own;
+  pressed.grow(in_second.own);
+  return pressed.empty() ? 0.0 : static_cast<double>(pressed.center().z());
+}
+
+void BodyPair::move_rail(const Deflection& rail, double seconds) {
+  deflected_x_m += seconds * deflects_x_mps;
+  deflected_y_m += seconds * deflects_y_mps;
+  const double distance_m = plane_length(deflected_x_m, deflected_y_m);
+  if (!(distance_m > rail.distance_m)) return;
+  deflected_x_m *= rail.distance_m / distance_m;
+  deflected_y_m *= rail.distance_m / distance_m;
+  deflects_x_mps = deflects_y_mps = 0.0;
+}
+
+void BodyPair::slow_rail(double by_mps) {
+  const double speed_mps = plane_length(deflects_x_mps, deflects_y_mps);
+  if (!(speed_mps > 0.0)) return;
+  const double share = speed_mps > by_mps ? 1.0 - std::max(by_mps, 0.0) / speed_mps : 0.0;
+  deflects_x_mps *= share;
+  deflects_y_mps *= share;
 }
 
 void BodyPair::begin_further_contact(std::uint64_t step) {
@@ -64,6 +90,7 @@ void BodyPair::begin_further_contact(std::uint64_t step) {
   on_second = {};
   since_rebound = {};
   impulse_on_second = {};
+  deflects_x_mps = deflects_y_mps = 0.0;
   pressed = false;
 }
 
@@ -80,17 +107,54 @@ void ContactRun::begin(ContactWorkspace::State& state, std::size_t first, std::u
   origin_m_ = origin_m;
   first_ = first;
   add(pair);
-  const PlanarBody& p = motion_of(first_);
-  const PlanarBody& q = motion_of(second());
-  start_first_ = end_first_ = p;
-  start_second_ = end_second_ = q;
-  record_.begin(p, q);
-  radius_m_ = outline_radius(*given_first.vehicle);
-  if (given_second.vehicle->movable())
-    radius_m_ = std::max(radius_m_, outline_radius(*given_second.vehicle));
-  momentum_before_ns_ = relative_speed() / (p.inverse_mass + q.inverse_mass);
-  speed_mps_ = relative_speed_bound();
+  start_first_ = end_first_ = motion_of(first_);
+  start_second_ = end_second_ = motion_of(second());
+  record_.begin(start_first_, start_second_);
+  measure();
   over_ = !can_press(*given_first.vehicle, *given_second.vehicle);
+}
+
+/// Sets what depends on which of the bodies can move.
+void ContactRun::measure() {
+  const auto inverse_mass = [this](std::size_t body) {
+    const bool moves = motion_of(body).inverse_mass > 0.0;
+    return moves ? 1.0 / state_->bodies[body].vehicle->mass_kg : 0.0;
+  };
+  radius_m_ = outline_radius(*given_first_.vehicle);
+  if (inverse_mass(second()) > 0.0)
+    radius_m_ = std::max(radius_m_, outline_radius(*given_second_.vehicle));
+  momentum_before_ns_ = relative_speed() / (inverse_mass(first_) + inverse_mass(second()));
+  speed_mps_ = relative_speed_bound();
+}
+
+void ContactRun::add_load(std::size_t body, FootLoad& load) const {
+  for (const std::uint32_t k : pairs()) {
+    const BodyPair& pair = state_->pairs[k];
+    if (pair.second != body && pair.first != body) continue;
+    const double sign = pair.second == body ? 1.0 : -1.0;
+    const double height_m = pair.height_m();
+    load.x_n += sign * pair.on_second.x;
+    load.y_n += sign * pair.on_second.y;
+    load.x_nm += sign * height_m * pair.on_second.x;
+    load.y_nm += sign * height_m * pair.on_second.y;
+  }
+}
+
+void ContactRun::forget_held(std::size_t body) {
+  if (body != first_ && body != second()) return;
+  BodyPair& pair = state_->pairs[pairs_[0]];
+  (body == first_ ? impulse_on_first_ : pair.impulse_on_second) = {};
+  since_rebound_ = {};
+  pair.since_rebound = {};
+  begin_compression();
+  measure();
+}
+
+void ContactRun::begin_compression() {
+  lost_since_rebound_j_ = 0.0;
+  max_pressing_since_rebound_ = 0.0;
+  max_closing_since_rebound_mps_ = 0.0;
+  max_speed_since_rebound_mps_ = 0.0;
 }
 
 bool ContactRun::add(std::uint32_t pair) {
@@ -152,46 +216,81 @@ void ContactRun::add_sums(const PassSums& sums, bool own_is_first) {
 
 void ContactRun::compute_pair_forces(BodyPair& pair, std::size_t place, PassSettings& settings) {
   PressedBody& first = state_->bodies[first_];
-  PressedBody& other = state_->bodies[pair.second];
-  const double base = friction_between(first.vehicle->surface, other.vehicle->surface);
+  const PressedBody* other = &state_->bodies[pair.second];
+  const double base = friction_between(first.vehicle->surface, other->vehicle->surface);
   settings.friction = static_cast<float>(base * variant_.friction);
   const bool metals = first.vehicle->surface == Surface::sheet_metal &&
-                      other.vehicle->surface == Surface::sheet_metal;
+                      other->vehicle->surface == Surface::sheet_metal;
   settings.interlocked = metals ? interlocked_friction : 0.0F;
-  PlanarForce on_first;
-  double pressing = 0.0;
+  double travel_m = travel_bound_m_;
+  std::optional<PressedBody> moved;
+  const std::optional<Deflection>& rail = other->vehicle->deflection;
+  if (rail) {
+    travel_m += pass_interval_s_ * plane_length(pair.deflects_x_mps, pair.deflects_y_mps);
+    pair.move_rail(*rail, pass_interval_s_);
+    moved = *other;
+    moved->motion.x += pair.deflected_x_m;
+    moved->motion.y += pair.deflected_y_m;
+    moved->motion.vx = pair.deflects_x_mps;
+    moved->motion.vy = pair.deflects_y_mps;
+    other = &*moved;
+  }
+  PassSums into_first;
+  PassSums into_other;
   if (!first.response.rigid) {
     settings.neighbours = {others_.data(), pair_count_ > 1 ? pair_count_ : 0};
     settings.self = place;
-    PassSums sums;
-    compute_piece_forces(other, first, settings, travel_bound_m_, pair.of_second, sums,
+    compute_piece_forces(*other, first, settings, travel_m, pair.of_second, into_first,
                          pair.in_first);
     pieces_ += pair.of_second.pieces;
-    add_sums(sums, true);
-    on_first = sums.on_pressed;
-    pressing += sums.pressing;
   }
-  if (!other.response.rigid) {
+  if (!other->response.rigid) {
     settings.neighbours = {};
-    PassSums sums;
-    compute_piece_forces(first, other, settings, travel_bound_m_, pair.of_first, sums,
+    compute_piece_forces(first, *other, settings, travel_m, pair.of_first, into_other,
                          pair.in_second);
     pieces_ += pair.of_first.pieces;
-    add_sums(sums, false);
-    on_first.x -= sums.on_pressed.x;
-    on_first.y -= sums.on_pressed.y;
-    on_first.moment -= sums.on_pressed.moment;
-    pressing += sums.pressing;
   }
-  if (pressing > 0.0) pair.pressed = true;
+  if (rail) deflect(*rail, pair, into_first, into_other);
+  if (!first.response.rigid) add_sums(into_first, true);
+  if (!other->response.rigid) add_sums(into_other, false);
+  PlanarForce on_first = into_first.on_pressed;
+  on_first.x -= into_other.on_pressed.x;
+  on_first.y -= into_other.on_pressed.y;
+  on_first.moment -= into_other.on_pressed.moment;
+  if (into_first.pressing + into_other.pressing > 0.0) pair.pressed = true;
   // Convert moments about the origin to moments about the centres of mass.
   const PlanarBody& p = first.motion;
-  const PlanarBody& q = other.motion;
+  const PlanarBody& q = other->motion;
   on_first_.x += on_first.x;
   on_first_.y += on_first.y;
   on_first_.moment += on_first.moment - (p.x * on_first.y - p.y * on_first.x);
   pair.on_second = {-on_first.x, -on_first.y,
                     -(on_first.moment - (q.x * on_first.y - q.y * on_first.x))};
+}
+
+/// Limits the normal force to that at which the rail gives way: the rail and the material of both
+/// bodies give way in series. The more the force exceeds the rail's, the more the rail takes over
+/// of the speed at which the material is crushed; the less, the more the material takes back.
+void ContactRun::deflect(const Deflection& rail, BodyPair& pair, PassSums& into_first,
+                         PassSums& into_other) {
+  const double normal_n = into_first.weight + into_other.weight;
+  const double pressing_n = into_first.pressing + into_other.pressing;
+  const double x = into_other.on_pressed.x - into_first.on_pressed.x;
+  const double y = into_other.on_pressed.y - into_first.on_pressed.y;
+  const double force_n = plane_length(x, y);
+  const double before_mps = plane_length(pair.deflects_x_mps, pair.deflects_y_mps);
+  const double deflected_m = plane_length(pair.deflected_x_m, pair.deflected_y_m);
+  pair.deflects_x_mps = pair.deflects_y_mps = 0.0;
+  if (!(force_n > 0.0) || !(normal_n > 0.0) || deflected_m >= rail.distance_m) return;
+  const double closing_mps = (into_first.closing + into_other.closing) / pressing_n;
+  const double speed_mps =
+      std::max(0.0, before_mps + closing_mps * (1.0 - rail.force_n / normal_n));
+  pair.deflects_x_mps = speed_mps * x / force_n;
+  pair.deflects_y_mps = speed_mps * y / force_n;
+  const double share = std::min(1.0, rail.force_n / normal_n);
+  into_first.scale(share);
+  into_other.scale(share);
+  totals_.deflection_w += share * normal_n * before_mps;
 }
 
 std::size_t ContactRun::most_pressed() const {
@@ -270,8 +369,13 @@ void ContactRun::apply_forces() {
     point_weight_ += step_s_ * totals_.weight;
     intruded_first_m3_ += totals_.intruded_first_m3;
     intruded_second_m3_ += totals_.intruded_second_m3;
+    const ForceVelocity before = velocity_at_force();
     apply_impulses();
+    deflection_j_ += applied_s_ * totals_.deflection_w;
     const ForceVelocity now = velocity_at_force();
+    for (const std::uint32_t k : pairs()) {
+      state_->pairs[k].slow_rail(before.closing_mps - now.closing_mps);
+    }
     last_speed_mps_ = now.speed_mps;
     if (now.closing_mps < rest_share * max_closing_since_rebound_mps_ &&
         lost_since_rebound_j_ > 0.0) {

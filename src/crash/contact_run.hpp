@@ -29,11 +29,16 @@ struct BodyPair {
   PlanarForce on_second;     ///< force in this step, moment about its centre of mass
   /// Impulse on the second body since the last rebound, moment about the origin.
   PlanarForce since_rebound;
-  PlanarForce impulse_on_second;    ///< impulse of the contact, moment about its centre of mass
-  bool pressed = false;             ///< a force acted in this contact
-  bool struck = false;              ///< a force acted in this or an earlier contact
-  double earlier_first_m = 0.0;     ///< greatest intrusion into the first in earlier contacts
-  double earlier_second_m = 0.0;    ///< greatest intrusion into the second in earlier contacts
+  PlanarForce impulse_on_second;  ///< impulse of the contact, moment about its centre of mass
+  bool pressed = false;           ///< a force acted in this contact
+  bool struck = false;            ///< a force acted in this or an earlier contact
+  double earlier_first_m = 0.0;   ///< greatest intrusion into the first in earlier contacts
+  double earlier_second_m = 0.0;  ///< greatest intrusion into the second in earlier contacts
+  // A rail as second body gives way at this contact; elsewhere it stays where it is.
+  double deflected_x_m = 0.0;  ///< displacement so far
+  double deflected_y_m = 0.0;
+  double deflects_x_mps = 0.0;  ///< velocity
+  double deflects_y_mps = 0.0;
   std::uint64_t last_end_step = 0;  ///< scene step in which their last contact ended
 
   /// Clears the pair; keeps allocated memory.
@@ -43,6 +48,26 @@ struct BodyPair {
   void begin_further_contact(std::uint64_t step);
   /// Greatest intrusion into the compartment of the first or the second body in this contact, m.
   double intrusion_m(bool of_first_body) const;
+  /// Middle of the heights at which the bodies have pressed on each other, over the ground, m.
+  double height_m() const;
+  /// Moves a rail by its velocity for a time, at most by its deflection in all.
+  void move_rail(const Deflection& rail, double seconds);
+  /// Slows a rail down with what presses on it, to rest at most.
+  void slow_rail(double by_mps);
+};
+
+/// Horizontal load of contact forces on the foot of a post.
+struct FootLoad {
+  double x_n = 0.0;   ///< sum of the forces, world axes, N
+  double y_n = 0.0;   ///< N
+  double x_nm = 0.0;  ///< sum of the forces times their heights, N·m
+  double y_nm = 0.0;  ///< N·m
+
+  /// Over what the foot bears.
+  double over(const Breakaway& foot) const {
+    return std::max(plane_length(x_n, y_n) / foot.force_n,
+                    plane_length(x_nm, y_nm) / foot.moment_nm);
+  }
 };
 
 }  // namespace detail
@@ -60,6 +85,10 @@ struct ContactWorkspace::State {
                 const ContactVariant& variant);
   /// Takes a cleared pair with room for the outlines of both bodies; returns its index.
   std::uint32_t take_pair(std::size_t first, std::size_t second);
+  /// Puts a load on a post for a step; returns true if it breaks away in it. Its foot bears until
+  /// the load, taken as linear since the step before, exceeds what it can: that share of the
+  /// impulse goes into the ground, so that results are continuous in the time of the break.
+  bool load_post(std::size_t body, const detail::FootLoad& load);
 };
 
 namespace detail {
@@ -95,6 +124,12 @@ public:
   double next_step_s() const;
   /// Computes the contact forces at the middle of a step.
   void compute_forces(double step_s);
+  /// Adds the forces of this step on a body, if it takes part in the contact, to the load of its
+  /// foot.
+  void add_load(std::size_t body, FootLoad& load) const;
+  /// Call when a body was released: what it took before went into the ground, so that it neither
+  /// rebounds nor counts as a change of the body's velocity.
+  void forget_held(std::size_t body);
   /// Returns true if a contact force acts in this step.
   bool presses() const noexcept { return totals_.pressing > 0.0; }
   /// Applies the forces of the step, and the rebound at greatest compression, to the velocities.
@@ -146,6 +181,7 @@ private:
     double crush_second_w = 0.0;
     double intruded_first_m3 = 0.0;
     double intruded_second_m3 = 0.0;
+    double deflection_w = 0.0;  ///< power that bends rails
   };
   /// Impulses of a step on one body, N s.
   struct StepImpulse {
@@ -167,6 +203,9 @@ private:
   const PlanarBody& motion_of(std::size_t body) const { return state_->bodies[body].motion; }
   PlanarBody& motion_of(std::size_t body) { return state_->bodies[body].motion; }
   void compute_pair_forces(BodyPair& pair, std::size_t place, PassSettings& settings);
+  void deflect(const Deflection& rail, BodyPair& pair, PassSums& into_first, PassSums& into_other);
+  void measure();
+  void begin_compression();
   void add_sums(const PassSums& sums, bool own_is_first);
   void apply_impulses();
   ForceVelocity velocity_at_force() const;
@@ -234,6 +273,7 @@ private:
   double friction_j_ = 0.0;
   double crush_first_j_ = 0.0;
   double crush_second_j_ = 0.0;
+  double deflection_j_ = 0.0;
   double intruded_first_m3_ = 0.0;
   double intruded_second_m3_ = 0.0;
   float depth_first_m_ = 0.0F;

@@ -17,7 +17,7 @@ inline bool goes_second(const ContactBody& p, const ContactBody& q) {
     const Pose& pose = body.pose;
     const Velocity& velocity = body.velocity;
     return std::make_tuple(
-        v.strength.rigid, !v.movable(), v.mass_kg, v.yaw_inertia_kgm2, v.profile->pieces.size(),
+        v.strength.rigid, v.stands(), v.mass_kg, v.yaw_inertia_kgm2, v.profile->pieces.size(),
         s.min_x, s.max_x, s.min_y, s.max_y, v.center_m.x(), v.center_m.y(), pose.translation.x(),
         pose.translation.y(), pose.rotation(0, 0), pose.rotation(1, 0), velocity.linear_mps.x(),
         velocity.linear_mps.y(), velocity.angular_radps.z());

@@ -113,7 +113,7 @@ inline PlanarBody make_planar(const ContactBody& body, const Eigen::Vector3d& or
   p.rise_x = rise.x();
   p.rise_y = rise.y();
   p.ground_m = ground.z() - rise.dot(ground.head<2>() - origin_m.head<2>());
-  if (!v.movable()) return p;
+  if (v.stands()) return p;
   p.inverse_mass = 1.0 / v.mass_kg;
   p.inverse_inertia = 1.0 / v.yaw_inertia_kgm2;
   p.spin = body.velocity.angular_radps.z();

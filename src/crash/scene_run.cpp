@@ -27,6 +27,7 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   memory_.bodies.reserve(bodies);
   members_.reserve(bodies);
   chain_.reserve(bodies);
+  posts_.reserve(bodies);
   near_.reserve(bodies * most_near);
   runs_.resize(most_at_once);
   begun_s_.resize(most_at_once);
@@ -59,6 +60,7 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   begun_s_.resize(most_at_once);
   forced_s_.resize(most_at_once);
   chain_.clear();
+  posts_.clear();
   active_.clear();
   free_runs_.clear();
   for (std::size_t k = most_at_once; k > 0; --k)
@@ -80,17 +82,18 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
     const Vehicle& v = *bodies[i].vehicle;
     Member& m = members_[i];
     compute_extents(v, m);
-    m.state = v.movable() ? State::planned : State::fixed;
+    if (v.breakaway) posts_.push_back(static_cast<std::uint32_t>(i));
+    m.state = v.stands() ? State::fixed : State::planned;
     ContactBody contact_body;
     contact_body.vehicle = &v;
     bodies[i].plan->state_at(start_s, contact_body.pose, contact_body.velocity);
     contact_body.pose.translation += bodies[i].shift_m;
-    if (!v.movable()) contact_body.velocity = {};
+    if (v.stands()) contact_body.velocity = {};
     memory_.add_body(contact_body, origin_m_, options.variant);
     m.pose = contact_body.pose;
     m.start = motion_of(i);
     m.placed_s = start_s;
-    if (!v.movable()) continue;
+    if (v.stands()) continue;
     const MotionBound bound = bodies[i].plan->bound(start_s, start_s + options.longest_s);
     fastest_plan_mps_ = std::max(
         fastest_plan_mps_,
@@ -156,6 +159,19 @@ void SceneRun::mark_touched(std::size_t i) {
     set_wheels(i);
   }
   m.state = State::free;
+}
+
+/// Loads the feet of posts with the contact forces of this step; those that break away become free.
+void SceneRun::break_away() {
+  for (const std::uint32_t i : posts_) {
+    FootLoad load;
+    for (const std::uint32_t k : active_) runs_[k].add_load(i, load);
+    if (!memory_.load_post(i, load)) continue;
+    members_[i].state = State::free;
+    join_chain(i);
+    set_wheels(i);
+    for (const std::uint32_t k : active_) runs_[k].forget_held(i);
+  }
 }
 
 void SceneRun::set_wheels(std::size_t i) {
@@ -357,6 +373,7 @@ void SceneRun::step() {
   open_contacts();
   track(step_s);
   for (const std::uint32_t k : active_) runs_[k].compute_forces(step_s);
+  break_away();
   for (const std::uint32_t k : active_) {
     ContactRun& run = runs_[k];
     if (!run.presses()) continue;

@@ -175,7 +175,8 @@ private:
 
   static constexpr auto no_record = static_cast<std::size_t>(-1);
 
-  /// fixed: not movable; planned: follows its plan; free: moved by forces; rests: free and at rest.
+  /// fixed: not movable, or a post that has not broken away; planned: follows its plan; free: moved
+  /// by forces; rests: free and at rest.
   enum class State : std::uint8_t { fixed, planned, free, rests };
   struct Member {
     State state = State::fixed;
@@ -187,7 +188,7 @@ private:
     double deepest_m = 0.0;          ///< deepest intrusion so far
     double changed_mps = 0.0;        ///< sum of the changes of velocity by contacts so far
     std::uint8_t damaged = 0;        ///< damaged wheels, see `wheels_after`
-    Pose pose;                       ///< pose at its first contact, or of a fixed body
+    Pose pose;                       ///< pose at its first contact, or where it was fixed
     PlanarBody start;                ///< planar state at that time
     double radius_m = 0.0;           ///< of the bounding circle about the centre of mass
     /// Centre of the outlines' bounding box relative to the centre of mass, body axes, m.
@@ -210,6 +211,7 @@ private:
   void place_planned(std::size_t i);
   void join_chain(std::size_t i);
   void mark_touched(std::size_t i);
+  void break_away();
   void set_wheels(std::size_t i);
   double gap_lower_bound_m(std::size_t i, std::size_t j) const;
   double gap_m(std::size_t i, std::size_t j) const;
@@ -251,7 +253,8 @@ private:
   ContactWorkspace::State memory_;
   std::vector<Member> members_;
   std::vector<std::uint32_t> chain_;
-  std::vector<std::uint32_t> near_;  ///< `most_near` entries for each body
+  std::vector<std::uint32_t> posts_;  ///< bodies that may break away
+  std::vector<std::uint32_t> near_;   ///< `most_near` entries for each body
   std::vector<ContactRun> runs_;
   std::vector<double> begun_s_;           ///< by run: time of its beginning
   std::vector<double> forced_s_;          ///< by run: time of its first force

@@ -62,7 +62,7 @@ bool SceneRun::comes_near(const SceneBody& body, const Member& member, std::size
   if (!can_press(*bodies_[i].vehicle, *body.vehicle)) return false;
   // The track has single precision.
   constexpr double rounding_m = 1e-3;
-  const bool movable = body.vehicle->movable();
+  const bool movable = !body.vehicle->stands();
   MotionBound bound;
   if (movable) {
     bound = body.plan->bound(track_steps_.front().time_s, track_steps_.back().time_s);

@@ -123,9 +123,9 @@ void compute_piece_forces(const PressedBody& pusher, const PressedBody& pressed,
   const Silhouettes& shape = pusher.vehicle->silhouettes;
   const Silhouettes& target = pressed.vehicle->silhouettes;
   // A fixed body counts with its larger dimension, a vehicle with its width.
-  const auto pusher_width = pusher.vehicle->movable()
-                                ? static_cast<float>(shape.width_m())
-                                : std::max(shape.max_x - shape.min_x, shape.max_y - shape.min_y);
+  const auto pusher_width = pusher.vehicle->stands()
+                                ? std::max(shape.max_x - shape.min_x, shape.max_y - shape.min_y)
+                                : static_cast<float>(shape.width_m());
   const auto own_width = static_cast<float>(target.width_m());
   PressQuery query;
   query.to = relative_motion(pusher, pressed);

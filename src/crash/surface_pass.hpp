@@ -19,6 +19,7 @@ struct PressedBody {
   const Vehicle* vehicle = nullptr;
   CrushResponse response;
   PlanarBody motion;
+  double foot_load = 0.0;  ///< of a post, over what its foot bears; above 1 it broke away
 };
 
 /// Sums of one pass. "Own" is the body whose material is pressed in, "other" the body whose outline
@@ -41,6 +42,15 @@ struct PassSums {
   double intruding_other_m3ps = 0.0;
   float depth_own = 0.0F;    ///< greatest crush depth, m
   float depth_other = 0.0F;  ///< m
+
+  /// Reduces all forces to a share.
+  void scale(double share) {
+    for (double* const sum :
+         {&on_pressed.x, &on_pressed.y, &on_pressed.moment, &pressing, &closing, &speed,
+          &unused_crush, &weight, &point_x, &point_y, &power_own, &power_other, &power_friction}) {
+      *sum *= share;
+    }
+  }
 };
 
 /// Damage of both bodies that the passes of a contact record.

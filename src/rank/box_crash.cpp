@@ -194,6 +194,10 @@ void BoxCrash::place(Box& box) const {
   at.vehicle = &box.body->vehicle;
   box.plan->state_at(now_s_, at.pose, at.velocity);
   box.motion = make_planar(at, Eigen::Vector3d::Zero());
+  // A post that breaks away is free from the beginning.
+  if (!at.vehicle->movable()) return;
+  box.motion.inverse_mass = 1.0 / at.vehicle->mass_kg;
+  box.motion.inverse_inertia = 1.0 / at.vehicle->yaw_inertia_kgm2;
 }
 
 void BoxCrash::begin(const Scene& scene, const Motion& ego, std::size_t future) {

@@ -265,6 +265,8 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
                                : CrushStrength::unyielding();
   if (!v.strength.rigid) scale(v.strength, facts.stiffness);
   v.surface = facts.surface.value_or(surface_of(v.kind));
+  v.breakaway = facts.breakaway;
+  v.deflection = facts.deflection;
   return v;
 }
 

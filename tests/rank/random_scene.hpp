@@ -78,6 +78,11 @@ inline void add_cast(oracle::Random& random, Scene& scene) {
   scene.add_model("cyclist", wedge_mesh(1.8F, 0.5F, 1.6F, 1.2F), BodyKind::bicycle, 90.0);
   scene.add_model("pole", round_mesh(0.15F, 5.0F, 10), BodyKind::pole);
   scene.add_model("wall", box_mesh({6.0F, 0.2F, 1.0F}, 1, {0.0F, 0.0F, 1.0F}), BodyKind::building);
+  if (!random.chance(0.5)) return;
+  // Some of the poles break away, and some of the walls are rails.
+  scene.scenario.models[pole_model].mass_kg = random.real(10, 300);
+  scene.scenario.models[pole_model].breakaway = Breakaway{random.real(5e3, 100e3)};
+  scene.scenario.models[wall_model].deflection_m = random.real(0.2, 2.0);
 }
 
 /// Random traffic of every kind around an ego, with models of 12 to 500 triangles.

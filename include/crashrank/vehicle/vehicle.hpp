@@ -57,6 +57,36 @@ CRASHRANK_API const char* surface_name(Surface surface) noexcept;
 /// Inverse of `surface_name`. Errors: usage; the remedy lists the names.
 CRASHRANK_API Result<Surface> surface_from_name(const std::string& name);
 
+/// Load at which the foot of a post gives way and its stated mass is free: a slip base, a shear
+/// bolt, a hinge. Until then the post is fixed.
+struct Breakaway {
+  double force_n = std::numeric_limits<double>::infinity();  ///< horizontal force, N, > 0
+  /// Moment of that force about the foot, N·m, > 0: the force times its height over the ground.
+  double moment_nm = std::numeric_limits<double>::infinity();
+
+  /// Equal in all numbers.
+  friend bool operator==(const Breakaway& a, const Breakaway& b) noexcept {
+    return a.force_n == b.force_n && a.moment_nm == b.moment_nm;
+  }
+};
+
+/// How far a fixed rail gives way where a body presses on it, and at which force.
+struct Deflection {
+  double distance_m = 0.0;  ///< m, > 0; rigid from there on
+  double force_n = 0.0;     ///< normal force, constant, N, > 0
+
+  /// Equal in all numbers.
+  friend bool operator==(const Deflection& a, const Deflection& b) noexcept {
+    return a.distance_m == b.distance_m && a.force_n == b.force_n;
+  }
+};
+
+/// Force at which a rail gives way that was tested with a car of 1,500 kg at 110 km/h and 20
+/// degrees (TB32 of EN 1317-2) and deflected by `distance_m` then, N. Of the kinetic energy of the
+/// motion across the rail, 82 kJ, the share that goes into the rail in this model, the rest into
+/// the car.
+inline double rail_force_n(double distance_m) { return 0.7 * 82e3 / distance_m; }
+
 /// Stated properties of a body besides its mesh; absent ones are derived.
 struct VehicleFacts {
   BodyKind kind = BodyKind::car;                    ///< kind of the body
@@ -66,6 +96,8 @@ struct VehicleFacts {
   double stiffness = 1.0;                           ///< times the kind's strength, > 0
   std::optional<Surface> surface;                   ///< absent: the kind's
   std::optional<Honeycomb> honeycomb;               ///< replaces the kind's strength
+  std::optional<Breakaway> breakaway;               ///< of a fixed body; its mass is that set free
+  std::optional<Deflection> deflection;             ///< of a fixed body without mass
 };
 
 /// Properties of a body in a crash besides its triangles.
@@ -86,11 +118,15 @@ struct Vehicle {
   /// By piece of the profile, 1 where it faces the other side of a joint between parts of the body
   /// and presses on nothing; empty: none does.
   std::vector<std::uint8_t> in_joint;
+  std::optional<Breakaway> breakaway;    ///< fixed until then
+  std::optional<Deflection> deflection;  ///< of a fixed body
 
   /// False: nothing presses on it, see `make_profile`.
   bool has_outline() const noexcept { return profile != nullptr && profile->presses(); }
-  /// False for a fixed body.
+  /// False for a body that stays fixed.
   bool movable() const noexcept { return mass_kg < std::numeric_limits<double>::infinity(); }
+  /// True for a body that is fixed before its first contact.
+  bool stands() const noexcept { return !movable() || breakaway.has_value(); }
 };
 
 /// Returns the properties of a body: the stated ones, the others derived from kind and mesh.
