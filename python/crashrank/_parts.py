@@ -78,6 +78,12 @@ class Body:
     """Outer material; decides friction."""
     honeycomb: Mapping[str, float] | None = None
     """Crushable layer: ``pressure_pa``, ``depth_m``, ``low_m``, ``high_m``."""
+    breakaway: Mapping[str, float] | None = None
+    """Load at which a fixed body breaks away: ``force_n``, ``moment_nm``; needs ``mass_kg``."""
+    deflection_m: float | None = None
+    """How far a rail gives way, m."""
+    deflection_force_n: float | None = None
+    """Force at which it gives way, N."""
     box: Sequence[float] | None = None
     """Length, width and height in place of a mesh, m: the usual shape of its kind."""
     note: str | None = None

@@ -66,7 +66,8 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
     return a.kind == b.kind && same_if_stated(a.mass_kg, b.mass_kg) &&
            same_if_stated(a.center_of_mass_m, b.center_of_mass_m) &&
            same_if_stated(a.yaw_inertia_kgm2, b.yaw_inertia_kgm2) && a.stiffness == b.stiffness &&
-           a.surface == b.surface && a.honeycomb == b.honeycomb;
+           a.surface == b.surface && a.honeycomb == b.honeycomb && a.breakaway == b.breakaway &&
+           a.deflection_m == b.deflection_m && a.deflection_force_n == b.deflection_force_n;
   };
   if (!std::equal(scenario.models.begin(), scenario.models.end(), prepared.models.begin(),
                   prepared.models.end(), same_model)) {

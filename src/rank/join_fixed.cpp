@@ -32,8 +32,8 @@ std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
   return i;
 }
 
-/// Sets of certain fixed bodies that adjoin each other directly or through others, found by
-/// union-find.
+/// Sets of certain fixed bodies that adjoin each other directly or through others and give way
+/// alike, found by union-find.
 std::vector<std::vector<std::size_t>> adjoining_sets(const Scene& scene,
                                                      const std::vector<Rectangle>& boxes,
                                                      const std::vector<std::size_t>& certain) {
@@ -43,8 +43,11 @@ std::vector<std::vector<std::size_t>> adjoining_sets(const Scene& scene,
     for (std::size_t j = i + 1; j < certain.size(); ++j) {
       const std::size_t p = root_of(parent, i);
       const std::size_t q = root_of(parent, j);
-      if (p == q || !adjoin(scene.actors[certain[i]], boxes[certain[i]], scene.actors[certain[j]],
-                            boxes[certain[j]])) {
+      if (p == q ||
+          scene.actors[certain[i]].vehicle.deflection !=
+              scene.actors[certain[j]].vehicle.deflection ||
+          !adjoin(scene.actors[certain[i]], boxes[certain[i]], scene.actors[certain[j]],
+                  boxes[certain[j]])) {
         continue;
       }
       parent[std::max(p, q)] = std::min(p, q);
@@ -101,6 +104,7 @@ Status join_fixed(Scene& scene) {
     VehicleFacts facts;
     facts.kind = first.kind;
     facts.surface = first.surface;
+    facts.deflection = first.deflection;
     Result<Vehicle> vehicle = describe_vehicle(common_mesh(scene, members), facts);
     if (!vehicle) return vehicle.error();
     vehicle->in_joint = pieces_in_joints(*vehicle->profile);

@@ -47,6 +47,21 @@ Error error_of_mesh(Error error, const ScenarioModel& model) {
   return error;
 }
 
+/// A post needs the mass that it has when free, a rail has none.
+Status check_fixed_thing(const ScenarioModel& model, double mass_kg) {
+  const auto error = [&](const char* key, const char* reason, const char* remedy) {
+    return Error{ErrorCode::bad_input, {}, "models." + model.name + key, reason, remedy};
+  };
+  if (model.breakaway && !std::isfinite(mass_kg)) {
+    return error(".mass_kg", "is missing, but the body breaks away",
+                 "give the mass of what breaks away");
+  }
+  if (model.deflection_m > 0.0 && std::isfinite(mass_kg)) {
+    return error(".deflection_m", "belongs to a body with a mass", "leave out one of them");
+  }
+  return Success{};
+}
+
 Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> models,
                                std::size_t index) {
   if (index >= scenario.models.size()) {
@@ -60,8 +75,9 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
         model);
   }
   const Eigen::Vector3d extent = models[index].mesh.bounds().extent().cast<double>();
-  return RankedBody{index, model.mass_kg.value_or(guess_mass_kg(model.kind, extent)),
-                    !model.mass_kg.has_value()};
+  const double mass_kg = model.mass_kg.value_or(guess_mass_kg(model.kind, extent));
+  if (Status possible = check_fixed_thing(model, mass_kg); !possible) return possible.error();
+  return RankedBody{index, mass_kg, !model.mass_kg.has_value()};
 }
 
 /// Adds the place to an error of `describe_vehicle`: the key of the scenario if its value is wrong,
@@ -86,6 +102,11 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
   facts.stiffness = model.stiffness;
   facts.surface = model.surface;
   facts.honeycomb = model.honeycomb;
+  facts.breakaway = model.breakaway;
+  if (model.deflection_m > 0.0) {
+    facts.deflection = Deflection{
+        model.deflection_m, model.deflection_force_n.value_or(rail_force_n(model.deflection_m))};
+  }
   Result<Vehicle> vehicle = describe_vehicle(shape.mesh, facts, shape.profile);
   if (!vehicle) return error_of_model(vehicle.error(), model);
   vehicle->leading_edge_m = leading_edge_m(shape.mesh);
@@ -96,7 +117,7 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
 Status check_fixed(const Scene& scene, const Scenario& scenario) {
   for (std::size_t i = 0; i < scene.actors.size(); ++i) {
     const ScenarioActor& actor = scenario.actors[i];
-    if (scene.actors[i].vehicle.movable() || !actor.perception.any()) continue;
+    if (!scene.actors[i].vehicle.stands() || !actor.perception.any()) continue;
     return Error{ErrorCode::bad_input,
                  {},
                  actor_place(i, actor.name) + ".perception",
@@ -106,7 +127,7 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t i = 1; i < plans.size(); ++i) {
     const std::size_t actor = plans[i].actor;
-    if (plans[i - 1].actor != actor || scene.actors[actor].vehicle.movable()) continue;
+    if (plans[i - 1].actor != actor || !scene.actors[actor].vehicle.stands()) continue;
     return Error{ErrorCode::bad_input,
                  {},
                  actor_place(actor, scenario.actors[actor].name),
@@ -179,6 +200,13 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
         "models." + model.name + ".mass_kg",
         std::string("is missing, and a ") + body_kind_name(model.kind) + " does not move by itself",
         "give the ego's model a mass"};
+  }
+  if (const ScenarioModel& model = scenario.models[ego->model]; model.breakaway) {
+    return Error{ErrorCode::bad_input,
+                 {},
+                 "models." + model.name + ".breakaway",
+                 "belongs to the ego, which moves",
+                 "leave it out, or give the ego another model"};
   }
   scene.ego = make_body(models[ego->model], ego->mass_kg);
   // Cached by model: cutting the outlines takes milliseconds, and many actors share a model.

@@ -323,12 +323,14 @@ void doubt_fixed(const Scenario& scenario, const RankResult& result,
     const ScenarioActor& actor = scenario.actors[i];
     const bool moves = actor.speed_mps != 0.0 || actor.acceleration_mps2 != 0.0 ||
                        actor.yaw_rate_radps != 0.0 || actor.poses.size() > 1;
-    if (std::isinf(result.actors[i].mass_kg) && moves) moving.add("'" + actor.name + "'");
+    const bool stands =
+        std::isinf(result.actors[i].mass_kg) || scenario.models[actor.model].breakaway.has_value();
+    if (stands && moves) moving.add("'" + actor.name + "'");
   }
   if (moving.count == 0) return;
   doubts.push_back(fmt::format(
-      "{} a motion, but nothing moves a body without mass: it moves until first contact and stands "
-      "in the crash ({}); give its model a mass, or no motion",
+      "{} a motion, but its body is fixed: it moves until first contact and stands in the crash "
+      " ({}); give its model a mass, or no motion",
       moving.many("actor has", "actors have"), moving.examples()));
 }
 

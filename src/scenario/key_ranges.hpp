@@ -39,6 +39,8 @@ inline constexpr NumberRange stiffness{limits::min_stiffness, limits::max_stiffn
 inline constexpr NumberRange honeycomb_pressure = above_zero_to(limits::honeycomb_pa);
 inline constexpr NumberRange honeycomb_size = above_zero_to(limits::honeycomb_m);
 inline constexpr NumberRange honeycomb_low = up_to(limits::honeycomb_m);
+inline constexpr NumberRange breakaway = above_zero_to(limits::breakaway);
+inline constexpr NumberRange deflection = up_to(limits::deflection_m);
 
 inline constexpr NumberRange wheelbase{limits::min_wheelbase_m, limits::max_wheelbase_m};
 inline constexpr NumberRange max_acceleration = up_to(limits::acceleration_mps2);
@@ -101,6 +103,10 @@ inline constexpr std::array fields{
     Field{"/$defs/model/properties/honeycomb/properties/depth_m", honeycomb_size},
     Field{"/$defs/model/properties/honeycomb/properties/low_m", honeycomb_low},
     Field{"/$defs/model/properties/honeycomb/properties/high_m", honeycomb_size},
+    Field{"/$defs/model/properties/breakaway/properties/force_n", breakaway},
+    Field{"/$defs/model/properties/breakaway/properties/moment_nm", breakaway},
+    Field{"/$defs/model/properties/deflection_m", deflection},
+    Field{"/$defs/model/properties/deflection_force_n", breakaway},
     Field{"/$defs/poses/items/properties/t_s", pose_time},
     Field{"/$defs/ego/properties/wheelbase_m", wheelbase},
     Field{"/$defs/ego/properties/max_acceleration_mps2", max_acceleration},

@@ -118,6 +118,20 @@ void check_models(const Scenario& scenario, Check& check) {
         check.refuse(path + ".honeycomb.low_m", "is not below high_m", "give the lower end");
       }
     }
+    if (model.breakaway) {
+      // What does not break the foot is infinite.
+      const auto within = [&](const char* key, double value, double other) {
+        if (!(std::isinf(value) && std::isfinite(other))) {
+          check.within(path + key, value, ranges::breakaway);
+        }
+      };
+      within(".breakaway.force_n", model.breakaway->force_n, model.breakaway->moment_nm);
+      within(".breakaway.moment_nm", model.breakaway->moment_nm, model.breakaway->force_n);
+    }
+    check.within(path + ".deflection_m", model.deflection_m, ranges::deflection);
+    if (model.deflection_force_n) {
+      check.within(path + ".deflection_force_n", *model.deflection_force_n, ranges::breakaway);
+    }
   }
 }
 

@@ -97,6 +97,19 @@ std::optional<Honeycomb> read_honeycomb(const JsonObject& parent) {
   return honeycomb;
 }
 
+std::optional<Breakaway> read_breakaway(const JsonObject& parent) {
+  if (!parent.has("breakaway")) return std::nullopt;
+  const JsonObject object(parent.at("breakaway"), parent.path_of("breakaway"), parent.refusals(),
+                          {"force_n", "moment_nm"});
+  if (!object.has("force_n") && !object.has("moment_nm")) {
+    object.refuse("force_n", "is missing", "give force_n or moment_nm");
+  }
+  Breakaway foot;
+  foot.force_n = object.number("force_n", breakaway, foot.force_n);
+  foot.moment_nm = object.number("moment_nm", breakaway, foot.moment_nm);
+  return foot;
+}
+
 /// A mesh, or length, width and height of the body's box in its place.
 void read_shape(const JsonObject& object, ScenarioModel& model) {
   if (!object.has("box")) {
@@ -118,10 +131,10 @@ void read_shape(const JsonObject& object, ScenarioModel& model) {
 
 ScenarioModel read_model(const json& value, const std::string& name, const std::string& path,
                          Refusals& refusals) {
-  const JsonObject object(
-      value, path, refusals,
-      {"mesh", "box", "kind", "mass_kg", "scale", "up", "forward", "origin_m", "center_of_mass_m",
-       "yaw_inertia_kgm2", "stiffness", "surface", "honeycomb", "note"});
+  const JsonObject object(value, path, refusals,
+                          {"mesh", "box", "kind", "mass_kg", "scale", "up", "forward", "origin_m",
+                           "center_of_mass_m", "yaw_inertia_kgm2", "stiffness", "surface",
+                           "honeycomb", "breakaway", "deflection_m", "deflection_force_n", "note"});
   ScenarioModel model;
   model.name = name;
   read_shape(object, model);
@@ -141,6 +154,12 @@ ScenarioModel read_model(const json& value, const std::string& name, const std::
   model.stiffness = object.number("stiffness", stiffness, 1.0);
   model.surface = read_surface(object);
   model.honeycomb = read_honeycomb(object);
+  model.breakaway = read_breakaway(object);
+  model.deflection_m = object.number("deflection_m", deflection, 0.0);
+  model.deflection_force_n = object.optional_number("deflection_force_n", breakaway);
+  if (model.deflection_force_n && !object.has("deflection_m")) {
+    object.refuse("deflection_force_n", "is given without deflection_m", "give both");
+  }
   return model;
 }
 

@@ -227,7 +227,7 @@ TEST(Doubts, ActorsWhosePosesEndWhileTheyMoveAreTold) {
   told.scenario.actors[1].poses = {{0.0, {}}, {0.2, away}};
   ASSERT_EQ(told.doubts().size(), 2U);
   EXPECT_NE(told.doubts()[0].find("'second', at 0.2 s and 20.0 m/s"), std::string::npos);
-  EXPECT_NE(told.doubts()[1].find("1 actor has a motion, but nothing moves a body without mass"),
+  EXPECT_NE(told.doubts()[1].find("1 actor has a motion, but its body is fixed"),
             std::string::npos);
 }
 

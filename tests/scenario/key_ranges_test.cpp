@@ -277,7 +277,10 @@ std::map<std::string, Stored> stored_motion(const std::string& path, ActorMotion
 
 std::map<std::string, Stored> stored_numbers(Scenario& s) {
   ScenarioModel& car = s.models.at(0);
-  ScenarioModel& wall = s.models.at(1);
+  ScenarioModel& post = s.models.at(1);
+  ScenarioModel& rail = s.models.at(2);
+  ScenarioModel& wall = s.models.at(3);
+  ScenarioModel& wide = s.models.at(4);
   ScenarioEgo& ego = s.ego;
   HarmWeights& w = s.harm.weights;
   HarmRanges& r = s.harm.ranges;
@@ -294,9 +297,20 @@ std::map<std::string, Stored> stored_numbers(Scenario& s) {
       {"models.wall.honeycomb.depth_m", {&wall.honeycomb->depth_m}},
       {"models.wall.honeycomb.low_m", {&wall.honeycomb->low_m}},
       {"models.wall.honeycomb.high_m", {&wall.honeycomb->high_m}},
-      {"models.wide.box[0]", {&s.models.at(2).box_m->x()}},
-      {"models.wide.box[1]", {&s.models.at(2).box_m->y()}},
-      {"models.wide.box[2]", {&s.models.at(2).box_m->z()}},
+      {"models.post.mass_kg", {&*post.mass_kg}},
+      {"models.post.breakaway.force_n", {&post.breakaway->force_n}},
+      {"models.post.breakaway.moment_nm", {&post.breakaway->moment_nm}},
+      {"models.post.box[0]", {&post.box_m->x()}},
+      {"models.post.box[1]", {&post.box_m->y()}},
+      {"models.post.box[2]", {&post.box_m->z()}},
+      {"models.rail.box[0]", {&rail.box_m->x()}},
+      {"models.rail.box[1]", {&rail.box_m->y()}},
+      {"models.rail.box[2]", {&rail.box_m->z()}},
+      {"models.rail.deflection_m", {&rail.deflection_m}},
+      {"models.rail.deflection_force_n", {&*rail.deflection_force_n}},
+      {"models.wide.box[0]", {&wide.box_m->x()}},
+      {"models.wide.box[1]", {&wide.box_m->y()}},
+      {"models.wide.box[2]", {&wide.box_m->z()}},
       {"ego.pose.x_m", {&ego.pose.translation.x()}},
       {"ego.pose.y_m", {&ego.pose.translation.y()}},
       {"ego.pose.z_m", {&ego.pose.translation.z()}},

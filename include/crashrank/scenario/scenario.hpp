@@ -60,6 +60,11 @@ struct ScenarioModel {
   double stiffness = 1.0;              ///< crush strength, times the default of its kind
   std::optional<Surface> surface;      ///< outer material; absent: by kind
   std::optional<Honeycomb> honeycomb;  ///< crushable layer in place of the strength of its kind
+  /// Load at which a fixed body breaks away; then it moves with its mass. Absent: it does not.
+  std::optional<Breakaway> breakaway;
+  double deflection_m = 0.0;  ///< how far a fixed body without mass gives way, m
+  /// Force at which it gives way, N; absent: `rail_force_n`.
+  std::optional<double> deflection_force_n;
 };
 
 /// Sets the mass, centre of mass and yaw inertia that a model file states where the scenario states
@@ -245,6 +250,8 @@ inline constexpr double max_stiffness = 100.0;          ///< most
 inline constexpr double box_m = max_box_side_m;         ///< most side of a box, m; above 0
 inline constexpr double honeycomb_pa = 1e9;             ///< most pressure, Pa; above 0
 inline constexpr double honeycomb_m = 100.0;            ///< most depth or height, m
+inline constexpr double breakaway = 1e9;                ///< most force, N, or moment, N·m; above 0
+inline constexpr double deflection_m = 10.0;            ///< most deflection of a rail, m
 inline constexpr double min_scale = 1e-6;               ///< metres per file unit
 inline constexpr double max_scale = 1e6;                ///< metres per file unit
 inline constexpr double min_grip = 0.01;                ///< least friction
