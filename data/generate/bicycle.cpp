@@ -55,8 +55,8 @@ Model build_bicycle(double edge) {
     model.add("fork", bar(front + y * side, crown + y * side, 0.013, 0.015, edge));
   }
   model.add("fork", bar(crown - 1.2 * side, crown + 1.2 * side, 0.018, 0.018, edge));
-  model.add("fork", bar(crown, head + Vec3(-0.02, 0, 0.14), 0.018, 0.018, edge));
-  model.add("handlebar", bar({0.82, -0.31, 1.04}, {0.82, 0.31, 1.04}, 0.013, 0.013, edge));
+  model.add("fork", bar(crown, {0.79, 0, 1.05}, 0.018, 0.018, edge));
+  model.add("handlebar", bar({0.79, -0.31, 1.05}, {0.79, 0.31, 1.05}, 0.013, 0.013, edge));
   model.add("saddle", box(saddle + Vec3(0, 0, 0.03), {0.13, 0.075, 0.03}, 0.025, edge));
   model.add("cranks", bar({0.44, 0.07, 0.29}, {0.46, 0.08, 0.45}, 0.012, 0.012, edge));
   model.add("cranks", bar({0.44, -0.07, 0.29}, {0.42, -0.08, 0.13}, 0.012, 0.012, edge));

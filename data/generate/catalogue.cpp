@@ -62,8 +62,8 @@ const std::vector<Entry>& catalogue() {
        94.0, 5.9, Vec3(0.31, 0.0, 0.99), "centre of the rear axle on the ground",
        "Wheels of 622 mm rims; mass, and 0.25 m of radius of gyration in yaw, of the benchmark "
        "bicycle with rider (Meijaard, Papadopoulos, Ruina and Schwab, Proc. R. Soc. A 463, 2007)."},
-      {"child", "Child of six years, 1.14 m, walking", "pedestrian", 3000, 0.028, build_child, 0.0,
-       23.4, 0.18, Vec3(0.02, 0.0, 0.63), "on the ground under the pelvis",
+      {"child", "Child of six years, 1.14 m, walking", "pedestrian", 4000, 0.02345, build_child,
+       0.0, 23.4, 0.18, Vec3(0.02, 0.0, 0.63), "on the ground under the pelvis",
        "Height and mass of the Hybrid III dummy of a six-year-old child (49 CFR 572 subpart N); "
        "the "
        "adult's proportions and radius of gyration scaled by height."},

@@ -187,7 +187,7 @@ public:
     sheet_.text(margin_px, text_px,
                 fmt::format("{:.3g} x {:.3g} x {:.3g} m", extent.x(), extent.y(), extent.z()),
                 black);
-    const float scale_m = std::pow(10.0F, std::floor(std::log10(0.5F * extent.maxCoeff())));
+    const float scale_m = std::pow(10.0F, std::floor(std::log10(extent.maxCoeff())));
     const int length = static_cast<int>(std::lround(px_per_m_ * scale_m));
     const int y = options.height_px - 2 * text_px;
     sheet_.fill(margin_px, y + letter_height, length, letter_px, black);
@@ -229,7 +229,7 @@ private:
       sheet_.fill(x, y, letter_px, text_px / 2, axle_colour);
     }
     if (panel.up != 1) return;
-    sheet_.text(x, panel.y + panel.height + text_px / 2, fmt::format("rear axle x={:.3g} m", x_m),
+    sheet_.text(x, panel.y + panel.height + text_px / 2, fmt::format("rear axle x={:.2f} m", x_m),
                 axle_colour);
   }
 
