@@ -68,6 +68,7 @@ public:
   /// What comes of a row: "about 2 in 100 that somebody is seriously hurt".
   std::string outcome(std::size_t row, bool is_short) const {
     const CandidateResult& ranked = result_.ranking[row];
+    if (!ranked.feasible) return "the vehicle cannot follow it";
     if (is_clear(ranked)) return "no crash";
     if (result_.measure == Measure::harm && ranked.score && !ranked.people.empty()) {
       return chance_words(chance_of_any(ranked)) +
@@ -171,6 +172,11 @@ public:
 private:
   std::string stability(const CandidateResult& first) const {
     const std::size_t samples = range_sample_count(result_);
+    const CandidateResult& second = result_.ranking[1];
+    if (first.score && first.score == second.score && second.feasible) {
+      return "The next best scores alike; this one is first because " +
+             tie_words(scenario_, first, second) + ".";
+    }
     if (first.separable) {
       return fmt::format(
           "The first place is clear: in {} of {} combinations of what is not known "

@@ -18,7 +18,7 @@ std::string_view embedded_page();         ///< page.js
 
 /// The page's script, in the order in which its parts are read.
 inline std::array<std::string_view, 8> embedded_scripts() {
-  return {embedded_data(),  embedded_plan(),  embedded_view3d(),     embedded_clock(),
+  return {embedded_data(),  embedded_plan(),  embedded_view3d(),      embedded_clock(),
           embedded_scene(), embedded_table(), embedded_uncertainty(), embedded_page()};
 }
 
