@@ -89,7 +89,7 @@ std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const R
       return;
     }
     how.records_motion = true;
-    how.on_progress = {};
+    how.on_progress = nullptr;
     ranked->replay = how;
   });
   if (ranked->result.ranking.empty() && ranked->interrupted) {
