@@ -115,7 +115,7 @@ std::string html_of(const Ranked& ranked, std::size_t drawn, bool is_small) {
   HtmlReportOptions options;
   options.drawn = drawn;
   if (is_small) {
-    options.model_triangles = 800;
+    options.model_triangles = 500;
     options.still = false;
   }
   if (ranked.replay) {
