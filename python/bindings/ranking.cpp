@@ -90,7 +90,7 @@ std::shared_ptr<Ranked> rank_situation(const SharedSituation& situation, const R
       return;
     }
     how.records_motion = true;
-    how.on_progress = {};
+    how.on_progress = nullptr;
     ranked->replay = how;
   });
   if (ranked->result.ranking.empty() && ranked->interrupted) {
@@ -116,7 +116,7 @@ std::string html_of(const Ranked& ranked, std::size_t drawn, bool is_small) {
   HtmlReportOptions options;
   options.drawn = drawn;
   if (is_small) {
-    options.model_triangles = 800;
+    options.model_triangles = 500;
     options.still = false;
   }
   if (ranked.replay) {

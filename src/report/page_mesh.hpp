@@ -15,7 +15,7 @@ namespace crashrank::detail {
 
 /// Most triangles of a mesh on a page; of those that have more, corners that lie in one cell of a
 /// grid become one.
-inline constexpr std::size_t most_page_triangles = 10'000;
+inline constexpr std::size_t most_page_triangles = 7'000;
 
 /// A mesh as the page draws it. Each of its triangles stands for one or more of the mesh's.
 class PageMesh {

@@ -75,8 +75,8 @@ struct HtmlReportOptions {
   /// Candidates that are played and described, best first, and the worst one; 0 for all. Every
   /// candidate is in the table.
   std::size_t drawn = 24;
-  /// Meshes of more triangles than this are drawn with fewer; the report says so. At most 10,000.
-  std::size_t model_triangles = 10'000;
+  /// Meshes of more triangles than this are drawn with fewer; the report says so. At most 7,000.
+  std::size_t model_triangles = 7'000;
   /// Holds a still picture of the first one, for browsers without WebGL, some 150 kB.
   bool still = true;
 };
