@@ -124,6 +124,7 @@ Status check_ac3d_places(int descriptor) {
   bool has_vertices = false;
   bool moved = false;
   bool turned = false;
+  std::int64_t materials = 0;
   for (ObjLine line; lines.next(line);) {
     std::string_view rest = line.text;
     const std::string_view word = take_word(rest);
@@ -135,7 +136,18 @@ Status check_ac3d_places(int descriptor) {
         return number != wanted;
       });
     };
-    if (word == "OBJECT") {
+    if (word == "MATERIAL") {
+      ++materials;
+    } else if (word == "mat") {
+      const std::int64_t material = whole_number(take_word(rest)).value_or(0);
+      if (material < std::max<std::int64_t>(materials, 1)) continue;
+      Error error = make_error(ErrorCode::bad_input,
+                               "there is no material " + std::to_string(material) +
+                                   ", and the parser leaves out surfaces without one",
+                               "give the surface a material of the file (numbered from 0)");
+      error.place = "line " + std::to_string(line.number);
+      return error;
+    } else if (word == "OBJECT") {
       has_vertices = moved = turned = false;
       name.clear();
     } else if (word == "name") {

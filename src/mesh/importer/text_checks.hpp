@@ -16,8 +16,9 @@ namespace crashrank::importer {
 Result<std::uint64_t> check_off_lines(int descriptor);
 
 /// Refuses AC3D objects that the parser misplaces: it turns an object's vertices after moving them,
-/// and does not move the objects below one that has vertices. Errors: bad_input, naming the line.
-/// Reads the descriptor by position, once.
+/// and does not move the objects below one that has vertices; and surfaces that it leaves out,
+/// those whose material the file does not have. Errors: bad_input, naming the line. Reads the
+/// descriptor by position, once.
 Status check_ac3d_places(int descriptor);
 
 /// A warning where the text of an STL file ends within a facet or without "endsolid"; empty

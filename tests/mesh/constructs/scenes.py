@@ -234,6 +234,8 @@ def rows_ac3d() -> list[Row]:
             low=(-1, 0, 0), high=(1, 4, 1), refused="loc"),
         Row("rot_group.ac", "rot and loc of a group", ac3d(
             group.replace("kids 1", turn + "kids 1", 1)), low=(-1, 2, 3), high=(1, 6, 4)),
+        Row("material.ac", "surfaces of a material that is not there",
+            ac3d(object_ac()).replace("mat 0", "mat 1", 1), refused="no material 1"),
         Row("group.ac", "group", ac3d(group), **moved((1, 2, 3))),
         Row("kids.ac", "kids move with their parent", ac3d(object_ac(
             extra="loc 1 0 0\n", kids="kids 1\n" + inner)), low=(1, 0, 0), high=(5, 2, 4),
