@@ -114,16 +114,16 @@ Result<Vehicle> vehicle_of(const ScenarioModel& model, const Model& shape) {
 }
 
 /// The scenario with `small_errors` where the state of a moving body has none.
-Scenario with_small_errors(Scenario scenario, const std::vector<RankedBody>& actors) {
+Scenario with_small_errors(Scenario scenario, const std::vector<Body>& actors) {
   if (!scenario.ego.uncertainty.any()) scenario.ego.uncertainty = small_errors;
   for (std::size_t i = 0; i < actors.size(); ++i) {
     StateUncertainty& own = scenario.actors[i].perception;
-    if (std::isfinite(actors[i].mass_kg) && !own.any()) own = small_errors;
+    if (actors[i].vehicle.movable() && !own.any()) own = small_errors;
   }
   return scenario;
 }
 
-Result<Futures> make_futures(const Scenario& scenario, const std::vector<RankedBody>& actors,
+Result<Futures> make_futures(const Scenario& scenario, const std::vector<Body>& actors,
                              const RankOptions& options) {
   if (!options.smooth) return Futures::make(scenario, options.sampled_futures);
   Result<Futures> stated = Futures::make(scenario, options.sampled_futures);
@@ -281,7 +281,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     added.occupants = actor.occupants;
   }
 
-  Result<Futures> futures = make_futures(scenario, result.actors, options);
+  Result<Futures> futures = make_futures(scenario, scene.actors, options);
   if (!futures) return futures.error();
   scene.futures = std::move(*futures);
   if (options.risk) scene.futures.summary.risk = *options.risk;

@@ -114,7 +114,7 @@ private:
     list("What speaks against it", against);
     out_ += "</div>\n";
     if (result_.ranking.size() > 1) {
-      out_ += "<details><summary>Why it stands before the next, in numbers</summary>\n";
+      out_ += "<details open><summary>Why it stands before the next, in numbers</summary>\n";
       paragraph(detail::reason_words(scenario_, models_, result_, scores_, 0));
       out_ += "</details>\n";
     }

@@ -44,7 +44,10 @@ std::string contact_words(const Scenario& scenario, const CandidateResult& ranke
     words = passing_words(scenario, ranked);
   } else {
     const Contact& first = ranked.contacts.front();
-    words = hit_names(scenario, ranked) + when(first.time_of_impact_s, first.closing_speed_mps);
+    const std::string name = contact_name(scenario, first);
+    const std::string others = hit_names(scenario, ranked).substr(name.size());
+    words = name + when(first.time_of_impact_s, first.closing_speed_mps) +
+            (others.empty() ? "" : "; then" + others.substr(1));
   }
   if (ranked.futures.size() > 1) {
     words += "; collides with " + percent_text(ranked.collision_probability);

@@ -127,6 +127,11 @@ TEST(YieldingThings, APostHasNoErrorOfPerceptionAndOnePose) {
   last_model(scene).breakaway = Breakaway{25e3};
   scene.scenario.actors[0].perception.position_m = 0.1;
   EXPECT_EQ(error_of(scene).reason, "belongs to a fixed body");
+  // Nor has it any where all moving bodies get small ones.
+  scene.scenario.actors[0].perception = {};
+  RankOptions smooth;
+  smooth.smooth = true;
+  EXPECT_TRUE(of(scene.ranked(smooth), "on").score.has_value());
 }
 
 }  // namespace

@@ -141,8 +141,8 @@ class Clock {
     const words = traces.map(([body]) => [body, candidate.exposureOf(body, this.time)])
       .filter(([, speed]) => speed > 0.3).map(([body, speed]) => `${nameOf(body)} ${kmh(speed)}`);
     context.textAlign = "left";
-    context.fillText(words.length > 0 ? "exposure: " + words.join(", ")
-      : "exposure of each body", margin, height - 2);
+    context.fillText(words.length > 0 ? "change within 0.3 s: " + words.join(", ")
+      : "change of velocity within 0.3 s, by contacts and tyres", margin, height - 2);
     context.textAlign = "right";
     if (traces.length > 0) context.fillText("most " + kmh(most), width - margin, height - 2);
     context.textAlign = "left";
