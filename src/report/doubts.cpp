@@ -193,9 +193,11 @@ void doubt_outlines(const Scenario& scenario, const RankResult& result,
                         first ? ", the first place among them" : "")));
 }
 
-/// Steps that the wheels of a vehicle can mount: no higher than about their radius.
+/// Steps that the wheels of a vehicle can mount: no higher than about their radius, and high enough
+/// to press at all.
 void doubt_kerbs(const Scenario& scenario, View<const Model> models, const RankResult& result,
                  std::vector<std::string>& doubts) {
+  constexpr double lowest_m = 0.1;
   constexpr double wheel_radius_m = 0.3;
   Counted kerbs;
   for (std::size_t i = 0; i < result.actors.size(); ++i) {
@@ -204,7 +206,7 @@ void doubt_kerbs(const Scenario& scenario, View<const Model> models, const RankR
     const Box bounds = models[body.model].mesh.bounds();
     const double height_m =
         static_cast<double>(bounds.max.z()) - std::max(0.0, static_cast<double>(bounds.min.z()));
-    if (height_m > wheel_radius_m) continue;
+    if (height_m < lowest_m || height_m > wheel_radius_m) continue;
     const auto hits = [i](const CandidateResult& ranked) {
       return std::any_of(ranked.contacts.begin(), ranked.contacts.end(),
                          [i](const Contact& contact) { return contact.actor == i; });
@@ -214,9 +216,9 @@ void doubt_kerbs(const Scenario& scenario, View<const Model> models, const RankR
   }
   if (kerbs.count == 0) return;
   doubts.push_back(fmt::format(
-      "{} fixed, is hit and no higher than a wheel's radius, which wheels may mount: here it stops "
-      "what overlaps it in height, or lets all else pass; leave it out, or state it as the road's "
-      "end: {}",
+      "{} hit, fixed and no higher than a wheel's radius, so that wheels may mount it: here it "
+      "stops what overlaps it in height, and lets all else pass; leave it out, or state it as the "
+      "road's end: {}",
       kerbs.many("body is", "bodies are"), kerbs.examples()));
 }
 

@@ -382,7 +382,7 @@ TEST(Doubts, AStepThatWheelsMayMountIsTold) {
   Sound told;
   told.set_car(box_body(4.0, 0.3, 0.2), fixed, {30.0, 0.0, 0.0});
   told.expect_one(
-      "1 body is fixed, is hit and no higher than a wheel's radius, which wheels may mount: ");
+      "1 body is hit, fixed and no higher than a wheel's radius, so that wheels may mount it: ");
   told.set_car(box_body(4.0, 0.3, 0.5), fixed, {30.0, 0.0, 0.0});
   EXPECT_TRUE(told.doubts().empty());
 }
