@@ -524,8 +524,8 @@ typedef struct crashrank_rank_options {
   int32_t json;               ///< other than 0: crashrank_ranking_json has an answer
   crashrank_order order;      ///< 0: CRASHRANK_ORDER_SCORE
   crashrank_infeasible infeasible;  ///< 0: CRASHRANK_INFEASIBLE_DEMOTE
-  int32_t motion;                   ///< other than 0: crashrank_ranking_motion has motions
-  int32_t smooth;  ///< other than 0: scores are means over small errors of all states
+  int64_t motion;                   ///< other than 0: crashrank_ranking_motion has motions
+  int64_t smooth;  ///< other than 0: scores are means over small errors of all states
 } crashrank_rank_options;
 
 /// Ranks the candidates by the harm or damage of their crashes. The model with index i is that of
