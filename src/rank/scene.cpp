@@ -118,7 +118,7 @@ Scenario with_small_errors(Scenario scenario, const std::vector<Body>& actors) {
   if (!scenario.ego.uncertainty.any()) scenario.ego.uncertainty = small_errors;
   for (std::size_t i = 0; i < actors.size(); ++i) {
     StateUncertainty& own = scenario.actors[i].perception;
-    if (actors[i].vehicle.movable() && !own.any()) own = small_errors;
+    if (!actors[i].vehicle.stands() && !own.any()) own = small_errors;
   }
   return scenario;
 }

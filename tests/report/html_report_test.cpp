@@ -55,7 +55,7 @@ TEST(HtmlReport, ListsAndMarksContactsBetweenOthers) {
         "<td>wall / third</td><td class='n'>0.750</td><td class='n'>5.0</td>"
         "<td class='n'>6.2</td>",
         "<circle class='further'", "<title>wall / third, 0.750 s</title>",
-        "others</h3>\n<ul><li>hit: wall is pushed into third", "wall, second, wall / third"}) {
+        "others</h3>\n<ul><li>hit: wall is pushed into third", "; then second, wall / third"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
   }
   EXPECT_LT(page.find("<td>ego / wall</td>"), page.find("<td>wall / third</td>"));
