@@ -2,6 +2,7 @@
 
 #include "crash/lone_contact.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace crashrank {
@@ -14,6 +15,8 @@ ContactWorkspace& ContactWorkspace::operator=(ContactWorkspace&&) noexcept = def
 void ContactWorkspace::State::begin() {
   bodies.clear();
   pairs_in_use = 0;
+  could_be_near = 0;
+  pool.clear();
 }
 
 void ContactWorkspace::State::add_body(const ContactBody& body, const Eigen::Vector3d& origin_m,
@@ -26,9 +29,13 @@ void ContactWorkspace::State::add_body(const ContactBody& body, const Eigen::Vec
 std::uint32_t ContactWorkspace::State::take_pair(std::size_t first, std::size_t second) {
   if (pairs_in_use == pairs.size()) pairs.emplace_back();
   detail::BodyPair& pair = pairs[pairs_in_use];
-  pair.of_first.resize(bodies[first].vehicle->profile->pieces.size());
-  pair.of_second.resize(bodies[second].vehicle->profile->pieces.size());
-  pair.begin(first, second);
+  for (const std::size_t body : {first, second}) {
+    const std::size_t pieces = bodies[body].vehicle->profile->pieces.size();
+    (body == first ? pair.of_first : pair.of_second).resize(pieces);
+    could_be_near += detail::most_blocks(pieces);
+  }
+  pool.reserve(std::min(could_be_near, most_pooled));
+  pair.begin(first, second, pool);
   return static_cast<std::uint32_t>(pairs_in_use++);
 }
 
@@ -56,6 +63,7 @@ void ContactWorkspace::prepare(std::size_t pieces, std::size_t fixed_bodies) {
     pair.of_first.resize(pieces);
     pair.of_second.resize(pieces);
   }
+  state.pool.reserve(2 * (fixed_bodies + 1) * detail::most_blocks(pieces));
 }
 
 double friction_between(Surface a, Surface b) noexcept {

@@ -35,11 +35,11 @@ bool can_press(const Vehicle& a, const Vehicle& b) {
          (!a.strength.rigid || !b.strength.rigid);
 }
 
-void BodyPair::begin(std::size_t a, std::size_t b) {
+void BodyPair::begin(std::size_t a, std::size_t b, PiecePool& pool) {
   first = static_cast<std::uint32_t>(a);
   second = static_cast<std::uint32_t>(b);
-  of_first.begin();
-  of_second.begin();
+  of_first.begin(pool);
+  of_second.begin(pool);
   in_first = {};
   in_second = {};
   earlier_first_m = earlier_second_m = 0.0;

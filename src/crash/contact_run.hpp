@@ -42,7 +42,7 @@ struct BodyPair {
   std::uint64_t last_end_step = 0;  ///< scene step in which their last contact ended
 
   /// Clears the pair; keeps allocated memory.
-  void begin(std::size_t a, std::size_t b);
+  void begin(std::size_t a, std::size_t b, PiecePool& pool);
   /// Starts a further contact of the pair at scene step `step`: clears forces and records, keeps
   /// what is crushed.
   void begin_further_contact(std::uint64_t step);
@@ -77,6 +77,11 @@ struct ContactWorkspace::State {
   std::vector<detail::PressedBody> bodies;
   std::vector<detail::BodyPair> pairs;  ///< the first `pairs_in_use` are valid
   std::size_t pairs_in_use = 0;
+  detail::PiecePool pool;  ///< of the pairs
+  /// Room that the pool has at most, and that it needs for the pairs in use if all of their
+  /// outlines come near, blocks.
+  std::size_t most_pooled = static_cast<std::size_t>(-1);
+  std::size_t could_be_near = 0;
 
   /// Removes all bodies and pairs; keeps allocated memory.
   void begin();

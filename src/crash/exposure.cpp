@@ -70,8 +70,10 @@ struct WindowSet {
   }
 };
 
-ExposureWindow window_of(const ExposedBody& body, const ExposureCell& first, std::int32_t end,
-                         const ContactAction& sum) {
+}  // namespace
+
+ExposureWindow exposure_window(const ExposedBody& body, const ExposureCell& first, std::int32_t end,
+                               const ContactAction& sum) {
   ExposureWindow w;
   const double more = body.restitution - 1.0;
   w.end = end;
@@ -98,8 +100,6 @@ ExposureWindow window_of(const ExposedBody& body, const ExposureCell& first, std
   return w;
 }
 
-}  // namespace
-
 void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
                   std::vector<ExposureWindow>& windows) {
   windows.clear();
@@ -107,6 +107,7 @@ void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
   std::size_t to_end = 0;
   std::size_t first = 0;
   std::int32_t last_begin = 0;
+  WindowSet set;
   while (to_begin < cells.size()) {
     std::int32_t begin = cells[to_begin].index;
     const bool ends = to_end < cells.size() && cells[to_end].index + 1 - whole_cells < begin;
@@ -118,13 +119,13 @@ void list_windows(View<const ExposureCell> cells, const ExposedBody& body,
     if (!windows.empty() && begin == last_begin) continue;
     last_begin = begin;
     while (cells[first].index < begin) ++first;
-    WindowSet set;
+    set.count = 0;
     ContactAction sum;
     for (std::size_t k = first; k < cells.size(); ++k) {
       const double share = share_in_window(cells[k].index - begin);
       if (!(share > 0.0)) break;
       sum.add(cells[k].action, share);
-      set.add(window_of(body, cells[first], cells[k].index + 1, sum));
+      set.add(exposure_window(body, cells[first], cells[k].index + 1, sum));
     }
     for (std::size_t k = 0; k < set.count; ++k) {
       windows.push_back(set.windows[k]);

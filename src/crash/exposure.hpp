@@ -114,6 +114,11 @@ inline double mean_intrusion_m(double intruded_m3, double deepest_m) {
   return std::min(intruded_m3 / person_m2, deepest_m);
 }
 
+/// The window that ends before cell `end` and in which the sum of all actions, each with its share,
+/// is `sum`; `first` is its first cell. Its begin is not set. See `list_windows`.
+ExposureWindow exposure_window(const ExposedBody& body, const ExposureCell& first, std::int32_t end,
+                               const ContactAction& sum);
+
 /// Lists the windows of a body in the order of their begins. With the change of velocity dV by
 /// contact forces within a window, the part C of it that forces of several contacts cancel, the
 /// crush energy W and the mass m, the exposure is

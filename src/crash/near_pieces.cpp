@@ -1,23 +1,27 @@
 #include "crash/near_pieces.hpp"
 
-#include "crashrank/mesh/profile.hpp"
-
 #include <algorithm>
 
 namespace crashrank::detail {
 
-void NearPieces::resize(std::size_t most_pieces) {
-  // The last block of each height band may be partly filled.
-  const std::size_t most_blocks = most_pieces / block_pieces + profile_bands;
-  if (listed.size() >= most_blocks) return;
-  groups.resize(most_blocks / 8 + profile_bands);
-  states.resize(most_blocks);
-  curves.resize(most_blocks);
-  listed.resize(most_blocks, 0);
-  tracked.resize(most_blocks, 0);
+void PiecePool::reserve(std::size_t blocks) {
+  if (states.size() >= blocks) return;
+  states.resize(blocks);
+  curves.resize(blocks);
 }
 
-void NearPieces::begin() {
+void NearPieces::resize(std::size_t most_pieces) {
+  const std::size_t blocks = most_blocks(most_pieces);
+  if (listed.size() >= blocks) return;
+  groups.resize(blocks / 8 + profile_bands);
+  slot.resize(blocks, 0);
+  listed.resize(blocks, 0);
+  tracked.resize(blocks, 0);
+  entered.resize(blocks, 0);
+}
+
+void NearPieces::begin(PiecePool& pool_of_scene) {
+  pool = &pool_of_scene;
   // Skip one list number, so that the first list of a new pair does not continue the last list of
   // the previous pair. Reset before the numbers wrap around: an old number could otherwise equal a
   // new one.

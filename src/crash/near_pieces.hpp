@@ -1,6 +1,7 @@
 #pragma once
 
 #include "crashrank/internal/vehicle/silhouettes.hpp"
+#include "crashrank/mesh/profile.hpp"
 
 #include <array>
 #include <cstddef>
@@ -27,6 +28,38 @@ struct alignas(64) PieceCurves {
   std::array<float, block_pieces> rigid{};
 };
 
+/// Memory for the blocks that come near another body, shared by the outlines of a scene. A block
+/// keeps its slot from the first time that it is near on, so that memory grows with what is near,
+/// not with the bodies.
+struct PiecePool {
+  static constexpr std::uint32_t none = static_cast<std::uint32_t>(-1);
+
+  std::vector<PieceStates> states;
+  std::vector<PieceCurves> curves;
+  std::size_t used = 0;
+  bool exceeded = false;  ///< a block found no slot, and does not press
+
+  /// Has room for so many blocks; allocates only beyond the room that there is.
+  void reserve(std::size_t blocks);
+  /// Gives all slots back.
+  void clear() noexcept {
+    used = 0;
+    exceeded = false;
+  }
+  /// Takes a slot; `none` if there is no more.
+  std::uint32_t take() noexcept {
+    if (used < states.size()) return static_cast<std::uint32_t>(used++);
+    exceeded = true;
+    return none;
+  }
+};
+
+/// Blocks of an outline of that many pieces at most: the last of each height band may be partly
+/// filled.
+constexpr std::size_t most_blocks(std::size_t pieces) {
+  return pieces / block_pieces + profile_bands;
+}
+
 /// No band of the other body lies at the height.
 inline constexpr std::uint8_t no_band = 255;
 
@@ -40,10 +73,11 @@ struct NearGroup {
 /// blocks.
 struct NearPieces {
   std::vector<NearGroup> groups;       ///< current list: the first `count`
-  std::vector<PieceStates> states;     ///< by block; valid for listed blocks
-  std::vector<PieceCurves> curves;     ///< by block; valid for listed blocks
+  PiecePool* pool = nullptr;           ///< states and curves of the blocks
+  std::vector<std::uint32_t> slot;     ///< by block: in the pool; valid for listed blocks
   std::vector<std::uint32_t> listed;   ///< by block: number of the last list that contained it
   std::vector<std::uint16_t> tracked;  ///< by block: a bit for each piece in that list
+  std::vector<std::uint8_t> entered;   ///< by block: 1 once a piece may have been inside the body
   std::size_t count = 0;               ///< groups in the current list
   std::size_t pieces = 0;              ///< pieces moved by the last pass
   std::uint32_t list = 0;              ///< number of the current list
@@ -55,8 +89,8 @@ struct NearPieces {
 
   /// Allocates room for outlines with up to `most_pieces` pieces.
   void resize(std::size_t most_pieces);
-  /// Clears all states for a new pair of bodies. O(1).
-  void begin();
+  /// Clears all states for a new pair of bodies; keeps states in `pool_of_scene`. O(1).
+  void begin(PiecePool& pool_of_scene);
   /// Starts a further contact of the same bodies; what the pieces have crushed is kept. O(1).
   void begin_further_contact();
   /// Returns true if no list has been made since `begin`.

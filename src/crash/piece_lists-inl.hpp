@@ -182,12 +182,18 @@ inline void list_block(const PressQuery& q, std::size_t i, float near_m, float a
                        NearPieces& near) {
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
   const PieceBlock& block = own.blocks[i];
-  PieceStates& states = near.states[i];
   // The block was not in the previous list: the path of its pieces is not known.
   const std::uint32_t before = near.listed[i] + 1 == near.list ? near.tracked[i] : 0U;
-  if (near.listed[i] <= near.first_list) states = {};
+  if (near.listed[i] <= near.first_list) {
+    near.tracked[i] = 0;
+    near.entered[i] = 0;
+    near.slot[i] = near.pool->take();
+    if (near.slot[i] == PiecePool::none) return;
+    near.pool->states[near.slot[i]] = {};
+  }
+  PieceStates& states = near.pool->states[near.slot[i]];
   if (before == 0 && !q.pusher->response.rigid) {
-    compute_block_curves(q, block, own.rows[i], near.curves[i]);
+    compute_block_curves(q, block, own.rows[i], near.pool->curves[near.slot[i]]);
   }
   const std::uint32_t now = near_pieces(q, block, own.rows[i], near_m);
   for (std::size_t k = 0; k < block_pieces; ++k) {

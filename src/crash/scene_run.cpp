@@ -23,7 +23,7 @@ double speed_bound(const PlanarBody& body, double radius_m) {
 
 }  // namespace
 
-void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
+void SceneRun::prepare(std::size_t bodies, std::size_t pieces, bool tracks) {
   memory_.bodies.reserve(bodies);
   members_.reserve(bodies);
   chain_.reserve(bodies);
@@ -35,10 +35,14 @@ void SceneRun::prepare(std::size_t bodies, std::size_t pieces) {
   active_.reserve(most_at_once);
   free_runs_.reserve(most_at_once);
   contacts_.reserve(most_contacts);
-  track_steps_.reserve(most_tracked_steps);
-  track_.reserve(most_tracked);
-  records_.resize(most_recorded);
+  if (tracks) {
+    track_steps_.reserve(most_tracked_steps);
+    track_.reserve(most_tracked);
+  }
+  records_.resize(std::min(most_recorded, bodies));
   for (ExposureRecord& record : records_) record.prepare();
+  memory_.most_pooled = most_near_blocks;
+  memory_.pool.reserve(std::min(2 * most_pairs * most_blocks(pieces), most_near_blocks));
   memory_.pairs.resize(most_pairs);
   for (BodyPair& pair : memory_.pairs) {
     pair.of_first.resize(pieces);
@@ -66,7 +70,7 @@ void SceneRun::begin(View<const SceneBody> bodies, std::size_t first, std::size_
   for (std::size_t k = most_at_once; k > 0; --k)
     free_runs_.push_back(static_cast<std::uint32_t>(k - 1));
   contacts_.clear();
-  records_.resize(most_recorded);
+  records_.resize(std::max(records_.size(), std::min(most_recorded, bodies.size())));
   recorded_ = 0;
   first_run_ = nullptr;
   start_s_ = now_s_ = placed_s_ = last_force_s_ = start_s;

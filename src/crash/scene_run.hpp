@@ -93,12 +93,15 @@ public:
   static constexpr std::size_t most_contacts = 64;  ///< recorded; further ones are not recorded
   static constexpr std::size_t most_pairs = 64;     ///< pairs in contact; further ones do not act
   static constexpr std::size_t most_at_once = 40;   ///< open contacts; further ones open later
-  static constexpr std::size_t most_near = 32;      ///< near bodies listed for each body
+  /// Blocks of outlines that come near other bodies; further ones do not press.
+  static constexpr std::size_t most_near_blocks = std::size_t{3} << 12U;
+  static constexpr std::size_t most_near = 32;  ///< near bodies listed for each body
   static constexpr std::size_t most_recorded =
       most_pairs + 1;  ///< bodies whose exposure is recorded
 
-  /// Allocates room for scenes with up to `bodies` bodies of up to `pieces` outline pieces each.
-  void prepare(std::size_t bodies, std::size_t pieces);
+  /// Allocates room for scenes with up to `bodies` bodies of up to `pieces` outline pieces each,
+  /// and for tracks if they are recorded.
+  void prepare(std::size_t bodies, std::size_t pieces, bool tracks);
 
   /// Starts the simulation at `start_s` with the chain's first body and the partner that it
   /// contacts at that time. Vehicles, plans and footings have to outlive the run. Allocates where
@@ -137,7 +140,7 @@ public:
   bool would_act(const SceneBody& body, std::size_t most_bodies) const;
   /// Returns true if a limit (see the constants above) was exceeded, so that some contacts were
   /// left out.
-  bool crowded() const noexcept { return limit_exceeded_; }
+  bool crowded() const noexcept { return limit_exceeded_ || memory_.pool.exceeded; }
   std::uint64_t steps() const noexcept { return steps_; }
   /// Number of outline pieces moved in contacts: the amount of work done.
   std::uint64_t work() const noexcept;

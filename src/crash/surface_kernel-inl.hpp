@@ -373,8 +373,7 @@ HWY_INLINE void advance_block(const PressQuery& q, std::size_t block, NearPieces
   const std::uint8_t target_band = q.target_band[own.blocks[block].band];
   const BandBounds& target = q.pressed->vehicle->silhouettes.bands[target_band];
   const PieceRows& rows = own.rows[block];
-  PieceStates& states = near.states[block];
-  near.pieces += own.blocks[block].count;
+  PieceStates& states = near.pool->states[near.slot[block]];
   for (std::size_t h = 0; h < own.blocks[block].count; h += 8) {
     PressingPieces p;
     p.at = transform_pieces(q.to, load(rows.x.data() + h), load(rows.y.data() + h),
@@ -394,8 +393,9 @@ HWY_INLINE void advance_block(const PressQuery& q, std::size_t block, NearPieces
     p.where = both(less(all(0.0F), unused_crush), in_box);
     if (bits(p.where) == 0) continue;
     totals.approaching = true;
+    near.entered[block] = 1;
     p.rows = &rows;
-    p.curves = &near.curves[block];
+    p.curves = &near.pool->curves[near.slot[block]];
     p.path = states.path.data() + h;
     p.path_x = states.path_x.data() + h;
     p.band = own.blocks[block].band;
@@ -409,16 +409,23 @@ template <bool both_yield>
 inline void advance_listed_blocks(const PressQuery& q, NearPieces& near, PressTotals& totals,
                                   PassSums& sums, PassRecord& record) {
   const Silhouettes& own = q.pusher->vehicle->silhouettes;
+  constexpr float rounding_m = 0.01F;
   ForceAccumulator accumulator(q);
   near.pieces = 0;
   for (std::size_t i = 0; i < near.count; ++i) {
     const NearGroup& entry = near.groups[i];
-    const std::uint32_t first_block = own.groups[entry.group].first;
+    const BlockGroup& group = own.groups[entry.group];
+    const std::uint32_t first_block = group.first;
+    // Blocks outside the bounds of the other body stay as they are until a piece was inside it.
+    const std::uint32_t inside = near_blocks(q, group, rounding_m);
     // Pieces beside the other body are advanced as well: if the body later moves sideways over
     // them, they press no deeper than their neighbours.
     for (std::uint32_t left = entry.listed; left != 0; left &= left - 1U) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      advance_block<both_yield>(q, first_block + lane, near, accumulator, totals);
+      const std::uint32_t block = first_block + lane;
+      near.pieces += own.blocks[block].count;
+      if ((inside >> lane & 1U) == 0 && near.entered[block] == 0) continue;
+      advance_block<both_yield>(q, block, near, accumulator, totals);
     }
   }
   accumulator.store_sums(totals, sums, record);

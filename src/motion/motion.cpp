@@ -29,6 +29,7 @@ double turn_factor(double u) {
 }
 
 Eigen::Vector2d turned(const Eigen::Vector2d& v, double angle) {
+  if (angle == 0.0) return v;
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};

@@ -76,7 +76,7 @@ void CrashChain::prepare(const Scene& scene) {
   for (const JoinedBodies& joined : scene.joined) {
     pieces = std::max(pieces, joined.vehicle.profile->pieces.size());
   }
-  run_.prepare(scene.actors.size() + 1, pieces);
+  run_.prepare(scene.actors.size() + 1, pieces, scene.futures.max_future_count() > 1);
 }
 
 void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t future,

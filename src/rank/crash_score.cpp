@@ -97,7 +97,7 @@ void CrashScore::list_some(const Scene& scene, const CrashEffects& effects,
   constexpr std::int32_t apart = cells_per_window / 2;
   const Body& of = body_of(scene, body.body);
   const View<const ExposureCell> cells = effects.cells_of(body);
-  some_.clear();
+  windows_.clear();
   for (std::size_t first = 0; first < cells.size();) {
     const std::int32_t begin = cells[first].index;
     ExposureCell whole = cells[first];
@@ -109,12 +109,11 @@ void CrashScore::list_some(const Scene& scene, const CrashEffects& effects,
       whole.action.add(cells[k].action, share);
       if (cells[k].index >= begin + apart) next = std::min(next, k);
     }
-    list_windows({&whole, 1}, {of.mass_kg, has_cage(of.vehicle.kind), 1.0}, windows_);
-    some_.push_back(windows_.back());
-    some_.back().begin = begin;
+    windows_.push_back(exposure_window({of.mass_kg, has_cage(of.vehicle.kind), 1.0}, whole,
+                                       begin + 1, whole.action));
+    windows_.back().begin = begin;
     first = std::min(next, k);
   }
-  windows_.assign(some_.begin(), some_.end());
 }
 
 void CrashScore::list(const Scene& scene, const CrashEffects& effects,

@@ -87,10 +87,7 @@ HarmExposure exposure_of(const Scene& scene, std::size_t body, const ExposureWin
 class CrashScore {
 public:
   /// Allocates; the members for single samples do not allocate afterwards.
-  void prepare() {
-    windows_.reserve(most_windows);
-    some_.reserve(ExposureRecord::most_cells);
-  }
+  void prepare() { windows_.reserve(most_windows); }
   double score(const Scene& scene, const CrashEffects& effects, const HarmSample& sample);
   /// Lower bound on the score in the nominal sample of a simulation that goes on from `effects`.
   double lower_bound(const Scene& scene, const CrashEffects& effects);
@@ -109,7 +106,6 @@ private:
                  const CrashEffects::BodyCells& body);
 
   std::vector<ExposureWindow> windows_;
-  std::vector<ExposureWindow> some_;
 };
 
 }  // namespace crashrank::detail

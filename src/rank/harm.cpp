@@ -163,6 +163,7 @@ std::vector<HarmSample> harm_samples(const HarmOptions& options) {
   const std::vector<double> speeds = ends(r.least_risk_speed, r.most_risk_speed);
   HarmSample nominal;
   nominal.friction = options.friction;
+  nominal.step = options.step;
   nominal.model = options.model;
   std::vector<HarmSample> samples{nominal};
   for (const double friction : ends(r.least_friction, r.most_friction)) {
@@ -173,7 +174,7 @@ std::vector<HarmSample> harm_samples(const HarmOptions& options) {
           for (const double occupant : speeds) {
             for (const double outside : speeds) {
               samples.push_back({friction, strength, restitution, model, occupant, outside,
-                                 moves_alike ? 1.0 : sample_step, 0.0, false});
+                                 (moves_alike ? 1.0 : sample_step) * options.step, 0.0, false});
             }
           }
         }
@@ -182,7 +183,7 @@ std::vector<HarmSample> harm_samples(const HarmOptions& options) {
   }
   HarmSample numerical = nominal;
   numerical.numerical = true;
-  numerical.step = sample_step;
+  numerical.step = sample_step * options.step;
   constexpr double aside_m = 0.001;
   for (const double shift_m : {0.0, aside_m, -aside_m}) {
     numerical.shift_m = shift_m;

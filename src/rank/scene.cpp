@@ -207,6 +207,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.samples = harm_samples(scene.harm);
   }
   scene.nominal.friction = scene.harm.friction;
+  scene.nominal.step = scene.harm.step;
   scene.nominal.model = scene.harm.model;
   scene.impact = options.impact;
   scene.impact.start_is_apart = false;

@@ -202,7 +202,8 @@ void Scratch::prepare(const Scene& scene) {
   boxes.prepare(scene.actors.size() + 1);
   effects.contacts.reserve(SceneRun::most_contacts + 1);
   effects.bodies.reserve(scene.actors.size() + 1);
-  effects.cells.reserve(SceneRun::most_recorded * ExposureRecord::most_cells);
+  effects.cells.reserve(std::min(SceneRun::most_recorded, scene.actors.size() + 1) *
+                        ExposureRecord::most_cells);
   order.reserve(SceneRun::most_contacts + 1);
   score.prepare();
 }

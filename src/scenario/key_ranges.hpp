@@ -71,6 +71,7 @@ inline constexpr NumberRange friction = up_to(harm_limits::friction);
 inline constexpr NumberRange strength{harm_limits::min_strength, harm_limits::max_strength};
 inline constexpr NumberRange restitution = up_to(harm_limits::restitution);
 inline constexpr NumberRange risk_speed{harm_limits::min_risk_speed, harm_limits::max_risk_speed};
+inline constexpr NumberRange step{harm_limits::min_step, harm_limits::max_step};
 inline constexpr NumberRange former_deceleration = up_to(harm_limits::deceleration_mps2);
 inline constexpr NumberRange former_time = up_to(harm_limits::after_s);
 inline constexpr NumberRange former_contacts{1.0, static_cast<double>(harm_limits::contacts)};

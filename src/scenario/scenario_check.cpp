@@ -275,6 +275,7 @@ void check_harm(const HarmOptions& harm, const std::string& path, Check& check) 
                     ranges::restitution);
   check.both_within(path + ".ranges.risk_speed", r.least_risk_speed, r.most_risk_speed,
                     ranges::risk_speed);
+  check.within(path + ".step", harm.step, ranges::step);
   check.within(path + ".least_struck_share", harm.least_struck_share, ranges::share);
 }
 

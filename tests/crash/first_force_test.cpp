@@ -117,7 +117,7 @@ TEST(FirstForce, ComesNearTheExactTimeOfImpactAndNeverWithoutOne) {
     if (impact.state != ImpactState::contact && impact.state != ImpactState::none) continue;
 
     detail::SceneRun run;
-    run.prepare(2, std::max(a.profile->pieces.size(), b.profile->pieces.size()));
+    run.prepare(2, std::max(a.profile->pieces.size(), b.profile->pieces.size()), false);
     detail::SceneOptions options = test::options_with_steps(0.03);
     options.until_s = until_s;
     options.longest_s = until_s;

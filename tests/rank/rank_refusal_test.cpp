@@ -55,6 +55,9 @@ TEST(Rank, RangeErrorsStateTheRange) {
   EXPECT_EQ(result.error().place, "actors[0].yaw_rate_dps");
   EXPECT_EQ(result.error().reason, "is 1145.91559, out of range");
   EXPECT_EQ(result.error().remedy, "give a number from -720 to 720");
+  RankOptions options;
+  options.harm.emplace().step = 16.0;
+  EXPECT_EQ(rank(car_and_wall().scenario, scene.models, options).error().place, "harm.step");
 }
 
 TEST(Rank, ImpossibleMotionsOfActorsAreRefusedInEveryForm) {

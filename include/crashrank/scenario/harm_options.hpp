@@ -60,6 +60,8 @@ struct HarmOptions {
   double least_struck_share = 0.3;  ///< of earlier versions, [0, 1]; without effect
   bool intervals =
       true;  ///< evaluate the samples: the time of five to six simulations in place of one
+  /// Times the steps of the simulation, [1/64, 8]: shows what they change. Not a key of files.
+  double step = 1.0;
   /// Age and sex of all pedestrians, for the curves that have coefficients of them; empty: the mean
   /// person of the curve's sample.
   PedestrianDescription pedestrian;
@@ -81,7 +83,7 @@ struct HarmSample {
   bool numerical = false;  ///< it varies the numerical method, not an uncertain parameter
 };
 
-/// Steps of all samples but the nominal one, times its own: samples compare candidates with each
+/// Steps of all samples but the nominal one, times those of the nominal one: samples compare candidates with each
 /// other and state ranges of tens of per cent, for which longer steps are accurate enough. A
 /// numerical sample states the difference: half of the scores of chains change by less than 1 %.
 inline constexpr double sample_step = 1.5;
@@ -106,6 +108,8 @@ inline constexpr double max_risk_speed = 10.0;                   ///< most
 inline constexpr double deceleration_mps2 = 50.0;                ///< most, m/s²
 inline constexpr double after_s = 60.0;                          ///< longest, s
 inline constexpr double age_years = 120.0;                       ///< most
+inline constexpr double min_step = 1.0 / 64.0;                   ///< least factor
+inline constexpr double max_step = 8.0;                          ///< most
 inline constexpr std::size_t contacts = 16;                      ///< most of a candidate
 }  // namespace harm_limits
 

@@ -5,6 +5,7 @@
 #include "rank/road_leaving.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace crashrank::detail {
 namespace {
@@ -78,21 +79,27 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   const double left =
       leaving_score(q.scene, leaving_of(q, state, ego, scratch), first.time_of_impact_s);
   if (scratch.stopped()) return false;
+  const auto bound = [&] {
+    chain.effects(scratch.effects, scratch.order);
+    future.lower_bound =
+        std::max(future.lower_bound, left + scratch.score.lower_bound(q.scene, scratch.effects));
+    combine(q, state, scratch);
+  };
   while (going) {
     going = chain.advance(steps_at_a_time);
     if (!going) break;
-    // A bound from time to time, and after every contact.
-    const std::int32_t period = chain.run().current_cell() / cells_per_bound;
-    if (bounded_contacts != chain.contacts().size() || bounded_period != period) {
-      bounded_contacts = chain.contacts().size();
-      bounded_period = period;
-      chain.effects(scratch.effects, scratch.order);
-      future.lower_bound =
-          std::max(future.lower_bound, left + scratch.score.lower_bound(q.scene, scratch.effects));
-      combine(q, state, scratch);
-    }
     in_time = !q.deadline.expired();
     const double limit = q.stop_above();
+    const bool can_give_way =
+        limit < std::numeric_limits<double>::infinity() || q.scene.futures.size() > 1;
+    // A bound from time to time, and after every contact, where the simulation ends by it.
+    const std::int32_t period = chain.run().current_cell() / cells_per_bound;
+    const bool due = bounded_contacts != chain.contacts().size() || bounded_period != period;
+    if (!in_time || (due && can_give_way)) {
+      bounded_contacts = chain.contacts().size();
+      bounded_period = period;
+      bound();
+    }
     if (!in_time || state.result.interval.lowest > limit) break;
     if (q.scene.futures.size() > 1 && future.lower_bound > std::max(limit, shown)) break;
   }
