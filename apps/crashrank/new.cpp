@@ -90,16 +90,18 @@ double guess_scale(const Vector3d& extent) {
 
 /// By words in the file's name, else by size, length x width x height as the file has them.
 BodyKind guess_kind(const std::string& stem, const Vector3d& extent) {
-  constexpr std::array<std::pair<const char*, BodyKind>, 14> words{
+  constexpr std::array<std::pair<const char*, BodyKind>, 16> words{
       {{"truck", BodyKind::truck},
        {"lorry", BodyKind::truck},
        {"bus", BodyKind::bus},
+       {"tram", BodyKind::bus},
        {"motorcycle", BodyKind::motorcycle},
        {"motorbike", BodyKind::motorcycle},
        {"bicycle", BodyKind::bicycle},
        {"cyclist", BodyKind::bicycle},
        {"pedestrian", BodyKind::pedestrian},
        {"person", BodyKind::pedestrian},
+       {"wheelchair", BodyKind::pedestrian},
        {"barrier", BodyKind::barrier},
        {"pole", BodyKind::pole},
        {"tree", BodyKind::pole},

@@ -4,9 +4,6 @@
 #include "solids.hpp"
 #include "wheel.hpp"
 
-#include <string>
-#include <utility>
-
 namespace generate {
 namespace {
 
@@ -36,11 +33,8 @@ Model build_bicycle(double edge) {
   Model model;
   const Vec3 rear(0, 0, wheel_radius);
   const Vec3 front(wheelbase, 0, wheel_radius);
-  for (const auto& [name, axle] : {std::pair("rear", rear), std::pair("front", front)}) {
-    const Wheel wheel = round_wheel(axle, wheel_radius, 0.315, 0.042, 6, edge);
-    model.add(std::string("wheel_") + name, wheel.tyre);
-    model.add(std::string("rim_") + name, wheel.rim);
-  }
+  add_round_wheel("rear", rear, wheel_radius, 0.315, 0.042, edge, &model);
+  add_round_wheel("front", front, wheel_radius, 0.315, 0.042, edge, &model);
   const Vec3 crank(0.44, 0, 0.29);
   const Vec3 saddle(0.24, 0, 0.90);
   const Vec3 head(0.84, 0, 0.88);
@@ -60,9 +54,7 @@ Model build_bicycle(double edge) {
   model.add("saddle", box(saddle + Vec3(0, 0, 0.03), {0.13, 0.075, 0.03}, 0.025, edge));
   model.add("cranks", bar({0.44, 0.07, 0.29}, {0.46, 0.08, 0.45}, 0.012, 0.012, edge));
   model.add("cranks", bar({0.44, -0.07, 0.29}, {0.42, -0.08, 0.13}, 0.012, 0.012, edge));
-  for (const NamedMesh& part : build_person(rider_posture(), "rider_", edge).parts) {
-    model.add(part.name, part.mesh);
-  }
+  model.append(build_person(rider_posture(), "rider_", edge));
   return model;
 }
 

@@ -64,15 +64,19 @@ void add_inside(const CarDesign& d, double edge, Model* model) {
   model->add("engine", box(Vec3(d.wheelbase + 0.10, 0.06, 0.50), Vec3(0.24, 0.36, 0.22), 0.05, e));
   model->add("gearbox",
              box(Vec3(d.wheelbase + 0.08, -0.38, 0.42), Vec3(0.17, 0.08, 0.14), 0.05, e));
-  model->add("firewall", box(Vec3(d.cowl_x - 0.06, 0, 0.53), Vec3(0.02, 0.66, 0.30), 0.008, e));
-  model->add("dashboard", box(Vec3(d.cowl_x - 0.30, 0, 0.80), Vec3(0.20, 0.66, 0.09), 0.06, e));
+  model->add("firewall",
+             box(Vec3(d.cowl_x - 0.06, 0, 0.53 + d.inside_lift), Vec3(0.02, 0.66, 0.30), 0.008, e));
+  model->add("dashboard",
+             box(Vec3(d.cowl_x - 0.30, 0, 0.80 + d.inside_lift), Vec3(0.20, 0.66, 0.09), 0.06, e));
   model->add("fuel_tank", box(Vec3(0.42, 0, 0.30), Vec3(0.20, 0.42, 0.09), 0.05, e));
   Mesh front;
-  add_seat(Vec3(d.seat_x, 0.36, 0.50), 0.24, e, &front);
+  add_seat(Vec3(d.seat_x, 0.36, 0.50 + d.inside_lift), 0.24, e, &front);
   model->add_both_sides("seat_front", front);
-  Mesh rear;
-  add_seat(Vec3(d.rear_seat_x, 0, 0.52), 0.60, e, &rear);
-  model->add("seat_rear", rear);
+  if (d.rear_seat) {
+    Mesh rear;
+    add_seat(Vec3(d.rear_seat_x, 0, 0.52), 0.60, e, &rear);
+    model->add("seat_rear", rear);
+  }
   // Steering wheel: a ring about an axis that leans back.
   Mesh ring =
       turned({{0.165, -0.014}, {0.195, -0.014}, {0.195, 0.014}, {0.165, 0.014}, {0.165, -0.014}},
@@ -81,7 +85,7 @@ void add_inside(const CarDesign& d, double edge, Model* model) {
   for (Vec3& p : ring.vertices) {
     const Vec3 q = p;
     p = Vec3(d.seat_x + 0.48 + 0.90 * q.y() + 0.43 * q.z(), 0.36 - q.x(),
-             0.84 - 0.43 * q.y() + 0.90 * q.z());
+             0.84 + d.inside_lift - 0.43 * q.y() + 0.90 * q.z());
   }
   model->add("steering_wheel", ring);
 }
@@ -122,8 +126,8 @@ Field car_body(const CarDesign& d) {
 Model build_car(const CarDesign& d, double edge) {
   const Field body = car_body(d);
   Model model;
-  const Mesh skin =
-      extract_surface(body, Vec3(-1.3, -1.05, 0.05), Vec3(d.wheelbase + 1.2, 1.05, 1.65), edge);
+  const Vec3 high(d.wheelbase + d.high_beyond.x(), -d.low.y(), d.high_beyond.y());
+  const Mesh skin = extract_surface(body, d.low, high, edge);
   add_panels(&model, body, skin, d.panels, "body", edge);
   add_wheels(d, body, edge, &model);
   add_mirrors(d, edge, &model);

@@ -6,7 +6,7 @@
 
 namespace generate {
 
-/// The lines a passenger car is drawn from. Coordinates as the model's: m, x forward from the rear
+/// The lines a car or van is drawn from. Coordinates as the model's: m, x forward from the rear
 /// axle, y left, z up from the ground. Everything is symmetric about y = 0.
 struct CarDesign {
   double wheelbase = 0.0;
@@ -34,6 +34,10 @@ struct CarDesign {
   double mirror_z = 0.0;
   double mirror_y = 0.0;
   double floor_z = 0.0;
+  double inside_lift = 0.0;  ///< of seats, dashboard and firewall above those of a car
+  bool rear_seat = true;
+  Vec3 low = {-1.3, -1.05, 0.05};  ///< a box around the body, its skin alone
+  Vec2 high_beyond = {1.2, 1.65};  ///< its other corner: x before the front axle, z
 };
 
 /// The outside of the body as a solid, wheel arches not cut.
@@ -44,5 +48,8 @@ Model build_car(const CarDesign& design, double edge);
 
 CarDesign hatch_design();
 CarDesign sedan_design();
+
+/// A panel van: a high cabin, with load doors on both sides and a bulkhead behind the seats.
+Model build_van(double edge);
 
 }  // namespace generate

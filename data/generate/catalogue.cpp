@@ -5,16 +5,31 @@
 #include "human.hpp"
 #include "motorcycle.hpp"
 #include "roadside.hpp"
+#include "semitrailer.hpp"
+#include "tram.hpp"
 #include "truck.hpp"
+#include "wheelchair.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace generate {
 namespace {
 
 double thousandths(double value) { return std::floor(value * 1000.0 + 0.5) / 1000.0; }
+
+// With commas between thousands.
+std::string grouped(double value) {
+  std::ostringstream number;
+  number << std::setprecision(12) << value;
+  std::string text = number.str();
+  for (std::size_t i = std::min(text.find('.'), text.size()); i > 3;) text.insert(i -= 3, 1, ',');
+  return text;
+}
 
 bool stands_out(const std::string& part) { return part.rfind("mirror", 0) == 0; }
 
@@ -76,6 +91,35 @@ const std::vector<Entry>& catalogue() {
        "The W beam of EN 1317 systems in common use: 310 mm high, 81 mm deep, 3 mm thick, upper "
        "edge "
        "0.75 m over the ground, posts 4 m apart; 12 kg for each metre of beam."},
+      {"van", "Panel van, high roof", "car", 10000, 0.16, build_van, 3.64, 2500.0, 7500.0,
+       Vec3(2.11, 0.0, 0.75), "centre of the rear axle on the ground",
+       "Volkswagen Crafter of 2017, medium wheelbase, from memory of its data sheet: 5.99 m x "
+       "2.04 m x 2.59 m, wheelbase 3.64 m; 2,100 kg empty with driver, 400 kg of load. Kind car: "
+       "strength, risk and yaw inertia (as for the hatch) follow its mass and length."},
+      {"semitrailer", "Tractor with semi-trailer in line, 16.5 m", "truck", 16000, 0.20,
+       build_semitrailer, 10.73, 30000.0, 697000.0, Vec3(3.95, 0.0, 1.60),
+       "on the ground under the middle axle of the trailer",
+       "Directive 96/53/EC: 16.50 m in all, 12.00 m behind the king pin, 2.04 m from it to any "
+       "point of the trailer's front, 2.55 m wide, 4.00 m high, 40 t; tractor of 7.5 t, trailer "
+       "of 6.8 t, laden by two thirds. Axles 7.70 m behind the king pin and 1.31 m apart, and a "
+       "tractor wheelbase of 3.70 m, are usual. One rigid body: the coupling does not bend. "
+       "Wheelbase: from the middle axle of the trailer to the steered one. Side guards of UN R73 "
+       "bear 1 kN and are left out. Yaw inertia: an even block."},
+      {"tram", "Low-floor tram of three sections, 30 m", "bus", 16000, 0.26, build_tram, 24.80,
+       46800.0, 3.53e6, Vec3(12.40, 0.0, 1.40), "on the rails under the middle of the rear bogie",
+       "Flexity Classic of Essen: 30 m x 2.30 m in three sections (International Railway "
+       "Journal), 42 t (MVG, mhvg.de); and 64 seated passengers of 75 kg. Other measures are "
+       "choices: roof equipment to 3.59 m, skirts from 0.27 m, wheels of 0.60 m, bogies of 1.80 m. "
+       "Kind bus. One rigid body: sections do not bend, and rails do not hold it after a contact. "
+       "Wheelbase: between the outer bogies. Yaw inertia: an even block."},
+      {"wheelchair", "Hand-driven wheelchair with an adult", "pedestrian", 6000, 0.036,
+       build_wheelchair, 0.42, 93.0, 3.5, Vec3(0.20, 0.0, 0.68),
+       "centre of the axle of the large wheels on the ground",
+       "Within ISO 7193 (1.20 m x 0.70 m, 1.09 m high without the person); wheels of 0.61 m, a "
+       "chair of 18 kg and an adult of 75 kg: choices. Kind pedestrian: strength and injury risk "
+       "of a person on foot, who falls and slides; the frame is as soft as the person and the "
+       "wheels do not roll. Yaw inertia: radius of gyration of 0.19 m; state it, that of a person "
+       "on foot is a third."},
   };
   return entries;
 }
@@ -132,6 +176,22 @@ std::string to_json(const Entry& entry, const Model& model) {
   json["origin"] = entry.origin;
   json["facts"] = entry.facts;
   return json.dump(2);
+}
+
+std::string to_row(const Entry& entry, const Model& model) {
+  const auto json = nlohmann::json::parse(to_json(entry, model));
+  const auto measure = [&](const char* key) { return json.at(key).get<double>(); };
+  std::ostringstream row;
+  row << std::fixed << std::setprecision(2) << "| " << entry.name << " | " << entry.title << " | "
+      << grouped(measure("triangles")) << " | " << measure("length_m") << " × "
+      << measure("width_m") << " × " << measure("height_m") << " | ";
+  if (entry.wheelbase_m > 0.0) {
+    row << entry.wheelbase_m;
+  } else {
+    row << "–";
+  }
+  row << " | " << grouped(entry.mass_kg) << " | " << grouped(entry.izz_kgm2) << " |\n";
+  return row.str();
 }
 
 }  // namespace generate

@@ -35,4 +35,7 @@ std::string about(const Entry& entry);
 /// What `models.json` says of one model: a JSON object, dimensions measured on the mesh.
 std::string to_json(const Entry& entry, const Model& model);
 
+/// The model's row of the table in `README.md`.
+std::string to_row(const Entry& entry, const Model& model);
+
 }  // namespace generate

@@ -15,6 +15,11 @@ struct Posture {
   bool helmet = false;
 };
 
+/// Places of the left and the right joint, from that of the left one.
+inline std::array<Vec3, 2> both_sides(const Vec3& left) {
+  return {left, Vec3(left.x(), -left.y(), left.z())};
+}
+
 /// An adult in that posture, about `edge` m a triangle side: head or helmet, neck, torso, pelvis
 /// and limbs as parts, each name with `prefix` before it.
 Model build_person(const Posture& posture, const std::string& prefix, double edge);

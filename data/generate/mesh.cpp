@@ -41,6 +41,10 @@ void Model::add_both_sides(const std::string& name, const Mesh& left) {
   add(name + "_right", mirrored(left));
 }
 
+void Model::append(const Model& other, const Vec3& offset) {
+  for (const NamedMesh& part : other.parts) add(part.name, moved(part.mesh, offset));
+}
+
 std::size_t Model::triangle_count() const {
   std::size_t count = 0;
   for (const NamedMesh& part : parts) count += part.mesh.triangles.size();

@@ -41,6 +41,8 @@ struct Model {
   void add(const std::string& name, const Mesh& mesh);
   /// Adds `NAME_left` as given and `NAME_right` mirrored.
   void add_both_sides(const std::string& name, const Mesh& left);
+  /// Adds all parts of another model, moved by `offset`.
+  void append(const Model& other, const Vec3& offset = Vec3::Zero());
   std::size_t triangle_count() const;
 };
 

@@ -18,14 +18,14 @@ Posture rider_posture() {
   s.neck = {0.66, 0.0, 1.38};
   s.head = {0.76, 0.0, 1.55};
   s.helmet = true;
-  s.shoulder = {Vec3(0.65, 0.17, 1.325), Vec3(0.65, -0.17, 1.325)};
-  s.elbow = {Vec3(0.83, 0.31, 1.12), Vec3(0.83, -0.31, 1.12)};
-  s.wrist = {Vec3(1.03, 0.30, 1.03), Vec3(1.03, -0.30, 1.03)};
-  s.fingers = {Vec3(1.11, 0.30, 1.02), Vec3(1.11, -0.30, 1.02)};
-  s.hip = {Vec3(0.46, 0.11, 0.88), Vec3(0.46, -0.11, 0.88)};
-  s.knee = {Vec3(0.82, 0.21, 0.75), Vec3(0.82, -0.21, 0.75)};
-  s.ankle = {Vec3(0.50, 0.21, 0.41), Vec3(0.50, -0.21, 0.41)};
-  s.toe = {Vec3(0.68, 0.22, 0.33), Vec3(0.68, -0.22, 0.33)};
+  s.shoulder = both_sides({0.65, 0.17, 1.325});
+  s.elbow = both_sides({0.83, 0.31, 1.12});
+  s.wrist = both_sides({1.03, 0.30, 1.03});
+  s.fingers = both_sides({1.11, 0.30, 1.02});
+  s.hip = both_sides({0.46, 0.11, 0.88});
+  s.knee = both_sides({0.82, 0.21, 0.75});
+  s.ankle = both_sides({0.50, 0.21, 0.41});
+  s.toe = both_sides({0.68, 0.22, 0.33});
   return s;
 }
 
@@ -52,12 +52,8 @@ Mesh mudguard(const Vec3& axle, double radius, double half_width, double from, d
 void add_running_gear(double edge, Model* model) {
   const Vec3 front_axle(wheelbase, 0, wheel_radius);
   const Vec3 rear_axle(0, 0, wheel_radius);
-  const Wheel front = round_wheel(front_axle, wheel_radius, 0.215, 0.12, 6, edge);
-  const Wheel rear = round_wheel(rear_axle, wheel_radius, 0.215, 0.17, 6, edge);
-  model->add("wheel_front", front.tyre);
-  model->add("rim_front", front.rim);
-  model->add("wheel_rear", rear.tyre);
-  model->add("rim_rear", rear.rim);
+  add_round_wheel("front", front_axle, wheel_radius, 0.215, 0.12, edge, model);
+  add_round_wheel("rear", rear_axle, wheel_radius, 0.215, 0.17, edge, model);
   const Vec3 crown(1.13, 0, 0.98);
   const Vec3 side(0, 0.095, 0);
   model->add("fork", bar(front_axle + side, crown + side, 0.030, 0.024, edge));
@@ -123,9 +119,7 @@ Model build_motorcycle(double edge) {
   Model model;
   add_running_gear(edge, &model);
   add_body(edge, &model);
-  for (const NamedMesh& part : build_person(rider_posture(), "rider_", 0.7 * edge).parts) {
-    model.add(part.name, part.mesh);
-  }
+  model.append(build_person(rider_posture(), "rider_", 0.7 * edge));
   return model;
 }
 

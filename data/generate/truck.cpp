@@ -75,6 +75,27 @@ std::vector<Panel> cab_panels() {
   };
 }
 
+void add_chassis(double edge, Model* model) {
+  for (const double y : {-0.40, 0.40}) {
+    model->add("frame", box({2.0, y, 0.88}, {4.40, 0.04, 0.13}, 0.0, edge));
+  }
+  for (const double x : {-2.2, -0.9, 0.9, 2.6, 4.3}) {
+    model->add("frame", box({x, 0, 0.90}, {0.04, 0.36, 0.08}, 0.0, edge));
+  }
+  add_tail(tail_x, edge, model);
+  Mesh guard = box({2.70, 1.22, 0.60}, {1.75, 0.015, 0.06}, 0.0, edge);
+  guard.append(box({2.70, 1.22, 0.88}, {1.75, 0.015, 0.06}, 0.0, edge));
+  for (const double x : {1.1, 2.7, 4.3}) {
+    guard.append(box({x, 1.19, 0.78}, {0.03, 0.015, 0.26}, 0.0, edge));
+  }
+  model->add_both_sides("side_guard", guard);
+  model->add("fuel_tank", box({3.30, 0.82, 0.72}, {0.60, 0.30, 0.28}, 0.10, edge));
+  model->add("battery_box", box({3.60, -0.82, 0.74}, {0.35, 0.26, 0.24}, 0.04, edge));
+  model->add("drive_shaft", bar({0.3, 0, 0.62}, {5.2, 0, 0.80}, 0.06, 0.06, edge));
+}
+
+}  // namespace
+
 void add_cab(double edge, Model* model) {
   const Field body = cab_body();
   const Mesh skin = extract_surface(body, {4.6, -1.5, 0.2}, {7.3, 1.5, 3.9}, edge);
@@ -91,10 +112,7 @@ void add_cab(double edge, Model* model) {
   model->add_both_sides("seat", seat);
 }
 
-// The load box, each of its sides a part.
-void add_load_box(double edge, Model* model) {
-  const Vec3 center(0.5 * (tail_x + 4.80), 0, 2.40);
-  const Vec3 half(0.5 * (4.80 - tail_x), 1.275, 1.35);
+void add_load_box(const Vec3& center, const Vec3& half, double edge, Model* model) {
   const Mesh whole = box(center, half, 0.0, edge);
   const char* const names[3][2] = {
       {"box_doors", "box_front"}, {"box_right", "box_left"}, {"box_floor", "box_roof"}};
@@ -115,63 +133,57 @@ void add_load_box(double edge, Model* model) {
   }
 }
 
-void add_chassis(double edge, Model* model) {
+void add_tail(double tail, double edge, Model* model) {
+  model->add("underrun_bar", box({tail + 0.12, 0, 0.50}, {0.05, 1.20, 0.06}, 0.01, edge));
   for (const double y : {-0.40, 0.40}) {
-    model->add("frame", box({2.0, y, 0.88}, {4.40, 0.04, 0.13}, 0.0, edge));
+    model->add("underrun_bar", box({tail + 0.16, y, 0.66}, {0.04, 0.04, 0.10}, 0.0, edge));
   }
-  for (const double x : {-2.2, -0.9, 0.9, 2.6, 4.3}) {
-    model->add("frame", box({x, 0, 0.90}, {0.04, 0.36, 0.08}, 0.0, edge));
-  }
-  model->add("underrun_bar", box({tail_x + 0.12, 0, 0.50}, {0.05, 1.20, 0.06}, 0.01, edge));
-  for (const double y : {-0.40, 0.40}) {
-    model->add("underrun_bar", box({tail_x + 0.16, y, 0.66}, {0.04, 0.04, 0.10}, 0.0, edge));
-  }
-  const Mesh lamp = box({tail_x + 0.05, 1.02, 0.88}, {0.04, 0.20, 0.07}, 0.01, edge);
+  const Mesh lamp = box({tail + 0.05, 1.02, 0.88}, {0.04, 0.20, 0.07}, 0.01, edge);
   model->add_both_sides("tail_lamp", lamp);
-  Mesh guard = box({2.70, 1.22, 0.60}, {1.75, 0.015, 0.06}, 0.0, edge);
-  guard.append(box({2.70, 1.22, 0.88}, {1.75, 0.015, 0.06}, 0.0, edge));
-  for (const double x : {1.1, 2.7, 4.3}) {
-    guard.append(box({x, 1.19, 0.78}, {0.03, 0.015, 0.26}, 0.0, edge));
-  }
-  model->add_both_sides("side_guard", guard);
-  model->add("fuel_tank", box({3.30, 0.82, 0.72}, {0.60, 0.30, 0.28}, 0.10, edge));
-  model->add("battery_box", box({3.60, -0.82, 0.74}, {0.35, 0.26, 0.24}, 0.04, edge));
-  model->add("drive_shaft", bar({0.3, 0, 0.62}, {5.2, 0, 0.80}, 0.06, 0.06, edge));
 }
 
-void add_wheels(double edge, Model* model) {
+void add_front_wheels(double edge, Model* model) {
   const Wheel front = wheel({wheelbase, 1.03, wheel_radius}, wheel_radius, 0.30, 0.30, 8, edge);
   model->add_both_sides("wheel_front", front.tyre);
   model->add_both_sides("rim_front", front.rim);
-  const Wheel outer = wheel({0, 1.09, wheel_radius}, wheel_radius, 0.30, 0.27, 8, edge);
-  const Wheel inner = wheel({0, 0.76, wheel_radius}, wheel_radius, 0.30, 0.27, 8, edge);
+}
+
+void add_twin_wheels(double x, const std::string& place, double edge, Model* model) {
+  const Wheel outer = wheel({x, 1.09, wheel_radius}, wheel_radius, 0.30, 0.27, 8, edge);
+  const Wheel inner = wheel({x, 0.76, wheel_radius}, wheel_radius, 0.30, 0.27, 8, edge);
   Mesh tyres = outer.tyre;
   tyres.append(inner.tyre);
-  model->add_both_sides("wheel_rear", tyres);
-  model->add_both_sides("rim_rear", outer.rim);
-  for (const double x : {0.0, wheelbase}) {
-    model->add(x > 0.0 ? "axle_front" : "axle_rear",
-               bar({x, -0.95, wheel_radius}, {x, 0.95, wheel_radius}, 0.07, 0.07, edge));
-  }
-  // A guard over each pair of rear wheels.
+  model->add_both_sides("wheel_" + place, tyres);
+  model->add_both_sides("rim_" + place, outer.rim);
+}
+
+void add_axle(double x, double z, const std::string& place, double edge, Model* model) {
+  model->add("axle_" + place, bar({x, -0.95, z}, {x, 0.95, z}, 0.07, 0.07, edge));
+}
+
+void add_mudguards(double axle_x, const std::string& place, Model* model) {
   std::vector<std::vector<Vec3>> strip(2);
   for (int i = 0; i <= 12; ++i) {
     const Vec2 turn = unit_circle(0.03 + 0.44 * i / 12.0);
-    const Vec3 place(0.56 * turn.x(), 0, wheel_radius + 0.53 * turn.y());
-    strip[0].push_back(place + Vec3(0, 1.25, 0));
-    strip[1].push_back(place + Vec3(0, 0.62, 0));
+    const Vec3 middle(axle_x + 0.56 * turn.x(), 0, wheel_radius + 0.53 * turn.y());
+    strip[0].push_back(middle + Vec3(0, 1.25, 0));
+    strip[1].push_back(middle + Vec3(0, 0.62, 0));
   }
-  model->add_both_sides("mudguard_rear", sheet(strip));
+  model->add_both_sides("mudguard_" + place, sheet(strip));
 }
-
-}  // namespace
 
 Model build_truck(double edge) {
   Model model;
+  constexpr double box_front_x = 4.80;
   add_cab(edge, &model);
-  add_load_box(edge, &model);
+  add_load_box({0.5 * (tail_x + box_front_x), 0, 2.40}, {0.5 * (box_front_x - tail_x), 1.275, 1.35},
+               edge, &model);
   add_chassis(edge, &model);
-  add_wheels(edge, &model);
+  add_front_wheels(edge, &model);
+  add_twin_wheels(0.0, "rear", edge, &model);
+  add_axle(0.0, wheel_radius, "rear", edge, &model);
+  add_axle(wheelbase, wheel_radius, "front", edge, &model);
+  add_mudguards(0.0, "rear", &model);
   return model;
 }
 

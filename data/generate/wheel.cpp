@@ -62,6 +62,13 @@ Wheel round_wheel(const Vec3& center, double radius, double rim, double width, i
   return {turned(section, center, edge, 24), spoked_rim(center, rim, 0.7 * width, spokes, edge)};
 }
 
+void add_round_wheel(const std::string& place, const Vec3& center, double radius, double rim,
+                     double width, double edge, Model* model) {
+  const Wheel made = round_wheel(center, radius, rim, width, 6, edge);
+  model->add("wheel_" + place, made.tyre);
+  model->add("rim_" + place, made.rim);
+}
+
 Mesh wheel_housing(const Field& body, const Vec3& hub, double radius, double floor_z, double edge) {
   const double drop = (hub.z() - floor_z) / radius;
   // The arc runs from the floor in front over the top to the floor behind.

@@ -16,7 +16,8 @@
 namespace crashrank::detail {
 namespace {
 
-/// What bodies of a kind are like, with room for rare ones.
+/// What bodies of a kind are like, with room for rare ones; trams are buses, the longest of 56 m
+/// (Budapest).
 struct Plausible {
   BodyKind kind;
   double min_length_m;
@@ -27,7 +28,7 @@ struct Plausible {
 
 constexpr std::array<Plausible, 6> plausible_bodies{{{BodyKind::car, 2.0, 7.5, 250.0, 6000.0},
                                                      {BodyKind::truck, 3.5, 26.0, 1000.0, 80'000.0},
-                                                     {BodyKind::bus, 4.5, 26.0, 1500.0, 40'000.0},
+                                                     {BodyKind::bus, 4.5, 60.0, 1500.0, 100'000.0},
                                                      {BodyKind::motorcycle, 1.2, 3.5, 40.0, 900.0},
                                                      {BodyKind::bicycle, 0.8, 3.5, 8.0, 500.0},
                                                      {BodyKind::pedestrian, 0.4, 2.5, 5.0, 300.0}}};

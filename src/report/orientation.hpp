@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -38,8 +39,11 @@ inline std::optional<Orientation> guess_orientation(const Eigen::Vector3d& exten
   const double y = extent_m.y();
   const double z = extent_m.z();
   if (z > least_ratio * x && z > least_ratio * y) {
-    // Of the two others the shorter one is the height: vehicles are wider than high, mostly.
-    return Orientation{"upright (along z)", file_axis(up), file_axis(x < y ? forward : left)};
+    // Cars are wider than high; vans with a high roof, lorries, buses and trams, beyond the width
+    // of any car, are higher than wide.
+    constexpr double widest_car_m = 2.5;
+    const bool x_is_height = (x < y) == (std::max(x, y) < widest_car_m);
+    return Orientation{"upright (along z)", file_axis(up), file_axis(x_is_height ? forward : left)};
   }
   if (y > least_ratio * x) return Orientation{"sideways (along y)", file_axis(left), file_axis(up)};
   return std::nullopt;
@@ -52,12 +56,12 @@ inline bool lies_on_its_side(const Eigen::Vector3d& extent_m) {
   return extent_m.x() < longest_m && extent_m.z() > 1.1 * extent_m.y();
 }
 
-/// Whether some vehicle is of that size, whichever way it is turned.
+/// Whether some vehicle is of that size, whichever way it is turned; the longest are trams.
 inline bool has_vehicle_size(const Eigen::Vector3d& extent_m) {
   const double length = extent_m.maxCoeff();
   const double least = extent_m.minCoeff();
   const double between = extent_m.sum() - length - least;
-  return length >= 1.5 && length <= 25.0 && least >= 0.5 && between >= 1.0 && between <= 4.5;
+  return length >= 1.5 && length <= 60.0 && least >= 0.5 && between >= 1.0 && between <= 4.5;
 }
 
 }  // namespace crashrank::detail

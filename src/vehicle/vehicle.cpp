@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace crashrank {
 namespace {
@@ -48,13 +50,48 @@ std::optional<Axles> find_axles(const Profile& profile, double rear_x, double le
   return Axles{rear, 0.5 * (low[1] + high[1]) - rear};
 }
 
-/// Wheels of two axles, a fifth and four fifths of a car's length where none are seen. Without
-/// wheelbase for other kinds.
+/// Middles of the rearmost and the foremost group of axles, where the lowest band shows wheels
+/// alone: tandems, tridems and bogies are groups.
+std::optional<Axles> find_axle_groups(const Profile& profile) {
+  constexpr double least_gap_m = 0.3;
+  constexpr double longest_wheel_m = 1.1;
+  constexpr double widest_spacing_m = 2.1;  // of the axles of a bogie
+  struct Wheel {
+    double low;
+    double high;
+  };
+  std::vector<double> places;
+  for (std::uint32_t i = profile.first[0]; i < profile.first[1]; ++i) {
+    places.push_back(static_cast<double>(profile.pieces[i].x));
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<Wheel> wheels;
+  for (const double x : places) {
+    if (wheels.empty() || x - wheels.back().high > least_gap_m) wheels.push_back({x, x});
+    wheels.back().high = x;
+    if (x - wheels.back().low > longest_wheel_m) return std::nullopt;
+  }
+  const auto middle = [](const Wheel& a, const Wheel& b) { return 0.5 * (a.low + b.high); };
+  const auto apart = [&](const Wheel& a, const Wheel& b) {
+    return middle(b, b) - middle(a, a) > widest_spacing_m;
+  };
+  const auto behind = std::adjacent_find(wheels.begin(), wheels.end(), apart);
+  if (behind == wheels.end()) return std::nullopt;
+  const auto front = std::adjacent_find(
+      wheels.rbegin(), wheels.rend(), [&](const Wheel& b, const Wheel& a) { return apart(a, b); });
+  const double rear_x = middle(wheels.front(), *behind);
+  return Axles{rear_x, middle(*front, wheels.back()) - rear_x};
+}
+
+/// Wheels of two axles, of other vehicles than cars also groups of axles; a fifth and four fifths
+/// of a car's length where none are seen. Without wheelbase for other kinds.
 Axles axles_of(BodyKind kind, const Profile& profile, double rear_x, double length) {
   const bool car = kind == BodyKind::car;
   if (!car && kind != BodyKind::truck && kind != BodyKind::bus) return {};
   const Axles unseen = car ? Axles{rear_x + 0.2 * length, 0.6 * length} : Axles{};
-  return find_axles(profile, rear_x, length).value_or(unseen);
+  std::optional<Axles> seen = find_axles(profile, rear_x, length);
+  if (!seen && !car) seen = find_axle_groups(profile);
+  return seen.value_or(unseen);
 }
 
 /// x of the centre of mass, from the ends of the box or from the axles.

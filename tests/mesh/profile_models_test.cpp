@@ -79,7 +79,8 @@ bool is_speck(const Polygon& points, const Vector2d& p) {
 TEST(Profile, OfEveryShippedModelHoldsItsSectionsAndReachesAsFar) {
   const std::vector<std::pair<std::string, double>> models{
       {"hatch", 1.49},       {"sedan", 1.466},         {"truck", 3.75}, {"motorcycle", 1.688},
-      {"pedestrian", 1.747}, {"jersey_barrier", 0.81}, {"pole", 6.0},   {"wall", 2.5}};
+      {"pedestrian", 1.747}, {"jersey_barrier", 0.81}, {"pole", 6.0},   {"wall", 2.5},
+      {"van", 2.6},          {"semitrailer", 4.0},     {"tram", 3.59},  {"wheelchair", 1.394}};
   for (const auto& [name, height] : models) {
     SCOPED_TRACE(name);
     const TriangleMesh mesh = shipped(name);
@@ -136,8 +137,8 @@ std::vector<std::array<float, 9>> sorted_pieces(const Profile& profile, std::siz
 
 TEST(Profile, OfAMirrorImageIsTheMirrorImage) {
   std::size_t pieces = 0;
-  for (const char* name :
-       {"hatch", "sedan", "truck", "motorcycle", "pedestrian", "jersey_barrier", "pole", "wall"}) {
+  for (const char* name : {"hatch", "sedan", "truck", "motorcycle", "pedestrian", "jersey_barrier",
+                           "pole", "wall", "van", "semitrailer", "tram", "wheelchair"}) {
     SCOPED_TRACE(name);
     TriangleMesh mesh = shipped(name);
     const Profile profile = profile_of(mesh);

@@ -261,6 +261,12 @@ TEST(Doubts, MeshesThatSeemTurnedAreToldWithTheAxesThatMendIt) {
   upright.expect_one(
       "models.other car: the car is 1.8 x 1.4 x 4.5 m (length x width x height): it seems to lie "
       "upright (along z); read its mesh with forward +z (or its opposite) and up +y");
+  // Lorries are higher than wide.
+  Sound lorry;
+  lorry.set_car(box_body(2.5, 4.0, 16.5), 15000.0, away);
+  lorry.scenario.models.back().kind = BodyKind::truck;
+  EXPECT_NE(lorry.doubts()[0].find("forward +z (or its opposite) and up +y"), std::string::npos)
+      << lorry.doubts()[0];
   // Named in the axes of the file, whatever it was read with.
   upright.scenario.models.back().transform.forward = Axis::plus_y;
   upright.scenario.models.back().transform.up = Axis::plus_x;
@@ -277,6 +283,10 @@ TEST(Doubts, SizesAndStatedMassesThatNoBodyOfTheKindHasAreTold) {
       "to 7.5 m long; check its scale");
   huge.scenario.models.back().kind = BodyKind::bus;
   EXPECT_TRUE(huge.doubts().empty());
+  Sound tram;
+  tram.set_car(box_body(30.0, 2.3, 3.6), 46800.0, away);
+  tram.scenario.models.back().kind = BodyKind::bus;
+  EXPECT_TRUE(tram.doubts().empty()) << testing::PrintToString(tram.doubts());
   Sound light;
   light.set_car(box_body(4.5, 1.8, 1.4), 1.7, away);
   light.expect_one(

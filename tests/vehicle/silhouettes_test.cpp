@@ -80,7 +80,8 @@ TEST(Silhouettes, OfABoxAreItsFaces) {
 }
 
 TEST(Silhouettes, BlocksCoverAllPiecesAndConesHoldAllNormals) {
-  for (const char* name : {"sedan", "hatch", "truck", "motorcycle", "pedestrian", "pole"}) {
+  for (const char* name : {"sedan", "hatch", "truck", "motorcycle", "pedestrian", "pole", "tram",
+                           "semitrailer", "wheelchair"}) {
     const Result<TriangleMesh> mesh =
         oracle::read_obj(std::string(CRASHRANK_MODEL_FOLDER "/") + name + ".obj");
     ASSERT_TRUE(mesh);

@@ -45,8 +45,8 @@ BodyKind kind_of(const nlohmann::json& model) {
 /// A car's box that stands on the ground, its rear axle near the origin.
 TriangleMesh car_box() { return test::box_mesh({2.0, 0.9, 0.7}, {1.2, 0, 0.7}); }
 
-TEST(Vehicle, AxlesOfShippedCarsAndLorriesAreFound) {
-  for (const char* name : {"sedan", "hatch", "truck"}) {
+TEST(Vehicle, AxlesOfShippedCarsLorriesAndTramsAreFound) {
+  for (const char* name : {"sedan", "hatch", "truck", "van", "semitrailer", "tram"}) {
     const nlohmann::json model = stated(name);
     VehicleFacts facts;
     facts.kind = kind_of(model);
@@ -59,7 +59,8 @@ TEST(Vehicle, AxlesOfShippedCarsAndLorriesAreFound) {
         "(stated %.3f), mass %.0f kg, yaw inertia %.0f kg m2\n",
         name, v->rear_axle_x_m, v->wheelbase_m, wheelbase, v->center_m.x(), center, v->mass_kg,
         v->yaw_inertia_kgm2);
-    // The shipped models have their origin under the middle of the rear axle.
+    // The shipped models have their origin under the middle of the rear axle, or of the rear group
+    // of axles.
     EXPECT_NEAR(v->rear_axle_x_m, 0.0, 0.05) << name;
     EXPECT_NEAR(v->wheelbase_m, wheelbase, 0.05) << name;
     EXPECT_NEAR(v->center_m.x(), center, 0.1) << name;
@@ -70,8 +71,8 @@ TEST(Vehicle, AxlesOfShippedCarsAndLorriesAreFound) {
 }
 
 TEST(Vehicle, DerivedCentreAndInertiaAreThoseOfShippedModels) {
-  for (const char* name :
-       {"sedan", "hatch", "truck", "motorcycle", "pedestrian", "jersey_barrier", "pole", "wall"}) {
+  for (const char* name : {"sedan", "hatch", "truck", "motorcycle", "pedestrian", "jersey_barrier",
+                           "pole", "wall", "van", "semitrailer", "tram"}) {
     const nlohmann::json model = stated(name);
     VehicleFacts facts;
     facts.kind = kind_of(model);

@@ -109,7 +109,7 @@ struct Vehicle {
   double yaw_inertia_kgm2 = 1.0;                             ///< not read where nothing moves it
   CrushStrength strength;                                    ///< resistance to crushing
   Surface surface = Surface::sheet_metal;                    ///< decides friction
-  double rear_axle_x_m = 0.0;                                ///< of two-axled vehicles, m
+  double rear_axle_x_m = 0.0;                                ///< middle of its group of axles, m
   double wheelbase_m = 0.0;                                  ///< 0 where no axles are known, m
   double leading_edge_m = 0.0;                               ///< see crash/injury.hpp
   double density_kgm3 = 0.0;                                 ///< mass over the profile's volume
