@@ -32,14 +32,14 @@ pq = pytest.importorskip("pyarrow.parquet")
 @pytest.fixture
 def slow(scenes):
     """Return a folder of many scenes that take longer: every measure is simulated."""
-    for i in range(12, 60):
+    for i in range(12, 36):
         write_scene(scenes, f"scene-{i:02}", scene(i, measure="harm"))
     return scenes
 
 
 def test_a_run_that_was_killed_is_resumed(slow, tmp_path):
     out = tmp_path / "out"
-    words = (slow, "-o", out, "--workers", 2, "--rows-per-part", 3)
+    words = (slow, "-o", out, "--workers", 2, "--rows-per-part", 2)
     with running(*words) as run:
         wait_for_parts(out, 4)
         workers = worker_processes(run.pid)
@@ -47,9 +47,9 @@ def test_a_run_that_was_killed_is_resumed(slow, tmp_path):
         run.wait()
         wait_until_gone(workers)
     there = parts(out)
-    assert 4 <= len(there) < 20
+    assert 4 <= len(there) < 18
     resumed = run_batch(*words)
-    assert resumed["found_rows"] == 3 * len(there)
+    assert resumed["found_rows"] == 2 * len(there)
     assert set(there.items()) <= set(parts(out).items())
     assert resumed["results"] == run_batch(slow, "-o", tmp_path / "b", "--sequential")["results"]
     assert not list(out.glob(".*.part"))
@@ -59,7 +59,7 @@ def test_a_run_that_was_killed_is_resumed(slow, tmp_path):
 @pytest.mark.parametrize("how", [("--workers", 2), ("--sequential",)])
 def test_an_interrupt_leaves_a_folder_to_resume(slow, tmp_path, how, sign):
     out = tmp_path / "out"
-    words = (slow, "-o", out, *how, "--rows-per-part", 3)
+    words = (slow, "-o", out, *how, "--rows-per-part", 2)
     with running(*words) as run:
         wait_for_parts(out, 3)
         workers = worker_processes(run.pid)
@@ -70,21 +70,21 @@ def test_an_interrupt_leaves_a_folder_to_resume(slow, tmp_path, how, sign):
         assert run.returncode == 4, messages
         assert "Traceback" not in messages
         assert "the same command continues" in messages
-        assert "of 60 scenes" in printed
+        assert "of 36 scenes" in printed
         assert time.monotonic() - began < 20
         wait_until_gone(workers, 5)
     assert "Not complete" in (out / "_summary.html").read_text()
     assert not json.loads((out / "_run.json").read_text())["complete"]
     there = parts(out)
     done = run_batch(slow, "-o", out, "--workers", 2)
-    assert done["found_rows"] == 3 * len(there)
+    assert done["found_rows"] == 2 * len(there)
     assert done["errors"] == 0
     assert json.loads((out / "_run.json").read_text())["complete"]
 
 
 def test_a_killed_worker_is_replaced(slow, tmp_path):
     out = tmp_path / "out"
-    with running(slow, "-o", out, "--workers", 2, "--rows-per-part", 6) as run:
+    with running(slow, "-o", out, "--workers", 2, "--rows-per-part", 4) as run:
         wait_for_parts(out, 1)
         workers = worker_processes(run.pid)
         assert len(workers) == 2
@@ -226,7 +226,7 @@ def test_a_file_in_the_place_of_a_folder_is_one_line(scenes, tmp_path, name, how
 
 def test_a_second_interrupt_changes_no_exit_code(slow, tmp_path):
     out = tmp_path / "out"
-    with running(slow, "-o", out, "--workers", 2, "--rows-per-part", 3) as run:
+    with running(slow, "-o", out, "--workers", 2, "--rows-per-part", 2) as run:
         wait_for_parts(out, 1)
         workers = worker_processes(run.pid)
         while run.poll() is None:

@@ -23,10 +23,8 @@ if(KIND STREQUAL "installed")
   set(ENV{PKG_CONFIG_PATH} ${pc_dir}:$ENV{PKG_CONFIG_PATH})
   set(ENV{LD_LIBRARY_PATH} ${lib_dir}:$ENV{LD_LIBRARY_PATH})
 endif()
-# A whole library is compiled to be run once.
-if(KIND STREQUAL "subdirectory")
-  set(optimisation "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG")
-endif()
+# What is compiled is run once; what has to be optimised says so.
+set(optimisation "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG")
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer/${KIND} -B ${WORK}/build -G Ninja
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=${UNITY} ${optimisation} -DCMAKE_CXX_COMPILER=${COMPILER}
   -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} -DCMAKE_CXX_FLAGS=${FLAGS}
@@ -84,7 +82,7 @@ endif()
 
 # The rankings' closed form stands in ranking.cpp.
 file(GLOB programs ${WORK}/build/bin/ranking_*)
-if(NOT programs)
+if(NOT programs AND KIND STREQUAL "installed")
   message(FATAL_ERROR "no program ranks")
 endif()
 file(STRINGS /proc/cpuinfo avx2 REGEX "avx2" LIMIT_COUNT 1)
