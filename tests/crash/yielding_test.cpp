@@ -348,16 +348,19 @@ TEST(Rails, ExposureRisesWithSpeed) {
   }
 }
 
-/// What bends the rail does not crush the car. Across the rail the car loses its velocity in any
-/// case: the delta-v of a car that is turned hardly depends on the rail.
+/// What bends the rail does not crush the car, but for what a later hit of its rear adds. Across
+/// the rail the car loses its velocity in any case: the delta-v of a car that is turned hardly
+/// depends on the rail.
 TEST(Rails, TheFurtherTheyGiveWayTheLessIsTheCarCrushed) {
   for (const double speed_mps : {15.0, 20.0, 25.0, 30.0}) {
+    const double rear_j = 0.005 * 0.5 * named("hatch").mass_kg * speed_mps * speed_mps;
     double before_j = hit_rail(named("hatch"), speed_mps, rail(std::nullopt)).car_j;
     for (const double distance_m : {0.3, 0.6, 1.0, 1.5, 2.0, 3.0}) {
       const double now_j = hit_rail(named("hatch"), speed_mps, rail(tested_rail(distance_m))).car_j;
-      EXPECT_LT(now_j, before_j) << speed_mps << " m/s, " << distance_m << " m";
-      before_j = now_j;
+      EXPECT_LE(now_j, before_j + rear_j) << speed_mps << " m/s, " << distance_m << " m";
+      before_j = std::min(before_j, now_j);
     }
+    EXPECT_LT(before_j, 0.8 * hit_rail(named("hatch"), speed_mps, rail(std::nullopt)).car_j);
   }
 }
 
