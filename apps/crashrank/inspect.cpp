@@ -94,17 +94,23 @@ std::string to_text(const Compiled& compiled) {
   return text;
 }
 
-/// What a person would do with a mesh that is as large as a vehicle and seems turned; empty for
-/// others. `model_file`: its frame cannot be changed by options here.
-std::string orientation_hint(const MeshQuality& quality, const ImportTransform& transform,
-                             bool model_file) {
-  if (!detail::has_vehicle_size(quality.extent_m)) return {};
-  const auto turned = detail::guess_orientation(quality.extent_m, transform);
-  if (!turned) return {};
-  return fmt::format(
-      "if this is a vehicle it lies {}; {} with --forward {} --up {} (or the opposite of that "
-      "--forward, which the size does not show)",
-      turned->lies, model_file ? "compile its mesh again" : "read it", turned->forward, turned->up);
+/// What a person would do with a mesh that could be a vehicle and seems turned or out of scale;
+/// empty for others. `model_file`: its frame cannot be changed by options here.
+std::string reading_hint(const std::string& file, const ImportedMesh& imported,
+                         const ImportTransform& transform, bool model_file) {
+  constexpr double longest_m = 60.0;
+  const Eigen::Vector3d& extent_m = imported.quality.extent_m;
+  const detail::MeshReading reading =
+      detail::guess_reading(imported.mesh, transform, detail::is_gltf_file(file));
+  const double factor = reading.scale / transform.scale;
+  const bool could_be = detail::has_wheels(imported.mesh) || extent_m.maxCoeff() > longest_m ||
+                        reading.has_scale_of(transform);
+  if (!could_be || !detail::has_vehicle_size(factor * extent_m)) return {};
+  if (reading.has_axes_of(transform) && reading.has_scale_of(transform)) return {};
+  return fmt::format("if this is a vehicle, {} with {}, guessed by {}{}",
+                     model_file ? "compile its mesh again" : "read it", reading.options(),
+                     reading.shown_by,
+                     reading.front_known ? "" : " (or with the opposite of that --forward)");
 }
 
 Json to_json(const std::string& file, const ImportedMesh& imported, const std::string& hint) {
@@ -270,7 +276,7 @@ int run(const InspectArguments& options) {
     if (!odd.empty()) imported->warnings.push_back(odd);
     const ImportTransform transform =
         compiled ? compiled->stored.transform : *options.mesh.transform();
-    const std::string hint = orientation_hint(imported->quality, transform, compiled.has_value());
+    const std::string hint = reading_hint(file, *imported, transform, compiled.has_value());
     if (!options.picture.empty()) {
       const Status drawn =
           draw_picture_of(*imported, profile ? *profile : nullptr, !hint.empty(), options.picture);

@@ -152,12 +152,6 @@ Result<ImportTransform> MeshArguments::transform() const {
   return made;
 }
 
-const char* axis_name(Axis axis) {
-  const auto found = std::find_if(axis_names.begin(), axis_names.end(),
-                                  [axis](const auto& known) { return known.second == axis; });
-  return found->first;
-}
-
 bool MeshArguments::given() const {
   const MeshArguments none;
   return scale != none.scale || up != none.up || forward != none.forward || origin != none.origin;

@@ -59,9 +59,6 @@ struct MeshOrModel {
 /// `import_mesh` and `load_model`.
 Result<MeshOrModel> load_mesh_or_model(const std::string& path, const MeshArguments& arguments);
 
-/// "+x", "-x" and so on.
-const char* axis_name(Axis axis);
-
 /// A body as a command wants it: from a mesh or from a model file.
 struct LoadedBody {
   StoredModel stored;

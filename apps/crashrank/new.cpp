@@ -7,6 +7,7 @@
 #include "scenario_file.hpp"
 #include "streams.hpp"
 
+#include "base/nearest_word.hpp"
 #include "crashrank/mesh/properties.hpp"
 #include "crashrank/scenario/scenario.hpp"
 #include "crashrank/vehicle/box_body.hpp"
@@ -57,12 +58,20 @@ struct Shape {
   std::optional<double> wheelbase_m;  ///< where the mesh shows its axles
 };
 
-std::optional<BodyKind> kind_named(const std::string& name) {
+/// In the order of the kinds.
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
   for (int i = 0; i <= static_cast<int>(BodyKind::building); ++i) {
-    const auto kind = static_cast<BodyKind>(i);
-    if (name == body_kind_name(kind)) return kind;
+    names.emplace_back(body_kind_name(static_cast<BodyKind>(i)));
   }
-  return std::nullopt;
+  return names;
+}
+
+std::optional<BodyKind> kind_named(const std::string& name) {
+  const std::vector<std::string> names = kind_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<BodyKind>(found - names.begin());
 }
 
 Result<Placed> parse_placed(const std::string& text, const std::string& option, bool needs_place) {
@@ -73,23 +82,14 @@ Result<Placed> parse_placed(const std::string& text, const std::string& option, 
   const auto finite = [](double x) { return std::isfinite(x); };
   if (!numbers || numbers->size() < 3 || numbers->size() > 4 ||
       !std::all_of(numbers->begin(), numbers->end(), finite)) {
-    return make_error(ErrorCode::usage, option + " " + text + ": has no position",
+    return make_error(ErrorCode::usage, option + " " + text + ": has no X,Y,HEADING",
                       "write BODY@X,Y,HEADING or BODY@X,Y,HEADING,SPEED in m, degrees and m/s");
   }
   return Placed{text.substr(0, at), *numbers};
 }
 
-/// Metres per unit of a file whose body is no vehicle in metres but one in millimetres,
-/// centimetres, inches or feet.
-double guess_scale(const Vector3d& extent) {
-  for (const double scale : {1.0, 0.001, 0.01, 0.0254, 0.3048}) {
-    if (detail::has_vehicle_size(scale * extent)) return scale;
-  }
-  return 1.0;
-}
-
-/// By words in the file's name, else by size, length x width x height as the file has them.
-BodyKind guess_kind(const std::string& stem, const Vector3d& extent) {
+/// By words in the file's name, else by wheels and size, as the file's axes have it.
+BodyKind guess_kind(const std::string& stem, const Vector3d& extent_m, bool has_wheels) {
   constexpr std::array<std::pair<const char*, BodyKind>, 16> words{
       {{"truck", BodyKind::truck},
        {"lorry", BodyKind::truck},
@@ -114,8 +114,8 @@ BodyKind guess_kind(const std::string& stem, const Vector3d& extent) {
     if (lower.find(word) != std::string::npos) return kind;
   }
   constexpr double longest_car_m = 6.5;
-  const double longest = guess_scale(extent) * extent.maxCoeff();
-  if (!detail::has_vehicle_size(guess_scale(extent) * extent) && longest == extent.z() &&
+  const double longest = extent_m.maxCoeff();
+  if (!has_wheels && !detail::has_vehicle_size(extent_m) && longest == extent_m.z() &&
       longest < 2.3) {
     return BodyKind::pedestrian;
   }
@@ -124,19 +124,21 @@ BodyKind guess_kind(const std::string& stem, const Vector3d& extent) {
 
 bool has_axles(BodyKind kind) { return box_axles(kind).wheelbase > 0.0; }
 
+bool drives(BodyKind kind) {
+  return has_axles(kind) || kind == BodyKind::motorcycle || kind == BodyKind::bicycle;
+}
+
 double rounded(double value) { return std::round(1e3 * value) / 1e3; }
 
-/// Scales and turns a mesh as its size suggests. Returns that and where its origin should be.
+/// Scales and turns a vehicle's mesh as it suggests. Returns that and where its origin should be.
 Result<ImportTransform> guess_transform(TriangleMesh& mesh, BodyKind kind,
+                                        const detail::MeshReading& reading,
                                         std::optional<double>& wheelbase_m) {
   ImportTransform guess;
-  const Vector3d extent = mesh.bounds().extent().cast<double>();
-  if (has_axles(kind)) {
-    guess.scale = guess_scale(extent);
-    if (const auto turned = detail::guess_orientation(guess.scale * extent, {})) {
-      guess.forward = *axis_from_name(turned->forward);
-      guess.up = *axis_from_name(turned->up);
-    }
+  if (drives(kind)) {
+    guess.scale = reading.scale;
+    guess.forward = reading.forward;
+    guess.up = reading.up;
   }
   if (Status moved = transform_mesh(mesh, guess); !moved) return moved.error();
   const Box box = mesh.bounds();
@@ -191,12 +193,15 @@ Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated
   if (!read) return read.error();
   TriangleMesh& mesh = read->model ? read->model->stored.model.mesh : read->mesh.mesh;
   const std::string stem = fs::path(file).stem().string();
-  const BodyKind kind = stated.value_or(guess_kind(stem, mesh.bounds().extent().cast<double>()));
+  const detail::MeshReading reading =
+      detail::guess_reading(mesh, {}, !read->model && detail::is_gltf_file(file));
+  const BodyKind kind = stated.value_or(guess_kind(
+      stem, reading.scale * mesh.bounds().extent().cast<double>(), detail::has_wheels(mesh)));
   Shape shape;
   shape.name = stem.substr(0, scenario_limits::name_characters);
   ImportTransform guess;
   if (!read->model) {
-    Result<ImportTransform> guessed = guess_transform(mesh, kind, shape.wheelbase_m);
+    Result<ImportTransform> guessed = guess_transform(mesh, kind, reading, shape.wheelbase_m);
     if (!guessed) return guessed.error();
     guess = *guessed;
   }
@@ -207,8 +212,7 @@ Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated
             "kind decides mass, strength and risk curves unless mass_kg and others state them. "
             "scale, up, forward and origin_m say how the file is read: metres per unit, its "
             "axes, and the point that becomes the origin (for vehicles on the ground below the "
-            "rear axle). They are guessed from the size, which does not show which end is the "
-            "front."},
+            "rear axle). They are guessed."},
            {"mesh", path.string()},
            {"kind", body_kind_name(kind)}};
   const Vector3d extent = mesh.bounds().extent().cast<double>();
@@ -225,7 +229,17 @@ Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated
     said += fmt::format(", read with --scale {:g} --up {} --forward {} --origin {:g},{:g},{:g}",
                         guess.scale, axis_name(guess.up), axis_name(guess.forward), o.x(), o.y(),
                         o.z());
+    if (drives(kind)) {
+      said += fmt::format(", guessed by {}{}", reading.shown_by,
+                          reading.front_known
+                              ? ""
+                              : "; which end is the front it does not show: look at it with "
+                                "inspect --picture");
+    }
     for (const std::string& warning : assess(mesh).warnings) warn(file, warning);
+  }
+  if (const double mass_kg = guess_mass_kg(kind, extent); std::isfinite(mass_kg)) {
+    said += fmt::format("; {:.0f} kg unless mass_kg says more", mass_kg);
   }
   say(file + ": " + said);
   return shape;
@@ -243,6 +257,14 @@ public:
     const std::optional<BodyKind> kind = kind_named(text.substr(0, colon));
     const std::string rest = kind && colon != std::string::npos ? text.substr(colon + 1) : text;
     const auto numbers = kind ? parse_numbers(rest) : std::nullopt;
+    if (!kind && colon != std::string::npos && parse_numbers(text.substr(colon + 1))) {
+      const std::vector<std::string> kinds = kind_names();
+      const std::string meant = detail::nearest_word(text.substr(0, colon), kinds);
+      return make_error(ErrorCode::usage,
+                        text + ": '" + text.substr(0, colon) + "' is no kind of body",
+                        (meant.empty() ? "" : "did you mean '" + meant + "'? The kinds are ") +
+                            listed_with_or(kinds));
+    }
     if (kind && (rest == text || (numbers && numbers->size() != 3))) {
       return make_error(ErrorCode::usage, text + ": has no length, width and height",
                         "write KIND:L,W,H in m, such as car:4.5,1.8,1.5, or KIND:FILE");

@@ -114,14 +114,16 @@ void doubt_shapes(const Scenario& scenario, View<const Model> models, const Rank
           body_text, -lowest_m));
     }
     if (!drives(model.kind)) continue;
-    if (const auto turned = guess_orientation(extent_m, model.transform)) {
-      doubts.push_back(fmt::format(
-          "{}: it seems to lie {}; read its mesh with forward {} (or its opposite) and up {}",
-          body_text, turned->lies, turned->forward, turned->up));
-    } else if (model.kind == BodyKind::car && lies_on_its_side(extent_m)) {
-      doubts.push_back(fmt::format(
-          "{}: it is higher than wide; does it lie on its side? Check up and forward", body_text));
-    }
+    const MeshReading reading = guess_reading(models[i].mesh, model.transform, false);
+    if (reading.has_axes_of(model.transform)) continue;
+    doubts.push_back(
+        model.box_m
+            ? fmt::format("{}: it seems turned; box is [length, width, height]", body_text)
+            : fmt::format("{}: it seems turned, by {}; read its mesh with up {} and forward "
+                          "{}{}",
+                          body_text, reading.shown_by, axis_name(reading.up),
+                          axis_name(reading.forward),
+                          reading.front_known ? "" : " or the opposite"));
   }
 }
 

@@ -164,14 +164,17 @@ TEST(Inspect, TheBoundingBoxAndAHintForTurnedVehiclesArePrinted) {
   const Outcome side = place.crashrank({"inspect", "side.obj"});
   EXPECT_NE(side.out.find("  x -0.9 to 0.9, y -1 to 3, z 0.2 to 1.5 m\n"), std::string::npos)
       << side.out;
-  EXPECT_NE(side.out.find("lies sideways (along y); read it with --forward +y --up +z"),
-            std::string::npos)
+  EXPECT_NE(
+      side.out.find(
+          "read it with --scale 1 --up +z --forward +y, guessed by its size (or with the opposite"),
+      std::string::npos)
       << side.out;
   // y up, as in glTF; what the hint says mends it.
   place.write("tall.obj", cli_test::box_obj("body", -0.9, 0.2, -1, 0.9, 1.5, 3));
   const Outcome tall = place.crashrank({"inspect", "tall.obj", "--json"});
   const std::string hint = tall.json()["files"][0]["orientation_hint"];
-  EXPECT_NE(hint.find("upright (along z); read it with --forward +z --up +y"), std::string::npos);
+  EXPECT_NE(hint.find("read it with --scale 1 --up +y --forward +z, guessed by its size"),
+            std::string::npos);
   for (const std::vector<std::string>& axes :
        std::vector<std::vector<std::string>>{{"tall.obj", "--forward", "+z", "--up", "+y"},
                                              {"side.obj", "--forward", "+y", "--up", "+z"}}) {

@@ -72,6 +72,7 @@ TEST(New, BodiesThatCannotBeReadAreRefusedInOneLine) {
                                                                             {"car:4,2@9,0,0", 2},
                                                                             {"car:4,2,0@9,0,0", 2},
                                                                             {"car@9,0,0", 2},
+                                                                            {"cra:4,2,1@9,0,0", 2},
                                                                             {"car:4,2,1.5", 2},
                                                                             {"car:4,2,1.5@9,0", 2},
                                                                             {"-@9,0,0", 2}}) {

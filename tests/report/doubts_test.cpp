@@ -254,23 +254,23 @@ TEST(Doubts, MeshesThatSeemTurnedAreToldWithTheAxesThatMendIt) {
   Sound sideways;
   sideways.set_car(box_body(1.8, 4.5, 1.4), 1500.0, away);
   sideways.expect_one(
-      "models.other car: the car is 1.8 x 4.5 x 1.4 m (length x width x height): it seems to lie "
-      "sideways (along y); read its mesh with forward +y (or its opposite) and up +z");
+      "models.other car: the car is 1.8 x 4.5 x 1.4 m (length x width x height): it seems turned, "
+      "by its size; read its mesh with up +z and forward +y or the opposite");
   Sound upright;
   upright.set_car(box_body(1.8, 1.4, 4.5), 1500.0, away);
   upright.expect_one(
-      "models.other car: the car is 1.8 x 1.4 x 4.5 m (length x width x height): it seems to lie "
-      "upright (along z); read its mesh with forward +z (or its opposite) and up +y");
+      "models.other car: the car is 1.8 x 1.4 x 4.5 m (length x width x height): it seems turned, "
+      "by its size; read its mesh with up +y and forward +z or the opposite");
   // Lorries are higher than wide.
   Sound lorry;
   lorry.set_car(box_body(2.5, 4.0, 16.5), 15000.0, away);
   lorry.scenario.models.back().kind = BodyKind::truck;
-  EXPECT_NE(lorry.doubts()[0].find("forward +z (or its opposite) and up +y"), std::string::npos)
+  EXPECT_NE(lorry.doubts()[0].find("up +y and forward +z or the opposite"), std::string::npos)
       << lorry.doubts()[0];
   // Named in the axes of the file, whatever it was read with.
   upright.scenario.models.back().transform.forward = Axis::plus_y;
   upright.scenario.models.back().transform.up = Axis::plus_x;
-  EXPECT_NE(upright.doubts()[0].find("forward +x (or its opposite) and up +z"), std::string::npos)
+  EXPECT_NE(upright.doubts()[0].find("up +z and forward +x or the opposite"), std::string::npos)
       << upright.doubts()[0];
 }
 

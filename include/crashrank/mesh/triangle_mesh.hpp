@@ -80,6 +80,12 @@ inline Eigen::Vector3d direction(Axis axis) {
   return unit;
 }
 
+/// "+x", "-x" and so on.
+constexpr const char* axis_name(Axis axis) noexcept {
+  constexpr const char* names[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  return names[static_cast<int>(axis)];
+}
+
 /// "+x", "x", "-y" and so on, upper case too. Errors: usage.
 CRASHRANK_API Result<Axis> axis_from_name(const std::string& name);
 
