@@ -83,9 +83,10 @@ struct HarmSample {
   bool numerical = false;  ///< it varies the numerical method, not an uncertain parameter
 };
 
-/// Steps of all samples but the nominal one, times those of the nominal one: samples compare candidates with each
-/// other and state ranges of tens of per cent, for which longer steps are accurate enough. A
-/// numerical sample states the difference: half of the scores of chains change by less than 1 %.
+/// Steps of all samples but the nominal one, times those of the nominal one: samples compare
+/// candidates with each other and state ranges of tens of per cent, for which longer steps are
+/// accurate enough. A numerical sample states the difference: half of the scores of chains change
+/// by less than 1 %.
 inline constexpr double sample_step = 1.5;
 
 /// True if the sample varies the numerical method, not an uncertain parameter.
