@@ -166,7 +166,7 @@ private:
                   std::size_t body) const {
     const PersonRisk* risk = risk_of(best, body);
     if (risk == nullptr && next != nullptr) risk = risk_of(*next, body);
-    const std::string name = body == ego_body ? "our own car" : scenario_.actors[body].name;
+    std::string name = body == ego_body ? "our own car" : scenario_.actors[body].name;
     if (risk == nullptr || risk->persons == 1.0) return name;
     return fmt::format("{}, {:g} persons", name, risk->persons);
   }
