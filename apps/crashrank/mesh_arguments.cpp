@@ -14,7 +14,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -22,13 +21,6 @@
 
 namespace crashrank::cli {
 namespace {
-
-constexpr std::array<std::pair<const char*, Axis>, 6> axis_names{{{"+x", Axis::plus_x},
-                                                                  {"-x", Axis::minus_x},
-                                                                  {"+y", Axis::plus_y},
-                                                                  {"-y", Axis::minus_y},
-                                                                  {"+z", Axis::plus_z},
-                                                                  {"-z", Axis::minus_z}}};
 
 /// Farther off, no earthly mesh has its vertices.
 constexpr double max_origin_m = 1e7;
@@ -44,18 +36,9 @@ void name_standard_input(std::string& text, const std::string& path) {
 /// As options take them.
 std::vector<std::string> axes() {
   std::vector<std::string> names;
-  names.reserve(std::size(axis_names));
-  for (const auto& [name, axis] : axis_names) names.emplace_back(name);
+  names.reserve(6);
+  for (int i = 0; i < 6; ++i) names.emplace_back(axis_name(static_cast<Axis>(i)));
   return names;
-}
-
-/// "+x", "-x", "x" and so on.
-std::optional<Axis> parse_axis(std::string text) {
-  if (text.size() == 1) text.insert(0, 1, '+');
-  for (const auto& [name, axis] : axis_names) {
-    if (text == name) return axis;
-  }
-  return std::nullopt;
 }
 
 /// Checked by `transform`, which takes "x" for "+x".
@@ -117,8 +100,8 @@ Result<ImportTransform> MeshArguments::transform() const {
     return make_error(ErrorCode::usage, "--scale" + suffix + " has to be a number from 1e-6 to 1e6",
                       "give metres per file unit, such as 0.001 for millimetres");
   }
-  const std::optional<Axis> up_axis = parse_axis(up);
-  const std::optional<Axis> forward_axis = parse_axis(forward);
+  const Result<Axis> up_axis = axis_from_name(up);
+  const Result<Axis> forward_axis = axis_from_name(forward);
   if (!up_axis || !forward_axis) {
     const std::string option =
         up_axis ? "--forward" + suffix + " " + forward : "--up" + suffix + " " + up;

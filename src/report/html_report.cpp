@@ -174,8 +174,9 @@ private:
   static std::string chance_cell(const CandidateResult& ranked, std::size_t body) {
     const PersonRisk* const risk = risk_of(ranked, body);
     if (risk == nullptr) return "<td>not hit</td>";
-    return fmt::format("<td><span class='chance' style='--share:{:.1f}%'></span>{}</td>",
-                       100.0 * risk->probability, detail::chance_words(risk->probability));
+    return fmt::format("<td><span class='chance' style='--share:{:.1f}%'></span>{}{}</td>",
+                       100.0 * risk->probability, detail::chance_words(risk->probability),
+                       risk->persons == 1.0 ? "" : " each");
   }
 
   /// The winner's scene as a picture, for print and for browsers without WebGL.

@@ -22,19 +22,20 @@ double damaged_area_m2(const Scenario& scenario, View<const Model> models,
   return ranked.ego.area_m2 + summary_of_others(scenario, models, ranked).area_m2;
 }
 
-// Where another measure would see the two the other way round, a reader should know.
+// Where another measure would see the two the other way round, and its figures differ as they are
+// written, a reader should know.
 std::string other_view(const Scenario& scenario, View<const Model> models, const RankResult& result,
                        const CandidateResult& first, const CandidateResult& second) {
   if (first.contacts.empty() || second.contacts.empty()) return {};
   const double first_speed = first.contacts.front().closing_speed_mps;
   const double second_speed = second.contacts.front().closing_speed_mps;
-  if (first_speed > second_speed) {
+  if (first_speed > second_speed + 0.1) {
     return fmt::format(" Its closing speed is the higher one, though: {:.1f} m/s against {:.1f}.",
                        first_speed, second_speed);
   }
   const double first_m2 = damaged_area_m2(scenario, models, first);
   const double second_m2 = damaged_area_m2(scenario, models, second);
-  if (result.measure != Measure::area && first_m2 > second_m2) {
+  if (result.measure != Measure::area && first_m2 > second_m2 + 0.01) {
     return fmt::format(
         " By damaged area{} it would be the other way round: {:.2f} m² against {:.2f}.",
         first.futures.size() > 1 || second.futures.size() > 1 ? " in the likeliest future" : "",
