@@ -28,11 +28,10 @@ build() {
   "$1" "${objects[@]}" -lhwy -o "$work/$name"
 }
 
-# -O3 by itself is what all other tests run.
-builds=("g++ -O0" "g++ -O3 -march=x86-64-v3")
+builds=("g++ -O0" "g++ -O3" "g++ -O3 -march=x86-64-v3")
 clang=$(command -v clang++-14 || command -v clang++ || true)
 if [ -n "$clang" ]; then
-  builds+=("$clang -O1" "$clang -O3 -march=x86-64-v3")
+  builds+=("$clang -O3" "$clang -O3 -march=x86-64-v3")
 else
   echo "clang++ is not here: its builds are left out"
 fi
