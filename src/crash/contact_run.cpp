@@ -334,6 +334,7 @@ void ContactRun::compute_forces(double step_s) {
   PassSettings settings;
   settings.step_s = step_s_;
   settings.pass_interval_s = pass_interval_s_;
+  settings.overlapping = options_.overlapping;
   for (std::size_t k = 0; k < pair_count_; ++k) {
     compute_pair_forces(state_->pairs[pairs_[k]], k, settings);
   }

@@ -25,6 +25,10 @@ namespace crashrank::detail::HWY_NAMESPACE {
 /// Advance of a piece that never presses: so low that no step changes it.
 inline constexpr float never_presses = -1e9F;
 
+/// How far back along its normal a piece that only touches now was outside the other body or passed
+/// over it, m: a piece of an outline and two cells, by which heights may count too early, and 0.05.
+inline constexpr float back_m = 0.15F;
+
 /// Lengths along the other body's x and y axes, as lengths along the normals of pieces that face
 /// its ends or its flanks.
 HWY_INLINE F8 along_normal(F8 along_x, F8 along_y, F8 nx, F8 ny) {
@@ -47,9 +51,26 @@ HWY_INLINE F8 faced_depth(const Depths& d, const BandBounds& bounds, F8 x, F8 y,
   return along_normal(end, side, nx, ny);
 }
 
+/// Height that eight pieces and the pressed body have in common, m; 0 or less where they pass over
+/// each other. The heights of a piece are those at the surface and, the deeper it is, behind it.
+HWY_INLINE F8 common_height(const PressQuery& q, const PieceRows& rows, std::size_t first,
+                            std::size_t band, const Depths& d) {
+  const Edges there = heights_at(q.pressed->vehicle->silhouettes, band, d);
+  const F8 behind =
+      minimum(all(1.0F), positive(d.least()) * all(static_cast<float>(1.0 / profile_depth_m)));
+  const auto height_of = [&](const std::array<float, block_pieces>& at_edge,
+                             const std::array<float, block_pieces>& at_depth) {
+    const F8 edge = load(at_edge.data() + first);
+    return edge + behind * (load(at_depth.data() + first) - edge) + all(q.rise_m);
+  };
+  return minimum(height_of(rows.edge_high_m, rows.behind_high_m), there.greatest) -
+         maximum(height_of(rows.edge_low_m, rows.behind_low_m), there.least);
+}
+
 /// Starts to track pieces of a block, a bit for each in `which`. Pieces that lie too deep inside
-/// the other body never press. After an earlier contact of the two bodies, pieces press only beyond
-/// the depth that they have crushed: their path inside, along the normal.
+/// the other body never press, unless a little earlier they were outside or passed over it. After
+/// an earlier contact of the two bodies, pieces press only beyond the depth that they have crushed:
+/// their path inside, along the normal.
 inline void start_tracking(const PressQuery& q, const PieceBlock& block, const PieceRows& rows,
                            float allowed_m, std::uint32_t which, PieceStates& states) {
   const Silhouettes& target = q.pressed->vehicle->silhouettes;
@@ -77,7 +98,14 @@ inline void start_tracking(const PressQuery& q, const PieceBlock& block, const P
     const F8 depth = faced_depth(depths, target.bands[band], at_x, at_y, nx, ny) -
                      all(static_cast<float>(0.5 * q.settings->step_s)) * advance;
     store(crushed, begun.furthest.data() + h);
-    const F8 fresh = select(less(all(allowed_m), depths.least()), all(never_presses), all(0.0F));
+    const Depths before = depths_at(target, band, at_x - all(back_m) * nx, at_y - all(back_m) * ny);
+    const M8 was_inside = both(less(all(0.0F), before.least()),
+                               less(all(0.0F), common_height(q, rows, h, band, before)));
+    const M8 stays_inside = q.settings->overlapping
+                                ? either(at_most(before.least(), all(0.0F)), was_inside)
+                                : was_inside;
+    const M8 too_deep = both(less(all(allowed_m), depths.least()), stays_inside);
+    const F8 fresh = select(too_deep, all(never_presses), all(0.0F));
     store(select(less(all(0.0F), path), minimum(depth, crushed), fresh), begun.s.data() + h);
   }
   const std::vector<std::uint8_t>& in_joint = q.pusher->vehicle->in_joint;

@@ -151,7 +151,6 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   // Upper bound of 1/sine of the angle between the path of a piece and the surface, in the first
   // step inside.
   constexpr float max_inverse_sine = 10.0F;
-  constexpr auto profile_depth = static_cast<float>(profile_depth_m);
   const F8 zero = all(0.0F);
   const F8 one = all(1.0F);
   const F8 flank = all(flank_share);
@@ -161,17 +160,7 @@ template <bool both_yield> HWY_INLINE void ForceAccumulator::add_forces(const Pr
   F8 least = d.least();
   M8 where = both(p.where, less(zero, least));
   if (bits(where) == 0) return;
-  // Heights that both bodies take up: the piece at the surface and, the deeper it is, behind it;
-  // the pressed body there.
-  const Edges there = heights_at(target_, p.target, d);
-  const F8 behind = minimum(one, least * all(1.0F / profile_depth));
-  const auto height_of = [&](const std::array<float, block_pieces>& at_edge,
-                             const std::array<float, block_pieces>& at_depth) {
-    const F8 edge = load(at_edge.data() + p.first);
-    return edge + behind * (load(at_depth.data() + p.first) - edge) + all(q_.rise_m);
-  };
-  const F8 common = minimum(height_of(p.rows->edge_high_m, p.rows->behind_high_m), there.greatest) -
-                    maximum(height_of(p.rows->edge_low_m, p.rows->behind_low_m), there.least);
+  const F8 common = common_height(q_, *p.rows, p.first, p.target, d);
   where = both(where, less(zero, common));
   if (bits(where) == 0) return;
   lowest_band_ = {std::min(lowest_band_[0], p.target), std::min(lowest_band_[1], p.band)};

@@ -67,6 +67,7 @@ struct PassSettings {
   float interlocked = 1.0F;  ///< friction coefficient where both bodies are crushed
   double step_s = 0.001;
   double pass_interval_s = 0.001;  ///< time from the last pass to this one
+  bool overlapping = false;        ///< see ContactOptions
   /// All fixed bodies of the contact: pieces inside another of them do not press.
   View<const PressedBody* const> neighbours;
   std::size_t self = 0;  ///< index of the pressing body in `neighbours`

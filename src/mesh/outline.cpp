@@ -213,6 +213,12 @@ BandOutline::BandOutline(const BandSurface& surface, double cell_m, double toler
     : raster_(raster_over(surface, cell_m)) {
   if (raster_.columns == 0) return;
   heights_ = rasterise_heights(surface, raster_);
+  of_rows_.resize(static_cast<std::size_t>(raster_.rows));
+  of_columns_.resize(static_cast<std::size_t>(raster_.columns));
+  for (std::size_t cell = 0; cell < heights_.size(); ++cell) {
+    of_rows_[cell / of_columns_.size()].grow(heights_[cell]);
+    of_columns_[cell % of_columns_.size()].grow(heights_[cell]);
+  }
   const std::vector<Cell> cells = divide_cells(surface, raster_, heights_, sky);
   const BorderEdges border = border_edges(surface, raster_, cells);
 
@@ -295,6 +301,9 @@ BandOutline::PieceHeights BandOutline::heights(const Vector2d& from, const Vecto
       const HeightRange& here = heights_[raster_.index(column, row)];
       if (j <= edge_cells) heights.at_edge.grow(here);
       heights.behind.grow(here);
+      if (j != 0) continue;
+      heights.along_x.grow(of_rows_[static_cast<std::size_t>(row)]);
+      heights.along_y.grow(of_columns_[static_cast<std::size_t>(column)]);
     }
   }
   return heights;

@@ -29,10 +29,13 @@ public:
 
   /// Outer loops, then inner ones.
   const std::vector<OutlineLoop>& loops() const noexcept { return loops_; }
-  /// Heights of the surface over the ground at a piece of a loop, and up to `behind_m` behind it.
+  /// Heights of the surface over the ground at a piece of a loop, up to `behind_m` behind it, and
+  /// on all lines along x and along y through it.
   struct PieceHeights {
     HeightRange at_edge;
     HeightRange behind;
+    HeightRange along_x;
+    HeightRange along_y;
   };
   PieceHeights heights(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                        double behind_m) const;
@@ -40,6 +43,8 @@ public:
 private:
   Raster raster_;
   std::vector<HeightRange> heights_;
+  std::vector<HeightRange> of_rows_;
+  std::vector<HeightRange> of_columns_;
   std::vector<OutlineLoop> loops_;
 };
 

@@ -111,10 +111,14 @@ void add_pieces(const detail::BandOutline& outline, const detail::OutlineLoop& l
                          static_cast<float>(normal.y()),
                          static_cast<float>(length / count),
                          {},
+                         {},
+                         {},
                          {}};
       const auto heights = outline.heights(middle - half, middle + half, profile_depth_m);
       piece.behind = heights.behind.empty() ? all : heights.behind;
       piece.at_edge = heights.at_edge.empty() ? piece.behind : heights.at_edge;
+      piece.along_x = heights.along_x.empty() ? piece.behind : heights.along_x;
+      piece.along_y = heights.along_y.empty() ? piece.behind : heights.along_y;
       pieces.push_back(piece);
     }
   }

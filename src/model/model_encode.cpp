@@ -170,7 +170,8 @@ Status check_profile(const Profile& profile, const TriangleMesh& mesh) {
     if (!(piece.length_m > 0.0F && static_cast<double>(piece.length_m) <= max_piece_m)) {
       return refuse("its length is not above 0 and at most 1 km");
     }
-    if (!lies_in_band(piece.at_edge, band) || !lies_in_band(piece.behind, band)) {
+    if (!lies_in_band(piece.at_edge, band) || !lies_in_band(piece.behind, band) ||
+        !lies_in_band(piece.along_x, band) || !lies_in_band(piece.along_y, band)) {
       return refuse("its heights do not lie within its band");
     }
   }

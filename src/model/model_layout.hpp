@@ -77,7 +77,7 @@ struct StoredPart {
 
 static_assert(sizeof(StoredPart) == 8 && sizeof(Eigen::Vector3f) == 12 && sizeof(Node) == 32);
 static_assert(sizeof(Triangle) == 36 && sizeof(WideLanes) == 8);
-static_assert(sizeof(std::array<std::uint32_t, 3>) == 12 && sizeof(OutlinePiece) == 36);
+static_assert(sizeof(std::array<std::uint32_t, 3>) == 12 && sizeof(OutlinePiece) == 52);
 
 enum Section : std::size_t {
   section_parts,

@@ -124,8 +124,10 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
   }
   sort_actors(first.time_of_impact_s);
   while (actors_[partner] != first.actor) ++partner;
+  SceneOptions options = options_of(scene, sample);
+  options.contact.overlapping = !(first.time_of_impact_s > 0.0);
   run_.begin({bodies_.data(), bodies_.size()}, 0, partner, first.time_of_impact_s, first.point_m,
-             options_of(scene, sample));
+             options);
 }
 
 /// Sorts the bodies by their properties and states, so that the result does not depend on the order

@@ -1,6 +1,7 @@
 #include "report/body_doubts.hpp"
 
 #include "crashrank/collide/wide_collide.hpp"
+#include "crashrank/internal/interop/pi.hpp"
 #include "crashrank/internal/motion/containment.hpp"
 #include "crashrank/scenario/candidate.hpp"
 #include "report/orientation.hpp"
@@ -172,8 +173,10 @@ struct Standing {
   bool on_wheels;  ///< poles and persons stand upright on a slope
 };
 
+/// Steeper than any road.
+constexpr double least_upright = 0.8;
+
 Standing standing(const Placed& body) {
-  constexpr double least_upright = 0.8;
   const Eigen::Vector3d up = body.pose.rotation.col(2);
   if (!(up.z() >= least_upright)) {
     return {{body.pose.translation.x(), body.pose.translation.y(), body.min_m.z()},
@@ -249,6 +252,29 @@ void doubt_heights(const Scenario& scenario, const RankResult& result, const Pla
   }
 }
 
+/// Crashes read the outlines of a mesh that stands, whatever roll and pitch of the pose.
+void doubt_lying(const Scenario& scenario, const Placed& ego, const std::vector<Placed>& actors,
+                 std::vector<std::string>& doubts) {
+  Counted lying;
+  const auto doubt = [&](const Placed& body, const std::string& name, std::size_t model) {
+    const double up = body.pose.rotation(2, 2);
+    if (up >= least_upright) return;
+    constexpr double deg_per_rad = 180.0 / pi;
+    lying.add(fmt::format("'{}' by {:.0f} degrees (models.{})", name,
+                          deg_per_rad * std::acos(std::clamp(up, -1.0, 1.0)),
+                          scenario.models[model].name));
+  };
+  doubt(ego, "ego", scenario.ego.model);
+  for (std::size_t i = 0; i < actors.size(); ++i) {
+    doubt(actors[i], scenario.actors[i].name, scenario.actors[i].model);
+  }
+  if (lying.count == 0) return;
+  doubts.push_back(fmt::format(
+      "{} turned out of the upright by the pose, but crashes as if it stood: {}; give the model "
+      "the axes up and forward that lay its mesh, and a level pose",
+      lying.many("body is", "bodies are"), lying.examples()));
+}
+
 void doubt_overlaps(const Scenario& scenario, const std::vector<Placed>& actors,
                     std::vector<std::string>& doubts) {
   Counted overlaps;
@@ -299,6 +325,7 @@ void doubt_bodies(const Scenario& scenario, View<const Model> models, const Rank
     const Pose& pose = actor.poses.empty() ? actor.pose : actor.poses.front().pose;
     actors.push_back(place(models[actor.model], scenario.models[actor.model].kind, pose));
   }
+  doubt_lying(scenario, ego, actors, doubts);
   doubt_heights(scenario, result, ego, actors, doubts);
   doubt_overlaps(scenario, actors, doubts);
 }

@@ -124,14 +124,14 @@ bool is_unforced(const RankResult& result, const Contact& contact, bool with_out
   return contact.contact_without_force && has_outline(result, contact.actor) == with_outline;
 }
 
-/// The same in any future, of which the first contact stands for all.
+/// The same in any future.
 bool is_unforced(const RankResult& result, const CandidateResult& ranked, bool with_outline) {
   return std::any_of(
              ranked.contacts.begin(), ranked.contacts.end(),
              [&](const Contact& each) { return is_unforced(result, each, with_outline); }) ||
          std::any_of(ranked.futures.begin(), ranked.futures.end(), [&](const FutureOutcome& each) {
-           return each.contact_without_force && !each.is_likeliest &&
-                  has_outline(result, each.actor) == with_outline;
+           return each.contact_without_force &&
+                  has_outline(result, each.unforced_actor) == with_outline;
          });
 }
 
@@ -143,10 +143,18 @@ std::string unforced_words(const Scenario& scenario, const RankResult& result,
   const auto contact =
       std::find_if(ranked.contacts.begin(), ranked.contacts.end(),
                    [&](const Contact& each) { return is_unforced(result, each, true); });
-  text += contact == ranked.contacts.end()
-              ? std::string("in a future that is not the likeliest")
-              : fmt::format("with '{}' at {:.1f} m/s", scenario.actors[contact->actor].name,
-                            contact->closing_speed_mps);
+  if (contact != ranked.contacts.end()) {
+    text += fmt::format("with '{}' at {:.1f} m/s", scenario.actors[contact->actor].name,
+                        contact->closing_speed_mps);
+  } else {
+    const auto future =
+        std::find_if(ranked.futures.begin(), ranked.futures.end(), [&](const FutureOutcome& each) {
+          return each.contact_without_force && has_outline(result, each.unforced_actor);
+        });
+    text += fmt::format(
+        "with '{}' {}", scenario.actors[future->unforced_actor].name,
+        future->is_likeliest ? "after the first contact" : "in a future that is not the likeliest");
+  }
   return text + fmt::format(" (up to {:.2g} {})", ranked.score_interval.highest,
                             measure_unit(result.measure));
 }

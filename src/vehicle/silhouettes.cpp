@@ -151,8 +151,9 @@ std::uint32_t sample_heights(const Profile& profile, std::size_t band, bool over
   std::vector<HeightRange> heights(over.count);
   for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; ++i) {
     const OutlinePiece& piece = profile.pieces[i];
-    visit_nodes(piece, over_x, over, [&](std::size_t k, float) { heights[k].grow(piece.behind); });
-    s.all_heights.grow(piece.behind);
+    const HeightRange& on_line = over_x ? piece.along_y : piece.along_x;
+    visit_nodes(piece, over_x, over, [&](std::size_t k, float) { heights[k].grow(on_line); });
+    s.all_heights.grow(on_line);
   }
   repeat_edges(heights, [](const HeightRange& range) { return !range.empty(); });
   const auto goes_on = [&](std::size_t next) {

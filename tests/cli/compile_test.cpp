@@ -137,7 +137,7 @@ TEST(Compile, InspectTellsWhatAModelFileHolds) {
   EXPECT_EQ(model.at("up"), "+y");
   EXPECT_EQ(model.at("forward"), "-z");
   const Outcome text = place.crashrank({"inspect", "mm.crm"});
-  EXPECT_NE(text.out.find("model file version 3"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("model file version 4"), std::string::npos) << text.out;
   EXPECT_FALSE(
       place.crashrank({"inspect", "a.obj", "--json"}).json()["files"][0].contains("model"));
 

@@ -82,6 +82,49 @@ TriangleMesh random_body(Random& random, bool fixed) {
   return mesh;
 }
 
+/// When two meshes touch, and when the law begins to press; below 0 where it never does.
+struct Meeting {
+  Impact impact;
+  double force_s = -1.0;
+};
+
+/// A moving body on its way of `until_m` towards a fixed one. The scene begins at time 0, or as in
+/// a ranking where the meshes touch.
+Meeting meeting_of(const TriangleMesh& mesh_a, const VehicleFacts& moving, const Pose& from,
+                   double speed_mps, const TriangleMesh& mesh_b, const Pose& at, double until_m,
+                   bool from_contact = false) {
+  VehicleFacts standing;
+  standing.kind = BodyKind::building;
+  const Vehicle a = test::vehicle_from(mesh_a, moving);
+  const Vehicle b = test::vehicle_from(mesh_b, standing);
+  test::SceneSetup setup;
+  setup.add(a, from, speed_mps);
+  setup.add(b, at, 0.0);
+  const Result<Model> model_a = make_model(mesh_a);
+  const Result<Model> model_b = make_model(mesh_b);
+  Meeting meeting;
+  if (!model_a || !model_b) {
+    ADD_FAILURE() << "no model";
+    return meeting;
+  }
+  ImpactWorkspace workspace;
+  const double until_s = until_m / speed_mps;
+  meeting.impact = time_of_impact(model_a->tree, setup.plans[0], model_b->tree, setup.plans[1], 0.0,
+                                  until_s, workspace);
+  detail::SceneRun run;
+  run.prepare(2, std::max(a.profile->pieces.size(), b.profile->pieces.size()), false);
+  detail::SceneOptions options = test::options_with_steps(0.03);
+  options.until_s = until_s;
+  options.longest_s = until_s;
+  options.fastest_plan_mps = speed_mps;
+  const double start_s = from_contact ? meeting.impact.time_s : 0.0;
+  run.begin(setup.make_bodies(false), 0, 1, start_s, Vector3d::Zero(), options);
+  while (meeting.force_s < 0.0 && run.advance(1)) {
+    if (run.touched(0)) meeting.force_s = run.now_s();
+  }
+  return meeting;
+}
+
 TEST(FirstForce, ComesNearTheExactTimeOfImpactAndNeverWithoutOne) {
   const test::Campaign campaign = test::scene_campaign(4001, 300);
   Random random(campaign.seed);
@@ -95,38 +138,14 @@ TEST(FirstForce, ComesNearTheExactTimeOfImpactAndNeverWithoutOne) {
     const TriangleMesh mesh_b = random_body(random, true);
     VehicleFacts moving;
     moving.mass_kg = 1500.0;
-    VehicleFacts standing;
-    standing.kind = BodyKind::building;
-    const Vehicle a = test::vehicle_from(mesh_a, moving);
-    const Vehicle b = test::vehicle_from(mesh_b, standing);
     const double speed_mps = random.uniform(2.0, 20.0);
     const double way_m = 14.0;
     const Pose from = flat_pose(-way_m, random.uniform(-3.0, 3.0), random.uniform(-0.15, 0.15));
     const Pose at = flat_pose(0.0, 0.0, random.uniform(-3.1, 3.1));
-    test::SceneSetup setup;
-    setup.add(a, from, speed_mps);
-    setup.add(b, at, 0.0);
-
-    const Result<Model> model_a = make_model(mesh_a);
-    const Result<Model> model_b = make_model(mesh_b);
-    ASSERT_TRUE(model_a && model_b);
-    ImpactWorkspace workspace;
-    const double until_s = 2.0 * way_m / speed_mps;
-    const Impact impact = time_of_impact(model_a->tree, setup.plans[0], model_b->tree,
-                                         setup.plans[1], 0.0, until_s, workspace);
+    const Meeting meeting = meeting_of(mesh_a, moving, from, speed_mps, mesh_b, at, 2.0 * way_m);
+    const Impact& impact = meeting.impact;
+    const double force_s = meeting.force_s;
     if (impact.state != ImpactState::contact && impact.state != ImpactState::none) continue;
-
-    detail::SceneRun run;
-    run.prepare(2, std::max(a.profile->pieces.size(), b.profile->pieces.size()), false);
-    detail::SceneOptions options = test::options_with_steps(0.03);
-    options.until_s = until_s;
-    options.longest_s = until_s;
-    options.fastest_plan_mps = speed_mps;
-    run.begin(setup.make_bodies(false), 0, 1, 0.0, Vector3d::Zero(), options);
-    double force_s = -1.0;
-    while (force_s < 0.0 && run.advance(1)) {
-      if (run.touched(0)) force_s = run.now_s();
-    }
     const bool contact = impact.state == ImpactState::contact;
     (contact ? meet : apart) += 1;
     if (!contact) {
@@ -162,6 +181,36 @@ TEST(FirstForce, ComesNearTheExactTimeOfImpactAndNeverWithoutOne) {
   EXPECT_GE(share_within(0.1), 0.97);
   EXPECT_LE(static_cast<double>(missing), 0.01 * static_cast<double>(meet) + 1.0);
   EXPECT_LE(static_cast<double>(invented), 0.01 * static_cast<double>(apart) + 1.0);
+}
+
+// A body whose upper parts stand back behind a lower end within one band of heights: a cabin behind
+// a bonnet, a box behind a coupling.
+TEST(FirstForce, ABeamAboveTheBonnetPressesOnWhatStandsBehindIt) {
+  const test::Campaign campaign = test::scene_campaign(4002, 120);
+  Random random(campaign.seed);
+  for (std::uint64_t n = 0; n < campaign.count; ++n) {
+    const double bonnet_m = random.uniform(0.62, 1.1);
+    const double step_m = random.uniform(0.5, 1.6);
+    TriangleMesh mesh;
+    append_box(mesh, {4.4, 1.8, bonnet_m - 0.2}, 0.0, 0.0, 0.1 + 0.5 * bonnet_m, 0.0);
+    append_box(mesh, {2.8 - step_m, 1.5, 1.5 - bonnet_m}, 0.8 - 0.5 * step_m, 0.0,
+               0.5 * (1.5 + bonnet_m), 0.0);
+    const double low_m = random.uniform(bonnet_m + 0.01, 1.4);
+    const double high_m = low_m + random.uniform(0.02, 0.08);
+    TriangleMesh beam;
+    append_box(beam, {0.05, 6.0, high_m - low_m}, 0.0, 0.0, 0.5 * (low_m + high_m), 0.0);
+    VehicleFacts car;
+    car.mass_kg = 1500.0;
+    const double speed_mps = random.uniform(3.0, 20.0);
+    const Pose from = flat_pose(-8.0, 0.0, random.uniform(-0.1, 0.1));
+    for (const bool from_contact : {false, true}) {
+      const Meeting meeting = meeting_of(mesh, car, from, speed_mps, beam, flat_pose(0.0, 0.0, 0.0),
+                                         14.0, from_contact);
+      ASSERT_EQ(meeting.impact.state, ImpactState::contact);
+      EXPECT_NEAR(meeting.force_s * speed_mps, meeting.impact.time_s * speed_mps, 0.1)
+          << "beam from " << low_m << " to " << high_m << " m, bonnet " << bonnet_m << " m";
+    }
+  }
 }
 
 }  // namespace

@@ -410,7 +410,7 @@ TEST(Aftermath, LeadingEdgeHeightIsThatOfTheMesh) {
         scene.add_model("vehicle", box_mesh({2.0F, 0.9F, half_height}, 8, {0, 0, half_height}),
                         BodyKind::car, 1500.0);
     const std::size_t person = scene.add_model(
-        "person", box_mesh({0.2F, 0.3F, 0.85F}, 2, {0, 0, 0.85F}), BodyKind::pedestrian);
+        "person", box_mesh({0.2F, 0.3F, 0.85F}, 2, {0, 0, 0.85F}), BodyKind::pedestrian, 75.0);
     scene.scenario.ego.model = vehicle;
     scene.scenario.ego.speed_mps = 11.0;
     scene.scenario.harm.model = RiskModel::malliaris_monfort;

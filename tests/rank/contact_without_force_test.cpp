@@ -76,6 +76,23 @@ TEST(ContactWithoutForce, ALaterCrashCountsAsWithoutTheBodyThatHasNoOutline) {
   EXPECT_LT(free.score_interval.highest, over_kerb.score_interval.highest);
 }
 
+TEST(ContactWithoutForce, AnEarlierClipHidesNone) {
+  Scene scene = car_and_kerb(10.0, 100.0);
+  const std::size_t cone =
+      scene.add_model("cone", box_mesh({0.1F, 0.1F, 0.3F}, 1, {0, 0, 0.3F}), BodyKind::pole, 1.0);
+  scene.add_actor("cone", cone, 7.0, 0.5);
+  const CandidateResult clips = of(scene.ranked(), "on");
+  ASSERT_EQ(clips.contacts.front().actor, 2U);
+  EXPECT_FALSE(clips.contacts.front().contact_without_force);
+  EXPECT_TRUE(clips.futures.front().contact_without_force);
+  EXPECT_EQ(clips.futures.front().unforced_actor, 0U);
+  EXPECT_NEAR(clips.score_interval.highest, 1.0, 1e-6);
+  // What throws the ego off its plan leaves open what comes after.
+  scene.scenario.models[cone].mass_kg = 800.0;
+  const CandidateResult hits = of(scene.ranked(), "on");
+  EXPECT_FALSE(hits.futures.front().contact_without_force);
+}
+
 TEST(ContactWithoutForce, SlowContactsAreNone) {
   for (const double speed_mps : {0.45, 0.55}) {
     Scene scene = car_and_kerb(speed_mps, 100.0);

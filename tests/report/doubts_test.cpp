@@ -305,6 +305,18 @@ TEST(Doubts, BodiesThatFloatAreTold) {
   told.expect_one("the ego floats: it stands 1.3 m or more above the other");
 }
 
+TEST(Doubts, BodiesThatTheirPoseLaysDownAreTold) {
+  Sound told;
+  told.set_car(box_body(4.5, 1.8, 1.4), 1500.0, {30.0, 0.0, 0.9});
+  Pose& pose = told.scenario.actors[1].pose;
+  pose.rotation = pose_from_angles({0, 0, 0}, 0.3, 0.0, 0.6).rotation;
+  EXPECT_TRUE(told.doubts().empty()) << testing::PrintToString(told.doubts());
+  pose.rotation = pose_from_angles({0, 0, 0}, 0.3, 0.0, 1.5707963267948966).rotation;
+  told.expect_one(
+      "1 body is turned out of the upright by the pose, but crashes as if it stood: 'second' by 90 "
+      "degrees (models.other car); give the model the axes up and forward that lay its mesh");
+}
+
 TEST(Doubts, BodiesOnOneSlopeDoNotFloat) {
   constexpr double rad_per_deg = 0.017453292519943295;
   for (const double pitch : {-8.0 * rad_per_deg, 8.0 * rad_per_deg}) {
@@ -362,8 +374,8 @@ TEST(Doubts, ContactsWithoutForceInAnotherFutureCount) {
   told.result.ranking[0].score_interval.highest = 1.5;
   ASSERT_EQ(told.doubts().size(), 2U);
   EXPECT_EQ(told.doubts()[0],
-            "the first place rests on a contact without force: 'miss', in place 1, in a future "
-            "that is not the likeliest (up to 1.5 persons)");
+            "the first place rests on a contact without force: 'miss', in place 1, with 'wall' "
+            "in a future that is not the likeliest (up to 1.5 persons)");
 }
 
 TEST(Doubts, BodiesWithoutOutlineAreNamedAndMayHangOverTheRoad) {

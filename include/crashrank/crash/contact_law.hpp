@@ -54,6 +54,9 @@ struct ContactOptions {
   double shortest_s = 0.0005;  ///< least step, s
   double longest_s = 0.008;    ///< greatest step, s
   double speed_change = 0.05;  ///< maximum change of the closing speed per step, as a share of it
+  /// The bodies already overlap where the contact begins: what lies over 0.05 m inside then exerts
+  /// no force. Bodies that only touch may overlap in their outlines, as a windscreen leans.
+  bool overlapping = false;
 };
 
 /// Result of a contact for one body. World axes unless stated otherwise.

@@ -54,6 +54,8 @@ struct OutlinePiece {
   float length_m = 0.0F;  ///< > 0, see `longest_piece_m`
   HeightRange at_edge;    ///< heights of the surface at the piece, within its band
   HeightRange behind;     ///< and up to `profile_depth_m` behind it
+  HeightRange along_x;    ///< of all that the body has in the band on lines along x through it
+  HeightRange along_y;    ///< and along y
 };
 
 /// Depth behind an outline piece for which `OutlinePiece::behind` counts, m.

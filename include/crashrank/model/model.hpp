@@ -53,7 +53,7 @@ CRASHRANK_API Status check_yaw_inertia(double yaw_inertia_kgm2, double mass_kg,
 CRASHRANK_API Status check_stated_mass(const StatedMass& stated, const Box& bounds);
 
 /// The version of model files that this library writes, and the only one that it reads.
-inline constexpr std::uint32_t model_file_version = 3;
+inline constexpr std::uint32_t model_file_version = 4;
 
 /// A body as a model file stores it: ready for queries and for ranking, with its import transform,
 /// what is stated of its mass and the properties of its surface. docs/model-file.md has the file

@@ -72,6 +72,7 @@ struct FutureOutcome {
   double fastest_contact_mps = 0.0;
   bool leaves_road = false;            ///< a wheel leaves the road before the first contact
   bool contact_without_force = false;  ///< of one of the ego's contacts, see Contact
+  std::size_t unforced_actor = 0;      ///< with that body, if so: index into Scenario::actors
   /// number of contacts with a force, including those between other bodies
   std::size_t contacts = 0;
 };

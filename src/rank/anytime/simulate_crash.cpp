@@ -109,7 +109,8 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   if (!going) {
     chain.effects(scratch.effects, scratch.order);
     future.score = left + scratch.score.score(q.scene, scratch.effects, nominal);
-    future.contact_without_force = lacks_force(q.scene, chain, first);
+    future.contact_without_force =
+        actor_without_force(q.scene, ego, index, chain, first, scratch.impact) != no_actor;
   }
   if (!share_score(q.scene, index, state, scratch)) {
     future = before;
