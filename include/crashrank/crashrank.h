@@ -235,6 +235,11 @@ typedef struct crashrank_body {
   double yaw_inertia_kgm2;
   double stiffness;           ///< crush strength, times the default, 0.01 to 100; 0: 1
   crashrank_surface surface;  ///< 0: by kind
+  /// Load at which the foot of a post gives way, which needs a mass; 0 both: never.
+  double breakaway_force_n;    ///< horizontal force, N; 0: the moment alone decides
+  double breakaway_moment_nm;  ///< moment about the foot, N m; 0: the force alone decides
+  double deflection_m;         ///< how far a rail without mass gives way, at most 10 m
+  double deflection_force_n;   ///< force at which it does, N; 0: of a rail by EN 1317
 } crashrank_body;
 /// Sets the known properties of the shape with that index. Errors: usage.
 CRASHRANK_API crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario,

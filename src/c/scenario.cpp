@@ -4,6 +4,7 @@
 #include "c/sized.hpp"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -108,6 +109,17 @@ crashrank_status crashrank_scenario_set_body(crashrank_scenario* scenario, size_
     }
     if (given->yaw_inertia_kgm2 != 0.0) made.yaw_inertia_kgm2 = given->yaw_inertia_kgm2;
     made.stiffness = given->stiffness != 0.0 ? given->stiffness : 1.0;
+    made.breakaway.reset();
+    if (given->breakaway_force_n != 0.0 || given->breakaway_moment_nm != 0.0) {
+      const auto or_never = [](double load) {
+        return load != 0.0 ? load : std::numeric_limits<double>::infinity();
+      };
+      made.breakaway =
+          Breakaway{or_never(given->breakaway_force_n), or_never(given->breakaway_moment_nm)};
+    }
+    made.deflection_m = given->deflection_m;
+    made.deflection_force_n.reset();
+    if (given->deflection_force_n != 0.0) made.deflection_force_n = given->deflection_force_n;
     if (given->surface != 0) {
       const Result<Surface> surface = c::from_c<Surface>(given->surface, "crashrank_body.surface");
       if (!surface) return refuse(surface.error(), error);

@@ -45,7 +45,10 @@ TEST(CApi, AScenarioThatDoesNotFitIsRefusedByRank) {
   EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_USAGE);
   const double center_m[3] = {1.3, 0.0, 0.5};
   EXPECT_NE(std::strstr(error.message, "crashrank_body.surface"), nullptr) << error.message;
-  body = crashrank_body{sizeof body, center_m, 2000.0, 0.0, CRASHRANK_SURFACE_RUBBER};
+  body = sized<crashrank_body>();
+  body.center_of_mass_m = center_m;
+  body.yaw_inertia_kgm2 = 2000.0;
+  body.surface = CRASHRANK_SURFACE_RUBBER;
   EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 0, &body, &error), CRASHRANK_OK);
   EXPECT_EQ(crashrank_scenario_set_ego_occupants(scenario.get(), 0.0, &error), CRASHRANK_OK);
   EXPECT_EQ(crashrank_scenario_set_actor_occupants(scenario.get(), 0, 2.0, &error),
@@ -251,7 +254,7 @@ TEST(CApi, MotionsAreTheLibrarysWhereAskedFor) {
 /// The ego, 10 m/s, before a wall that stands still; scores by delta-v, which hangs on its
 /// mass. The other stands to the left, so that centre of mass and inertia count, too.
 double delta_v_of(double told_kg, double stored_kg, const crashrank::StatedMass& stated = {},
-                  const crashrank_body* body = nullptr) {
+                  const crashrank_body* body = nullptr, const crashrank_body* wall = nullptr) {
   crashrank::TriangleMesh box;
   for (int i = 0; i < 8; ++i) {
     box.vertices.emplace_back((i & 1) != 0 ? 2.0F : -2.0F, (i & 2) != 0 ? 0.9F : -0.9F,
@@ -275,7 +278,13 @@ double delta_v_of(double told_kg, double stored_kg, const crashrank::StatedMass&
   EXPECT_EQ(crashrank_scenario_create("mass", &made, &error), CRASHRANK_OK);
   const Scenario scenario(made);
   crashrank_scenario_add_model(scenario.get(), "ego", CRASHRANK_KIND_CAR, told_kg, &error);
-  crashrank_scenario_add_model(scenario.get(), "other", CRASHRANK_KIND_CAR, 1500.0, &error);
+  const bool stays = wall != nullptr && wall->breakaway_force_n == 0.0;
+  crashrank_scenario_add_model(scenario.get(), "other",
+                               wall != nullptr ? CRASHRANK_KIND_BUILDING : CRASHRANK_KIND_CAR,
+                               stays ? 0.0 : 1500.0, &error);
+  if (wall != nullptr) {
+    EXPECT_EQ(crashrank_scenario_set_body(scenario.get(), 1, wall, &error), CRASHRANK_OK);
+  }
   if (body != nullptr) {
     // Both shapes are of the one file.
     crashrank_scenario_set_body(scenario.get(), 0, body, &error);
@@ -334,13 +343,33 @@ TEST(CApi, TheMassThatAModelFileTellsCountsWhereTheScenarioGivesNone) {
 TEST(CApi, CentreAndInertiaOfAModelFileCountWhereTheScenarioGivesNone) {
   const crashrank::StatedMass of_file{std::nullopt, Eigen::Vector3d(0.5, 0.3, 0.6), 900.0};
   const double center_m[3] = {0.5, 0.3, 0.6};
-  const crashrank_body body{sizeof body, center_m, 900.0, 0.0, 0};
+  auto body = sized<crashrank_body>();
+  body.center_of_mass_m = center_m;
+  body.yaw_inertia_kgm2 = 900.0;
   const double stated = delta_v_of(1500.0, 0.0, of_file);
   EXPECT_EQ(stated, delta_v_of(1500.0, 0.0, {}, &body));
   const crashrank::StatedMass other{std::nullopt, Eigen::Vector3d(-0.5, 0.0, 0.6), 2000.0};
   EXPECT_EQ(stated, delta_v_of(1500.0, 0.0, other, &body));
   EXPECT_NE(stated, delta_v_of(1500.0, 0.0, other));
   EXPECT_NE(stated, delta_v_of(1500.0, 0.0));
+}
+
+TEST(CApi, WhatBreaksAwayOrGivesWayTakesMoreGentlyThanAWall) {
+  auto wall = sized<crashrank_body>();
+  const double rigid = delta_v_of(1500.0, 0.0, {}, nullptr, &wall);
+  wall.breakaway_force_n = 1e9;
+  EXPECT_NEAR(delta_v_of(1500.0, 0.0, {}, nullptr, &wall), rigid, 0.01 * rigid);
+  wall.breakaway_force_n = 1.0;
+  EXPECT_LT(delta_v_of(1500.0, 0.0, {}, nullptr, &wall), 0.7 * rigid);
+  wall.breakaway_force_n = 0.0;
+  wall.deflection_m = 3.0;
+  const double by_default = delta_v_of(1500.0, 0.0, {}, nullptr, &wall);
+  EXPECT_LT(by_default, rigid);
+  // Gives way so easily that most speed is left at the end of its way.
+  wall.deflection_force_n = 1e3;
+  const double soft = delta_v_of(1500.0, 0.0, {}, nullptr, &wall);
+  EXPECT_LT(soft, rigid);
+  EXPECT_GT(soft, by_default);
 }
 
 }  // namespace
