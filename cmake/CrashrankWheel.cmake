@@ -7,6 +7,9 @@ set(package crashrank)  # folder in the wheel
 install(TARGETS crashrank_python LIBRARY DESTINATION ${package} COMPONENT python)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/crashrank/_core.pyi DESTINATION ${package}
   COMPONENT python)
+install(FILES ${PROJECT_SOURCE_DIR}/data/benchmark/scenes.jsonl
+  ${PROJECT_SOURCE_DIR}/data/benchmark/answers.csv ${PROJECT_SOURCE_DIR}/data/benchmark/benchmark.json
+  DESTINATION ${package}/benchmark COMPONENT python)
 install(TARGETS crashrank_cli crashrank-import RUNTIME DESTINATION ${package} COMPONENT python)
 
 # Headers that are compiled in, by the name of their licence text.

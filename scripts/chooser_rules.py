@@ -93,6 +93,18 @@ def closing_speed(impact: Impact) -> float:
     return impact.closing_mps
 
 
+def closing_energy(impact: Impact) -> float:
+    """Return half the reduced mass times the square of the closing speed, J."""
+    ego, other = impact.ego.mass_kg, impact.other.mass_kg
+    reduced = ego if math.isinf(other) else ego * other / (ego + other)
+    return 0.5 * reduced * impact.closing_mps**2
+
+
+def partner_mass(impact: Impact) -> float:
+    """Return the mass of the other body, kg; infinite where nothing moves it."""
+    return impact.other.mass_kg
+
+
 def normal_speed(impact: Impact) -> float:
     """Return the closing speed along the normal of the surfaces, else the closing speed, m/s."""
     return impact.closing_mps if impact.normal_mps is None else max(impact.normal_mps, 0.0)
@@ -138,6 +150,14 @@ RULES = (
     Rule("normal speed", normal_speed, lambda x: f"{x:.1f} m/s"),
     Rule("time to collision", urgency, lambda x: f"{1 / x:.2f} s" if x > 0 else "none"),
     Rule("TUM harm", tum_harm, lambda x: f"{x:.3f}"),
+)
+
+# Rules whose choices data/benchmark stores: some of those above, and two of masses.
+BENCHMARK_RULES = (
+    Rule("closing energy", closing_energy, lambda x: f"{x / 1000:.1f} kJ"),
+    Rule("lightest partner", partner_mass, lambda x: f"{x:.0f} kg"),
+    *(rule for rule in RULES if rule.title in ("delta-v of the ego", "closing speed",
+                                               "time to collision", "TUM harm")),
 )
 
 

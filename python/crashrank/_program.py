@@ -1,4 +1,4 @@
-"""The console script ``crashrank``: the program of the wheel, and ``crashrank import``."""
+"""The console script ``crashrank``: the program of the wheel, ``import`` and ``benchmark``."""
 
 from __future__ import annotations
 
@@ -14,12 +14,16 @@ def program_path() -> Path:
 
 
 def main() -> int:
-    """Run a subcommand: `import` here, all others by the program, in place of this process."""
+    """Run a subcommand: two here, all others by the program, in place of this process."""
     words = sys.argv[1:]
     if words[:1] == ["import"]:
         from .formats._command import main as run_import
 
         return run_import(words[1:])
+    if words[:1] == ["benchmark"]:
+        from .benchmark._command import main as run_benchmark
+
+        return run_benchmark(words[1:])
     program = program_path()
     try:
         os.execv(program, ["crashrank", *words])

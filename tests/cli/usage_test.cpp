@@ -57,6 +57,14 @@ TEST(Usage, ImportNamesThePackageThatHasTheReaders) {
   EXPECT_NE(readers.err.find("python -m crashrank import"), std::string::npos) << readers.err;
 }
 
+TEST(Usage, BenchmarkNamesThePackage) {
+  const Workplace place;
+  const Outcome benchmark = place.crashrank({"benchmark", "--scenes", "3"});
+  EXPECT_EQ(benchmark.code, 2);
+  EXPECT_NE(benchmark.err.find("python -m crashrank benchmark"), std::string::npos)
+      << benchmark.err;
+}
+
 TEST(Usage, HelpShowsRangesDefaultsAndKnownWords) {
   const Workplace place;
   const std::string sweep = place.crashrank({"sweep", "--help"}).out;

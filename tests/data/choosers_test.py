@@ -63,6 +63,17 @@ class Rules(unittest.TestCase):
         self.assertAlmostEqual(rules.worse_delta_v(impact(PERSON, 10.0)), 12000 / 1275)
         self.assertAlmostEqual(rules.worse_delta_v(impact(EMPTY, 10.0)), 2.5)
 
+    def test_rules_of_masses(self) -> None:
+        # 1200 and 1800 kg: a reduced mass of 720 kg; a pole: the whole 1200 kg.
+        self.assertAlmostEqual(rules.closing_energy(impact(SALOON, 10.0)), 36000.0)
+        self.assertAlmostEqual(rules.closing_energy(impact(POLE, 10.0)), 60000.0)
+        light = candidate("light", 1, impact(PERSON, 9.0))
+        heavy = candidate("heavy", 0, impact(SALOON, 1.0))
+        fixed = candidate("fixed", 2, impact(POLE, 1.0, probability=0.5))
+        partner = next(r for r in rules.BENCHMARK_RULES if r.title == "lightest partner")
+        self.assertEqual(names(rules.choose(partner, [fixed, heavy, light])), ["light"])
+        self.assertEqual(names(rules.choose(partner, [fixed])), ["fixed"])
+
     def test_tum_curves_at_known_points(self) -> None:
         self.assertAlmostEqual(rules.logistic(rules.LR1S, 0.0), 0.0100408690, places=9)
         self.assertAlmostEqual(rules.logistic(rules.LR1S, 4.591 / 0.185), 0.5)
