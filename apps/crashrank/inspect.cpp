@@ -6,6 +6,7 @@
 #include "options.hpp"
 #include "profile_picture.hpp"
 #include "streams.hpp"
+#include "vehicle_reading.hpp"
 
 #include "crashrank/internal/report/escape.hpp"
 #include "crashrank/internal/report/table.hpp"
@@ -94,18 +95,31 @@ std::string to_text(const Compiled& compiled) {
   return text;
 }
 
+/// How a mesh will be used as a body: as the options say, or as guessed where none are given and it
+/// seems turned or out of scale.
+struct Use {
+  BodyKind kind = BodyKind::car;
+  detail::MeshReading reading;
+  std::string hint;           ///< how to read it, if it could be a vehicle and is not read so
+  bool guessed = false;       ///< `mesh` is not the one that was read, but that of the hint
+  bool vehicle = false;       ///< of a vehicle's kind, size and axes
+  bool moved = false;         ///< the proposed origin differs from that of the options
+  ImportTransform transform;  ///< from the file, the proposed origin included
+  SeenAxles axles;            ///< of a vehicle, with x before the origin is moved
+  TriangleMesh mesh;          ///< turned and moved, if guessed
+};
+
 /// What a person would do with a mesh that could be a vehicle and seems turned or out of scale;
 /// empty for others. `model_file`: its frame cannot be changed by options here.
-std::string reading_hint(const std::string& file, const ImportedMesh& imported,
+std::string reading_hint(const ImportedMesh& imported, const Use& use,
                          const ImportTransform& transform, bool model_file) {
   constexpr double longest_m = 60.0;
   const Eigen::Vector3d& extent_m = imported.quality.extent_m;
-  const detail::MeshReading reading =
-      detail::guess_reading(imported.mesh, transform, detail::is_gltf_file(file));
+  const detail::MeshReading& reading = use.reading;
   const double factor = reading.scale / transform.scale;
   const bool could_be = detail::has_wheels(imported.mesh) || extent_m.maxCoeff() > longest_m ||
                         reading.has_scale_of(transform);
-  if (!could_be || !detail::has_vehicle_size(factor * extent_m)) return {};
+  if (!could_be || !drives(use.kind) || !detail::has_vehicle_size(factor * extent_m)) return {};
   if (reading.has_axes_of(transform) && reading.has_scale_of(transform)) return {};
   return fmt::format("if this is a vehicle, {} with {}, guessed by {}{}",
                      model_file ? "compile its mesh again" : "read it", reading.options(),
@@ -113,7 +127,61 @@ std::string reading_hint(const std::string& file, const ImportedMesh& imported,
                      reading.front_known ? "" : " (or with the opposite of that --forward)");
 }
 
-Json to_json(const std::string& file, const ImportedMesh& imported, const std::string& hint) {
+Result<Use> use_of(const std::string& file, const ImportedMesh& imported,
+                   const ImportTransform& transform, bool may_guess, bool model_file) {
+  const Eigen::Vector3d& extent_m = imported.quality.extent_m;
+  Use use;
+  use.transform = transform;
+  use.reading = detail::guess_reading(imported.mesh, transform, detail::is_gltf_file(file));
+  use.kind =
+      guess_kind(std::filesystem::path(file).stem().string(),
+                 use.reading.scale / transform.scale * extent_m, detail::has_wheels(imported.mesh));
+  use.hint = reading_hint(imported, use, transform, model_file);
+  use.guessed = may_guess && !use.hint.empty();
+  use.vehicle =
+      use.guessed || (use.hint.empty() && drives(use.kind) && detail::has_vehicle_size(extent_m));
+  if (use.guessed) {
+    use.mesh = imported.mesh;
+    Result<ImportTransform> guess = guess_transform(use.mesh, use.kind, use.reading, use.axles);
+    if (!guess) return guess.error();
+    use.transform = *guess;
+    const Eigen::Vector3f origin = guess->origin_m.cast<float>();
+    for (Eigen::Vector3f& vertex : use.mesh.vertices) vertex -= origin;
+  } else if (use.vehicle) {
+    use.axles = find_axles(imported.mesh, use.kind);
+    use.transform.origin_m += guess_origin(imported.mesh, use.axles);
+  }
+  use.moved = use.transform.origin_m != transform.origin_m;
+  return use;
+}
+
+Json to_json(const Use& use) {
+  if (!use.vehicle) return nullptr;
+  const Eigen::Vector3d& origin = use.transform.origin_m;
+  return {{"kind", body_kind_name(use.kind)},
+          {"guessed", use.guessed},
+          {"scale", use.transform.scale},
+          {"up", axis_name(use.transform.up)},
+          {"forward", axis_name(use.transform.forward)},
+          {"front_known", use.reading.front_known},
+          {"origin_m", {origin.x(), origin.y(), origin.z()}},
+          {"rear_axle_x_m", use.axles.rear_x_m},
+          {"wheelbase_m", use.axles.wheelbase_m},
+          {"axles_seen", use.axles.by_wheels}};
+}
+
+std::string to_text(const Use& use) {
+  if (!use.vehicle) return {};
+  const Eigen::Vector3d& origin = use.transform.origin_m;
+  return fmt::format("  rear axle{} at x = {:.3g} m, wheelbase {:.3g} m, {}; {}\n",
+                     use.guessed ? ", so read," : "", use.axles.rear_x_m, use.axles.wheelbase_m,
+                     use.axles.by_wheels ? "as its wheels show" : "where it usually is",
+                     use.moved ? fmt::format("--origin {:g},{:g},{:g} puts the origin below it",
+                                             origin.x(), origin.y(), origin.z())
+                               : "the origin is near it");
+}
+
+Json to_json(const std::string& file, const ImportedMesh& imported, const Use& use) {
   const TriangleMesh& mesh = imported.mesh;
   const MeshQuality& quality = imported.quality;
   Json parts = Json::array();
@@ -129,7 +197,8 @@ Json to_json(const std::string& file, const ImportedMesh& imported, const std::s
           {"extent_m", {extent.x(), extent.y(), extent.z()}},
           {"min_m", {bounds.min.x(), bounds.min.y(), bounds.min.z()}},
           {"max_m", {bounds.max.x(), bounds.max.y(), bounds.max.z()}},
-          {"orientation_hint", hint.empty() ? Json(nullptr) : Json(hint)},
+          {"orientation_hint", use.hint.empty() ? Json(nullptr) : Json(use.hint)},
+          {"vehicle", to_json(use)},
           {"area_m2", quality.area_m2},
           {"degenerate_triangles", quality.degenerate_triangles},
           {"duplicate_triangles", quality.duplicate_triangles},
@@ -139,7 +208,7 @@ Json to_json(const std::string& file, const ImportedMesh& imported, const std::s
           {"warnings", imported.warnings}};
 }
 
-std::string to_text(const std::string& file, const ImportedMesh& imported, const std::string& hint,
+std::string to_text(const std::string& file, const ImportedMesh& imported, const Use& use,
                     bool colours) {
   const TriangleMesh& mesh = imported.mesh;
   const MeshQuality& quality = imported.quality;
@@ -152,7 +221,8 @@ std::string to_text(const std::string& file, const ImportedMesh& imported, const
   text += fmt::format("  x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} m\n",
                       bounds.min.x(), bounds.max.x(), bounds.min.y(), bounds.max.y(),
                       bounds.min.z(), bounds.max.z());
-  if (!hint.empty()) text += "  hint: " + hint + "\n";
+  if (!use.hint.empty()) text += "  hint: " + use.hint + "\n";
+  text += to_text(use);
   text += fmt::format("  {} degenerate, {} duplicate, {} dropped triangles\n",
                       quality.degenerate_triangles, quality.duplicate_triangles,
                       imported.dropped_triangles);
@@ -201,18 +271,17 @@ Status write_picture(const std::string& path, const OutputKind& kind, const std:
   return out->close();
 }
 
-/// Three views of the mesh, with the rear axle of what has a vehicle's size, does not seem `turned`
-/// and shows its wheels.
-Status draw_picture_of(const ImportedMesh& imported, std::shared_ptr<const Profile> profile,
-                       bool turned, const std::string& path) {
+/// Three views of the mesh as it will be used, with the rear axle of vehicles that show wheels.
+Status draw_picture_of(const ImportedMesh& imported, const Use& use, const ImportTransform* given,
+                       const std::string& path) {
   ThreeViewOptions options;
-  if (profile && !turned && detail::has_vehicle_size(imported.quality.extent_m)) {
-    VehicleFacts facts;
-    facts.kind = BodyKind::truck;  // whose axles are never guessed
-    const Result<Vehicle> vehicle = describe_vehicle(imported.mesh, facts, std::move(profile));
-    if (vehicle && vehicle->wheelbase_m > 0.0) options.rear_axle_x_m = vehicle->rear_axle_x_m;
+  options.caption = use.guessed ? "as guessed: " + options_text(use.transform) : "as read";
+  if (given != nullptr) options.caption = "as given: " + options_text(*given);
+  if (use.guessed && !use.reading.front_known) options.caption += ", front not known";
+  if (use.axles.by_wheels) {
+    options.rear_axle_x_m = use.axles.rear_x_m - (use.guessed ? use.transform.origin_m.x() : 0.0);
   }
-  const Result<Image> image = draw_three_views(imported.mesh, options);
+  const Result<Image> image = draw_three_views(use.guessed ? use.mesh : imported.mesh, options);
   if (!image) return image.error();
   const Result<std::string> bytes = png(*image);
   return bytes ? write_picture(path, png_picture, *bytes) : Status(bytes.error());
@@ -264,30 +333,36 @@ int run(const InspectArguments& options) {
       if (failed == exit_usage) return failed;
       continue;
     }
+    const ImportTransform transform =
+        compiled ? compiled->stored.transform : *options.mesh.transform();
+    const bool given = !compiled && options.mesh.given();
+    const Result<Use> use =
+        use_of(file, *imported, transform, !compiled && !given, compiled.has_value());
+    if (!use) return fail(use.error());
     const auto profile = profile_of(file, imported->mesh, compiled);
     if (!options.profile.empty()) {
-      if (!profile) return fail(profile.error());
+      const auto drawn_profile = use->guessed ? profile_of(file, use->mesh, compiled) : profile;
+      if (!drawn_profile) return fail(drawn_profile.error());
       const std::string name = std::filesystem::path(file).filename().string();
       const Status drawn =
-          write_picture(options.profile, svg_picture, profile_picture(**profile, name));
+          write_picture(options.profile, svg_picture, profile_picture(**drawn_profile, name));
       if (!drawn) return fail(drawn.error());
     }
     const std::string odd = profile ? profile_warning(**profile, imported->mesh) : std::string();
     if (!odd.empty()) imported->warnings.push_back(odd);
-    const ImportTransform transform =
-        compiled ? compiled->stored.transform : *options.mesh.transform();
-    const std::string hint = reading_hint(file, *imported, transform, compiled.has_value());
+    const std::string small = drives(use->kind) ? use->reading.size_doubt() : std::string();
+    if (!small.empty()) imported->warnings.push_back(small);
     if (!options.picture.empty()) {
       const Status drawn =
-          draw_picture_of(*imported, profile ? *profile : nullptr, !hint.empty(), options.picture);
+          draw_picture_of(*imported, *use, given ? &transform : nullptr, options.picture);
       if (!drawn) return fail(drawn.error());
     }
     if (options.json) {
       const std::lock_guard<std::mutex> lock(mutex);
-      files.push_back(to_json(file, *imported, hint));
+      files.push_back(to_json(file, *imported, *use));
       if (compiled) files.back()["model"] = to_json(*compiled);
     } else {
-      print(to_text(file, *imported, hint, colours_wanted()));
+      print(to_text(file, *imported, *use, colours_wanted()));
       if (compiled) print(to_text(*compiled));
     }
   }
@@ -305,10 +380,13 @@ void add_inspect(CLI::App& app, Action& action) {
       ->type_name("FILE")
       ->required();
   command->add_flag("--json", options->json, "Answer in JSON");
-  add_file(*command, "--profile", options->profile,
-           "Draw the outlines that a crash sees, by height, into this SVG file");
+  add_file(
+      *command, "--profile", options->profile,
+      "Draw the outlines that a crash sees, by height, into this SVG file, of the same reading "
+      "as --picture");
   add_file(*command, "--picture", options->picture,
-           "Draw the mesh as it is used, with axes, ground and rear axle, into this PNG file");
+           "Draw the mesh as it will be used, read with the options given or else as guessed, with "
+           "axes, ground and rear axle, into this PNG file");
   options->mesh.add_to(*command);
   command->footer(
       "Examples:\n  crashrank inspect car.obj --scale 0.001 --up +y --forward -z\n"

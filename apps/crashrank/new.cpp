@@ -6,6 +6,7 @@
 #include "options.hpp"
 #include "scenario_file.hpp"
 #include "streams.hpp"
+#include "vehicle_reading.hpp"
 
 #include "base/nearest_word.hpp"
 #include "crashrank/mesh/properties.hpp"
@@ -17,8 +18,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -88,80 +87,7 @@ Result<Placed> parse_placed(const std::string& text, const std::string& option, 
   return Placed{text.substr(0, at), *numbers};
 }
 
-/// By words in the file's name, else by wheels and size, as the file's axes have it.
-BodyKind guess_kind(const std::string& stem, const Vector3d& extent_m, bool has_wheels) {
-  constexpr std::array<std::pair<const char*, BodyKind>, 16> words{
-      {{"truck", BodyKind::truck},
-       {"lorry", BodyKind::truck},
-       {"bus", BodyKind::bus},
-       {"tram", BodyKind::bus},
-       {"motorcycle", BodyKind::motorcycle},
-       {"motorbike", BodyKind::motorcycle},
-       {"bicycle", BodyKind::bicycle},
-       {"cyclist", BodyKind::bicycle},
-       {"pedestrian", BodyKind::pedestrian},
-       {"person", BodyKind::pedestrian},
-       {"wheelchair", BodyKind::pedestrian},
-       {"barrier", BodyKind::barrier},
-       {"pole", BodyKind::pole},
-       {"tree", BodyKind::pole},
-       {"wall", BodyKind::building},
-       {"building", BodyKind::building}}};
-  std::string lower = stem;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& [word, kind] : words) {
-    if (lower.find(word) != std::string::npos) return kind;
-  }
-  constexpr double longest_car_m = 6.5;
-  const double longest = extent_m.maxCoeff();
-  if (!has_wheels && !detail::has_vehicle_size(extent_m) && longest == extent_m.z() &&
-      longest < 2.3) {
-    return BodyKind::pedestrian;
-  }
-  return longest > longest_car_m ? BodyKind::truck : BodyKind::car;
-}
-
-bool has_axles(BodyKind kind) { return box_axles(kind).wheelbase > 0.0; }
-
-bool drives(BodyKind kind) {
-  return has_axles(kind) || kind == BodyKind::motorcycle || kind == BodyKind::bicycle;
-}
-
 double rounded(double value) { return std::round(1e3 * value) / 1e3; }
-
-/// Scales and turns a vehicle's mesh as it suggests. Returns that and where its origin should be.
-Result<ImportTransform> guess_transform(TriangleMesh& mesh, BodyKind kind,
-                                        const detail::MeshReading& reading,
-                                        std::optional<double>& wheelbase_m) {
-  ImportTransform guess;
-  if (drives(kind)) {
-    guess.scale = reading.scale;
-    guess.forward = reading.forward;
-    guess.up = reading.up;
-  }
-  if (Status moved = transform_mesh(mesh, guess); !moved) return moved.error();
-  const Box box = mesh.bounds();
-  Vector3d origin = box.center().cast<double>();
-  if (has_axles(kind)) {
-    VehicleFacts facts;
-    facts.kind = kind;
-    const Result<Vehicle> vehicle = describe_vehicle(mesh, facts);
-    const double length_m = static_cast<double>(box.extent().x());
-    const BoxAxles usual = box_axles(kind);
-    const bool seen = vehicle && vehicle->wheelbase_m > 0.0;
-    origin.x() = seen ? vehicle->rear_axle_x_m
-                      : static_cast<double>(box.min.x()) + usual.rear_overhang * length_m;
-    wheelbase_m = seen ? vehicle->wheelbase_m : usual.wheelbase * length_m;
-  }
-  origin.z() = static_cast<double>(box.min.z());
-  // What is near was meant: bodies without their wheels begin above the ground.
-  constexpr double near_m = 0.3;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(origin[axis]) > near_m) guess.origin_m[axis] = rounded(origin[axis]);
-  }
-  return guess;
-}
 
 /// `entry` becomes that of the scenario's models, as below.
 Result<Shape> box_shape(const std::string& text, BodyKind kind, const std::vector<double>& size,
@@ -201,9 +127,11 @@ Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated
   shape.name = stem.substr(0, scenario_limits::name_characters);
   ImportTransform guess;
   if (!read->model) {
-    Result<ImportTransform> guessed = guess_transform(mesh, kind, reading, shape.wheelbase_m);
+    SeenAxles axles;
+    const Result<ImportTransform> guessed = guess_transform(mesh, kind, reading, axles);
     if (!guessed) return guessed.error();
     guess = *guessed;
+    if (axles.wheelbase_m > 0.0) shape.wheelbase_m = axles.wheelbase_m;
   }
   std::error_code ignored;
   fs::path path = fs::relative(file, folder, ignored);
@@ -226,9 +154,7 @@ Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated
     entry["forward"] = axis_name(guess.forward);
     const Vector3d& o = guess.origin_m;
     entry["origin_m"] = {o.x(), o.y(), o.z()};
-    said += fmt::format(", read with --scale {:g} --up {} --forward {} --origin {:g},{:g},{:g}",
-                        guess.scale, axis_name(guess.up), axis_name(guess.forward), o.x(), o.y(),
-                        o.z());
+    said += ", read with " + options_text(guess);
     if (drives(kind)) {
       said += fmt::format(", guessed by {}{}", reading.shown_by,
                           reading.front_known
@@ -236,9 +162,10 @@ Result<Shape> mesh_shape(const std::string& file, std::optional<BodyKind> stated
                               : "; which end is the front it does not show: look at it with "
                                 "inspect --picture");
     }
+    if (drives(kind) && !reading.size_doubt().empty()) warn(file, reading.size_doubt());
     for (const std::string& warning : assess(mesh).warnings) warn(file, warning);
   }
-  if (const double mass_kg = guess_mass_kg(kind, extent); std::isfinite(mass_kg)) {
+  if (const double mass_kg = guess_mass_kg(kind, mesh); std::isfinite(mass_kg)) {
     said += fmt::format("; {:.0f} kg unless mass_kg says more", mass_kg);
   }
   say(file + ": " + said);

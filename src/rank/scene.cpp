@@ -74,8 +74,7 @@ Result<RankedBody> ranked_body(const Scenario& scenario, View<const Model> model
         make_error(ErrorCode::bad_input, "has no triangle", "give it a mesh with a surface"),
         model);
   }
-  const Eigen::Vector3d extent = models[index].mesh.bounds().extent().cast<double>();
-  const double mass_kg = model.mass_kg.value_or(guess_mass_kg(model.kind, extent));
+  const double mass_kg = model.mass_kg.value_or(guess_mass_kg(model.kind, models[index].mesh));
   if (Status possible = check_fixed_thing(model, mass_kg); !possible) return possible.error();
   return RankedBody{index, mass_kg, !model.mass_kg.has_value()};
 }

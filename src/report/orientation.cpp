@@ -1,5 +1,7 @@
 #include "report/orientation.hpp"
 
+#include "report/body_front.hpp"
+
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
@@ -8,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -81,17 +84,31 @@ struct Middle {
   Vector3d at() const { return sum / area_m2; }
 };
 
+Box bounds_of(const TriangleMesh& mesh, const Part& part) {
+  Box box;
+  for (std::uint32_t i = 0; i < part.triangle_count; ++i) {
+    for (const std::uint32_t v : mesh.triangles[part.first_triangle + i]) {
+      box.grow(mesh.vertices[v]);
+    }
+  }
+  return box;
+}
+
 struct NamedParts {
   Middle wheels;
   Middle front;
   Middle rear;
+  std::vector<Box> wheel_boxes;
 };
 
 NamedParts named_parts(const TriangleMesh& mesh) {
   NamedParts named;
   for (const Part& part : mesh.parts) {
     const std::vector<std::string> words = words_of(part.name);
-    if (names_wheel(words)) named.wheels.add(mesh, part);
+    if (names_wheel(words)) {
+      named.wheels.add(mesh, part);
+      named.wheel_boxes.push_back(bounds_of(mesh, part));
+    }
     if (const int end = end_of(words); end != 0) {
       (end > 0 ? named.front : named.rear).add(mesh, part);
     }
@@ -133,10 +150,16 @@ int height_axis(const TriangleMesh& mesh, const Vector3d& extent_m) {
     shift = (all.at() - mesh.bounds().center().cast<double>()).cwiseAbs();
     shift = shift.array() / mesh.bounds().extent().cast<double>().array().max(1e-9);
   }
+  // As wide one way as the other and even all round: a tree.
+  const double widest_m = std::max(extent_m[a], extent_m[b]);
+  if (upright && std::min(extent_m[a], extent_m[b]) > 0.95 * widest_m &&
+      std::max(shift[a], shift[b]) < 0.01) {
+    return 2;
+  }
   for (const auto& [height, width] : {std::pair{a, b}, std::pair{b, a}}) {
     if (shift[height] > least_shift && shift[height] > 3.0 * shift[width]) return height;
   }
-  const bool car = std::max(extent_m[a], extent_m[b]) < widest_car_m;
+  const bool car = widest_m < widest_car_m;
   return (extent_m[a] < extent_m[b]) == car ? a : b;
 }
 
@@ -174,7 +197,7 @@ Vector3d body_axis(const ImportTransform& transform, Axis axis) {
 }
 
 /// Factor that makes a vehicle of what is none: from millimetres, centimetres, inches or feet.
-double unit_factor(const Vector3d& extent, bool is_vehicle) {
+std::optional<double> unit_factor(const Vector3d& extent) {
   constexpr std::array<double, 5> units{1.0, 0.001, 0.01, 0.0254, 0.3048};
   if (has_vehicle_size(extent)) return 1.0;
   // Most vehicles are no smaller; some two-wheelers and microcars are.
@@ -185,12 +208,54 @@ double unit_factor(const Vector3d& extent, bool is_vehicle) {
       if (has_vehicle_size(sides_m) && (sides_m.array() >= least_m.array()).all()) return factor;
     }
   }
-  // Of the models of games, in no unit: a car's length, to one digit.
+  return std::nullopt;
+}
+
+/// Factor for the models of games, in no unit: a car's length, to one digit.
+double game_factor(const Vector3d& extent) {
   constexpr double car_m = 4.5;
   const double factor = car_m / std::max(extent.maxCoeff(), 1e-9);
-  if (!is_vehicle || !std::isfinite(factor)) return 1.0;
+  if (!std::isfinite(factor)) return 1.0;
   const double digit = std::pow(10.0, std::floor(std::log10(factor)));
   return std::round(factor / digit) * digit;
+}
+
+// Passenger cars from kei cars to large saloons, mirrors included, and their tyres.
+constexpr std::array<double, 2> car_length_m{3.4, 5.2};
+constexpr std::array<double, 2> car_width_m{1.5, 2.1};
+constexpr std::array<double, 2> car_wheel_m{0.55, 0.8};
+
+/// Sets the scales at which a body of two tracks that is shorter than all cars would be one, where
+/// there are any. `unscaled` is its box before the guess of its unit, in axes `forward` and `up`.
+void guess_car_scale(const NamedParts& named, const Vector3d& middle, const Vector3d& unscaled,
+                     const Vector3d& forward, const Vector3d& up, double applied_scale,
+                     MeshReading& reading) {
+  constexpr double shortest_m = 3.0;
+  constexpr double least_off_middle = 0.2;  // of the width
+  const Vector3d across = up.cross(forward);
+  const auto along = [](const Vector3d& size, const Vector3d& axis) {
+    return std::abs(size.dot(axis));
+  };
+  reading.length_m = reading.scale / applied_scale * along(unscaled, forward);
+  const double width = along(unscaled, across);
+  double diameter = 0.0;
+  bool two_tracks = false;
+  for (const Box& box : named.wheel_boxes) {
+    diameter = std::max(diameter, along(box.extent().cast<double>(), up));
+    two_tracks |= along(box.center().cast<double>() - middle, across) > least_off_middle * width;
+  }
+  if (!two_tracks || reading.length_m >= shortest_m) return;
+  double least = 0.0;
+  double most = 1e9;
+  for (const auto& [size, usual_m] :
+       {std::pair{along(unscaled, forward), car_length_m}, std::pair{width, car_width_m},
+        std::pair{diameter, car_wheel_m}}) {
+    least = std::max(least, usual_m[0] / size);
+    most = std::min(most, usual_m[1] / size);
+  }
+  if (least > most) return;
+  reading.least_car_scale = applied_scale * least;
+  reading.most_car_scale = applied_scale * most;
 }
 
 }  // namespace
@@ -209,12 +274,22 @@ std::string MeshReading::options() const {
   return fmt::format("--scale {:g} --up {} --forward {}", scale, axis_name(up), axis_name(forward));
 }
 
+std::string MeshReading::size_doubt() const {
+  if (most_car_scale == 0.0) return {};
+  return fmt::format(
+      "as a car it is small, {:.2f} m long; most are {:g} to {:g} m: --scale {:.2g} to {:.2g} "
+      "would "
+      "make its length, width and wheels a car's",
+      length_m, car_length_m[0], car_length_m[1], least_car_scale, most_car_scale);
+}
+
 MeshReading guess_reading(const TriangleMesh& mesh, const ImportTransform& transform,
                           bool is_gltf) {
   const Vector3d unscaled = mesh.bounds().extent().cast<double>();
   const NamedParts named = named_parts(mesh);
   MeshReading reading;
-  const double factor = unit_factor(unscaled, named.wheels.known());
+  const std::optional<double> unit = unit_factor(unscaled);
+  const double factor = unit.value_or(named.wheels.known() ? game_factor(unscaled) : 1.0);
   reading.scale = transform.scale * factor;
   const Vector3d extent_m = factor * unscaled;
   const Vector3d middle = mesh.bounds().center().cast<double>();
@@ -225,7 +300,8 @@ MeshReading guess_reading(const TriangleMesh& mesh, const ImportTransform& trans
   const Vector3d none = Vector3d::Zero();
   Vector3d forward = none;
   Vector3d up = none;
-  if (named.front.known() || named.rear.known()) {
+  // One end alone may be the trunk of a tree.
+  if (named.wheels.known() || (named.front.known() && named.rear.known())) {
     forward = main_axis(along(named.rear, named.front), unscaled, least_share, none);
     // Between lamps and sills, say, the height differs as well: a vehicle is longer than high.
     int axis = 0;
@@ -265,7 +341,15 @@ MeshReading guess_reading(const TriangleMesh& mesh, const ImportTransform& trans
     int length = 0;
     if (level_m.maxCoeff(&length) <= least_ratio * level_m.x()) length = 0;
     forward[length] = 1.0;
+    if (const int front = front_by_shape(mesh, forward, up); front != 0) {
+      forward *= front;
+      reading.front_known = true;
+      reading.shown_by = named.wheels.known() ? "its parts and shape" : "its shape";
+    }
   }
+  // Wheelchairs and trolleys have wheels as well, but no car is higher than long.
+  if (!unit && extent_along(up) > extent_along(forward)) reading.scale = transform.scale;
+  guess_car_scale(named, middle, unscaled, forward, up, transform.scale, reading);
   reading.up = file_axis(transform, up);
   reading.forward = file_axis(transform, forward);
   return reading;

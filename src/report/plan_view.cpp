@@ -43,6 +43,22 @@ Eigen::Vector2d ground(const Pose& pose, const Eigen::Vector2d& point) {
   return (pose.rotation * Eigen::Vector3d(point.x(), point.y(), 0.0) + pose.translation).head<2>();
 }
 
+/// A name, cut to a width in pixels, and its width, of wide letters at the plan's size of 12.
+std::pair<std::string, double> fitted(const std::string& name, double most) {
+  constexpr double letter = 7.5;
+  constexpr double other = 12.0;  // Chinese, say
+  double width = 0.0;
+  std::size_t kept = 0;  // what fits before an ellipsis
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(name[i]);
+    if ((byte & 0xC0U) == 0x80U) continue;  // within a character of UTF-8
+    if (width + other <= most) kept = i;
+    width += byte < 0x80U ? letter : other;
+  }
+  if (width <= most) return {name, width};
+  return {name.substr(0, kept) + "\u2026", most};
+}
+
 // World to page: x right, y up. As wide a page for any part of the world.
 class Canvas {
 public:
@@ -62,9 +78,16 @@ public:
         14.0 + 5.0 * scale_, y - 6.0);
   }
 
+  /// A name at a point, moved inwards and cut where it would reach beyond the page.
   std::string label(const Eigen::Vector2d& world, const std::string& name) const {
+    constexpr double edge = 4.0;
+    constexpr double ascent = 12.0;
+    const Eigen::Vector2d page = 2.0 * scale_ * half_m_;
     const Eigen::Vector2d p = (*this)(world);
-    return fmt::format("<text x='{:.0f}' y='{:.0f}'>{}</text>\n", p.x(), p.y(), escape_xml(name));
+    const auto [text, width] = fitted(name, page.x() - 2.0 * edge);
+    return fmt::format("<text x='{:.0f}' y='{:.0f}'>{}</text>\n",
+                       std::max(edge, std::min(p.x(), page.x() - edge - width)),
+                       std::clamp(p.y(), edge + ascent, page.y() - edge), escape_xml(text));
   }
 
   bool shows(const Eigen::Vector2d& world, double reach) const {
@@ -221,7 +244,7 @@ std::string PlanView::draw(std::size_t place) const {
     if (kind != BodyKind::barrier && kind != BodyKind::pole && kind != BodyKind::building) {
       svg += canvas.nose(outline_of_actor(i), pose);
     }
-    labels += canvas.label(at, scenario_.actors[i].name);
+    if (canvas.shows(at, 0.0)) labels += canvas.label(at, scenario_.actors[i].name);
   }
   const Outline& own = outlines_[scenario_.ego.model];
   svg += canvas.body(own, ego.pose_at(0.0), "start");

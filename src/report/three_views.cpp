@@ -38,7 +38,7 @@ constexpr std::array<Colour, 7> paints{{{0.10F, 0.22F, 0.42F},
 constexpr int letter_width = 5;
 constexpr int letter_height = 7;
 // Rows of five bits from the top, the highest bit first.
-constexpr std::array<std::pair<char, std::uint64_t>, 33> letters{
+constexpr std::array<std::pair<char, std::uint64_t>, 40> letters{
     {{'0', 0x3a33ae62eULL}, {'1', 0x11842108eULL}, {'2', 0x3a213221fULL}, {'3', 0x78217043eULL},
      {'4', 0x08ca97c42ULL}, {'5', 0x7e1e0862eULL}, {'6', 0x1910f462eULL}, {'7', 0x7c2222108ULL},
      {'8', 0x3a317462eULL}, {'9', 0x3a317844cULL}, {'.', 0x00000018cULL}, {'-', 0x0000f8000ULL},
@@ -47,7 +47,8 @@ constexpr std::array<std::pair<char, std::uint64_t>, 33> letters{
      {'l', 0x30842108eULL}, {'m', 0x001aad6b5ULL}, {'n', 0x0016cc631ULL}, {'o', 0x000e8c62eULL},
      {'p', 0x001e8fa10ULL}, {'r', 0x0016cc210ULL}, {'s', 0x000e8383eULL}, {'t', 0x211c42126ULL},
      {'u', 0x00118c66dULL}, {'w', 0x00118d6aaULL}, {'x', 0x001151151ULL}, {'y', 0x00118bc2eULL},
-     {'z', 0x001f1111fULL}}};
+     {'z', 0x001f1111fULL}, {'b', 0x4216cc736ULL}, {'c', 0x000e8c22eULL}, {'k', 0x4212a6292ULL},
+     {'v', 0x00118c544ULL}, {'+', 0x0084f9080ULL}, {',', 0x000003088ULL}, {':', 0x018c03180ULL}}};
 
 constexpr int letter_px = 2;  // picture pixels across and down a letter's pixel
 constexpr int text_px = letter_px * letter_height;
@@ -187,6 +188,7 @@ public:
     sheet_.text(margin_px, text_px,
                 fmt::format("{:.3g} x {:.3g} x {:.3g} m", extent.x(), extent.y(), extent.z()),
                 black);
+    sheet_.text(margin_px, 3 * text_px, options.caption, black);
     const float scale_m = std::pow(10.0F, std::floor(std::log10(extent.maxCoeff())));
     const int length = static_cast<int>(std::lround(px_per_m_ * scale_m));
     const int y = options.height_px - 2 * text_px;

@@ -55,7 +55,7 @@ Status check_inertia(const StatedMass& stated, const ScenarioModel& wanted,
   if (wanted.yaw_inertia_kgm2 || !stated.yaw_inertia_kgm2) return Success{};
   if (!wanted.mass_kg && stated.mass_kg) return Success{};  // was checked with the file
   const Eigen::Vector3d extent_m = mesh.bounds().extent().cast<double>();
-  const double mass_kg = wanted.mass_kg.value_or(guess_mass_kg(wanted.kind, extent_m));
+  const double mass_kg = wanted.mass_kg.value_or(guess_mass_kg(wanted.kind, mesh));
   if (!std::isfinite(mass_kg)) return Success{};
   Status status = check_yaw_inertia(*stated.yaw_inertia_kgm2, mass_kg, extent_m);
   if (status) return status;

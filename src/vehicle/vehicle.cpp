@@ -265,7 +265,7 @@ Result<Vehicle> described(const TriangleMesh& mesh, const VehicleFacts& facts,
   const Box box = mesh.bounds();
   const Vector3d size = box.extent().cast<double>();
   const auto rear_x = static_cast<double>(box.min.x());
-  v.mass_kg = facts.mass_kg.value_or(guess_mass_kg(facts.kind, size));
+  v.mass_kg = facts.mass_kg.value_or(guess_mass_kg(facts.kind, mesh));
   v.mass_is_guessed = !facts.mass_kg.has_value();
   v.center_m = box.center().cast<double>();
   v.leading_edge_m = 0.0;

@@ -40,6 +40,12 @@ TEST(Inspect, JsonHasTheContractsShape) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(corner[i], wanted[i], 1e-6) << key;
   }
   EXPECT_TRUE(file.at("orientation_hint").is_null());
+  const Json& vehicle = file.at("vehicle");
+  EXPECT_EQ(vehicle.at("kind"), "car");
+  EXPECT_EQ(vehicle.at("guessed"), false);
+  EXPECT_EQ(vehicle.at("axles_seen"), false);
+  EXPECT_NEAR(vehicle.at("rear_axle_x_m"), -0.2, 1e-6);
+  EXPECT_EQ(vehicle.at("origin_m"), Json({0.0, 0.0, 0.0}));
   EXPECT_EQ(file.at("degenerate_triangles"), 0);
   EXPECT_EQ(file.at("non_finite_vertices"), 0);
   EXPECT_EQ(file.at("watertight"), true);
@@ -74,23 +80,65 @@ TEST(Inspect, DrawsOutlinesByHeightOfAMeshAndOfItsModel) {
   EXPECT_EQ(times(place.read("high.svg"), " m, forward to the right"), 0U);
 }
 
+/// The pixels of a PNG of 1200 x 900, from the row of the topmost view on: below the words.
+std::vector<unsigned char> views_of(const std::string& bytes) {
+  constexpr std::size_t rows_of_words = 70;
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  image.format = PNG_FORMAT_RGB;
+  std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
+  EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0) << image.message;
+  EXPECT_EQ(image.width, 1200U);
+  EXPECT_EQ(image.height, 900U);
+  return {pixels.begin() + rows_of_words * 3 * 1200, pixels.end()};
+}
+
 TEST(Inspect, DrawsThreeViewsOfAMeshAndOfItsModelAsAPng) {
   const Workplace place;
   place.write("box.obj", cli_test::box_obj("body", -1, -0.9, 0.2, 3, 0.9, 1.5));
   const Outcome run = place.crashrank({"inspect", "box.obj", "--picture", "mesh.png"});
   ASSERT_EQ(run.code, 0) << run.err;
   const std::string bytes = place.read("mesh.png");
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  ASSERT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
-  image.format = PNG_FORMAT_RGB;
-  std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
-  EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0) << image.message;
-  EXPECT_EQ(image.width, 1200U);
-  EXPECT_EQ(image.height, 900U);
+  views_of(bytes);
   ASSERT_EQ(place.crashrank({"compile", "box.obj", "-o", "box.crm"}).code, 0);
   ASSERT_EQ(place.crashrank({"inspect", "box.crm", "--picture", "model.png"}).code, 0);
   EXPECT_TRUE(place.read("model.png") == bytes);
+}
+
+TEST(Inspect, APictureShowsTheMeshAsItWillBeUsed) {
+  const Workplace place;
+  // y forward, in millimetres; the rear axle of a car of 5 m at -1.5 m.
+  place.write("car.obj", cli_test::box_obj("car", -900, -2500, 0, 900, 2500, 1500));
+  const Outcome guessed = place.crashrank({"inspect", "car.obj", "--picture", "guessed.png"});
+  ASSERT_EQ(guessed.code, 0) << guessed.err;
+  EXPECT_NE(guessed.out.find("rear axle, so read, at x = -1.5 m, wheelbase 3 m, where it "
+                             "usually is; --origin -1.5,0,0 puts the origin below it\n"),
+            std::string::npos)
+      << guessed.out;
+  const Json vehicle =
+      place.crashrank({"inspect", "car.obj", "--json"}).json()["files"][0]["vehicle"];
+  EXPECT_EQ(vehicle["guessed"], true);
+  EXPECT_EQ(vehicle["scale"], 0.001);
+  EXPECT_EQ(vehicle["forward"], "+y");
+  EXPECT_EQ(vehicle["front_known"], false);
+  EXPECT_EQ(vehicle["origin_m"], Json({-1.5, 0.0, 0.0}));
+  const auto draw = [&](const std::string& forward) {
+    const Outcome run =
+        place.crashrank({"inspect", "car.obj", "--scale", "0.001", "--forward", forward, "--origin",
+                         forward == "+y" ? "-1.5,0,0" : "0,0,0", "--picture", "given.png"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return views_of(place.read("given.png"));
+  };
+  EXPECT_TRUE(views_of(place.read("guessed.png")) == draw("+y"));
+  EXPECT_FALSE(views_of(place.read("guessed.png")) == draw("+x"));
+  // The caption says which.
+  ASSERT_EQ(place
+                .crashrank({"inspect", "car.obj", "--scale", "0.001", "--forward", "+y", "--origin",
+                            "-1.44,0,0", "--picture", "given.png"})
+                .code,
+            0);
+  EXPECT_FALSE(place.read("given.png") == place.read("guessed.png"));
 }
 
 TEST(Inspect, PicturesThatCannotBeDrawnOrWrittenAreRefused) {

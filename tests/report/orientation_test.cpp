@@ -92,7 +92,7 @@ TEST(Orientation, AReadingDoesNotDependOnHowTheMeshWasRead) {
   }
 }
 
-TEST(Orientation, SizeShowsTheAxesButNotTheFront) {
+TEST(Orientation, SizeShowsTheAxesAndShapeTheFront) {
   TriangleMesh body = shipped("sedan");
   for (Part& part : body.parts) part.name = "panel";
   for (const ImportTransform& right : all_readings()) {
@@ -100,12 +100,24 @@ TEST(Orientation, SizeShowsTheAxesButNotTheFront) {
     SCOPED_TRACE(std::string("right is up ") + axis_name(right.up) + " forward " +
                  axis_name(right.forward) + ", guessed " + guess.options());
     EXPECT_EQ(direction(guess.forward).cwiseAbs(), direction(right.forward).cwiseAbs());
-    EXPECT_FALSE(guess.front_known);
     // Upside down looks right where z is the height.
-    if (direction(right.up).z() == 0.0) {
-      EXPECT_EQ(guess.up, right.up);
-    }
+    if (right.up == Axis::minus_z) continue;
+    EXPECT_EQ(guess.up, right.up);
+    EXPECT_EQ(guess.forward, right.forward);
+    EXPECT_TRUE(guess.front_known);
+    EXPECT_STREQ(guess.shown_by, "its shape");
   }
+}
+
+TEST(Orientation, TheFrontOfABoxIsNotKnown) {
+  TriangleMesh box;
+  for (int i = 0; i < 8; ++i) {
+    box.vertices.emplace_back((i & 1) != 0 ? 4.0F : 0.0F, (i & 2) != 0 ? 1.7F : 0.0F,
+                              (i & 4) != 0 ? 1.5F : 0.0F);
+  }
+  box.triangles = {{0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}};
+  box.parts = {{"box", 0, 7}};
+  EXPECT_FALSE(guess_reading(box, {}, false).front_known);
 }
 
 TEST(Orientation, GltfHasItsAxesByItsText) {
@@ -116,6 +128,32 @@ TEST(Orientation, GltfHasItsAxesByItsText) {
   EXPECT_TRUE(guess.has_axes_of(text) && guess.front_known) << guess.options();
   EXPECT_TRUE(detail::is_gltf_file("a/Car.GLB"));
   EXPECT_FALSE(detail::is_gltf_file("car.glb.obj"));
+}
+
+TEST(Orientation, OneNamedEndAloneShowsNothing) {
+  TriangleMesh tree = shipped("tree");  // its trunk
+  const MeshReading guess = guess_reading(tree, {}, false);
+  EXPECT_FALSE(guess.front_known) << guess.options();
+  EXPECT_EQ(guess.up, Axis::plus_z);
+}
+
+TEST(Orientation, WhatIsHigherThanLongIsNoToyCar) {
+  EXPECT_EQ(guess_reading(shipped("wheelchair"), {}, false).scale, 1.0);
+}
+
+TEST(Orientation, ASmallCarsScalesAreThoseOfItsLengthWidthAndWheels) {
+  // The hatch's length 4.14 m, width 2.0 m and wheels of 0.63 m, in files that are 0.6 as large.
+  const ImportTransform small{1.0 / 0.6, Axis::plus_y, Axis::plus_z, Vector3d::Zero()};
+  const TriangleMesh body = shipped("hatch");
+  const MeshReading guess = guess_reading(file_of(body, small), {}, true);
+  EXPECT_EQ(guess.scale, 1.0);
+  EXPECT_NEAR(guess.length_m, 0.6 * 4.136, 0.01);
+  EXPECT_LT(guess.least_car_scale, small.scale);
+  EXPECT_GT(guess.most_car_scale, small.scale);
+  EXPECT_LT(guess.most_car_scale, 1.1 * small.scale);  // else it would be too wide
+  EXPECT_NE(guess.size_doubt().find("2.48 m long"), std::string::npos) << guess.size_doubt();
+  EXPECT_EQ(guess_reading(body, {}, false).size_doubt(), "");
+  EXPECT_EQ(guess_reading(shipped("motorcycle"), {}, false).size_doubt(), "");
 }
 
 TEST(Orientation, AModelInNoUnitGetsTheLengthOfACar) {

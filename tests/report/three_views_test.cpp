@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -155,6 +156,16 @@ TEST(ThreeViews, TheScaleIsThatOfTheBody) {
     }
   }
   EXPECT_NEAR(static_cast<float>(bar), static_cast<float>(views[0].width()) / length_m, 1.5F);
+}
+
+TEST(ThreeViews, EveryLetterOfACaptionIsDrawn) {
+  for (const char letter : std::string("0123456789abcdefghiklmnoprstuvwxyz+-=.,:")) {
+    ThreeViewOptions options;
+    options.width_px = 600;
+    options.height_px = 450;
+    options.caption = std::string(1, letter);
+    EXPECT_NE(draw_three_views(wedge(), options)->rgb, draw(wedge(), true).rgb) << letter;
+  }
 }
 
 TEST(ThreeViews, PartsDifferInColour) {

@@ -355,7 +355,13 @@ TEST(MassGuess, FollowsKindAndSize) {
   EXPECT_EQ(guess_mass_kg(BodyKind::bus, car), 13000.0);
   EXPECT_EQ(guess_mass_kg(BodyKind::motorcycle, car), 250.0);
   EXPECT_EQ(guess_mass_kg(BodyKind::bicycle, car), 90.0);
-  EXPECT_EQ(guess_mass_kg(BodyKind::pedestrian, car), 75.0);
+  EXPECT_EQ(guess_mass_kg(BodyKind::bus, {24.0, 2.55, 3.2}), 13000.0);
+  EXPECT_EQ(guess_mass_kg(BodyKind::bus, {30.0, 2.3, 3.6}), 45000.0);  // a tram
+  EXPECT_EQ(guess_mass_kg(BodyKind::pedestrian, {0.9, 0.6, 1.75}), 75.0);
+  EXPECT_NEAR(guess_mass_kg(BodyKind::pedestrian, {0.61, 0.38, 1.14}), 23.6, 0.1);  // six years
+  EXPECT_NEAR(guess_mass_kg(BodyKind::pedestrian, {0.6, 0.5, 1.88}), 91.0, 0.1);
+  EXPECT_NEAR(guess_mass_kg(BodyKind::pedestrian, {1.75, 0.6, 0.3}), 75.0, 0.1);  // lies
+  EXPECT_EQ(guess_mass_kg(BodyKind::pedestrian, {1.1, 0.67, 1.39}), 93.0);        // in a wheelchair
   for (const BodyKind kind : {BodyKind::barrier, BodyKind::pole, BodyKind::building}) {
     EXPECT_TRUE(std::isinf(guess_mass_kg(kind, car)));
   }

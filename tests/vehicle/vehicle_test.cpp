@@ -45,6 +45,28 @@ BodyKind kind_of(const nlohmann::json& model) {
 /// A car's box that stands on the ground, its rear axle near the origin.
 TriangleMesh car_box() { return test::box_mesh({2.0, 0.9, 0.7}, {1.2, 0, 0.7}); }
 
+TEST(Vehicle, GuessedMassesOfShippedBodiesAreNearTheStated) {
+  for (const char* name :
+       {"hatch", "sedan", "van", "tram", "pedestrian", "child", "wheelchair", "bicycle"}) {
+    const nlohmann::json model = stated(name);
+    const double mass_kg = model["mass_kg"];
+    EXPECT_NEAR(guess_mass_kg(kind_of(model), shipped(name)), mass_kg, 0.08 * mass_kg) << name;
+  }
+}
+
+TEST(Vehicle, MirrorsHaveNoMass) {
+  const TriangleMesh plain = car_box();
+  TriangleMesh mirrored = plain;
+  const auto first = static_cast<std::uint32_t>(mirrored.vertices.size());
+  for (const float y : {-1.2F, 1.2F}) mirrored.vertices.emplace_back(1.5F, y, 1.0F);
+  mirrored.vertices.emplace_back(1.5F, 0.0F, 1.1F);
+  mirrored.triangles.push_back({first, first + 1, first + 2});
+  mirrored.parts = {{"car", 0, static_cast<std::uint32_t>(mirrored.size())}};
+  EXPECT_EQ(guess_mass_kg(BodyKind::car, mirrored), guess_mass_kg(BodyKind::car, plain));
+  EXPECT_NEAR(guess_mass_kg(BodyKind::car, plain), guess_mass_kg(BodyKind::car, {4.0, 1.8, 1.4}),
+              0.01);
+}
+
 TEST(Vehicle, AxlesOfShippedCarsLorriesAndTramsAreFound) {
   for (const char* name : {"sedan", "hatch", "truck", "van", "semitrailer", "tram"}) {
     const nlohmann::json model = stated(name);

@@ -136,7 +136,8 @@ struct ThreeViewOptions {
   int width_px = 1200;                  ///< pixels
   int height_px = 900;                  ///< pixels
   std::optional<double> rear_axle_x_m;  ///< marked where it is known
-  bool marks = true;  ///< axes, ground, axle, sizes and words; else the body alone
+  bool marks = true;    ///< axes, ground, axle, sizes and words; else the body alone
+  std::string caption;  ///< below the size; of small letters but j and q, digits and "+-=.,:"
 };
 
 /// Draws a mesh in body axes from above, from its right and from its front, parallel and to one

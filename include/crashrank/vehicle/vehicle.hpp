@@ -35,10 +35,15 @@ enum class BodyKind {
 CRASHRANK_API const char* body_kind_name(BodyKind kind) noexcept;
 
 /// Mass of a body from its kind and size, kg: a car −1333.5 + 526.9·(length·width)^0.8 and at least
-/// 300, a truck 25000, a bus 13000, a motorcycle 250, a bicycle 90, a pedestrian 75, rider included
-/// (TUM's planner for harm-aware trajectories). Barriers, poles and buildings do not move:
-/// infinity. `extent_m` is length, width, height.
+/// 300, a truck 25000, a bus 13000, a motorcycle 250, a bicycle 90, rider included (TUM's planner
+/// for harm-aware trajectories); a bus longer than 25 m, which is a tram, 1500 a metre; a
+/// pedestrian 75·(height/1.75 m)^2.7, an adult in a wheelchair, known by length and width, 93.
+/// Barriers, poles and buildings do not move: infinity. `extent_m` is length, width without
+/// mirrors, height.
 CRASHRANK_API double guess_mass_kg(BodyKind kind, const Eigen::Vector3d& extent_m);
+
+/// The same of a mesh. A car's width is that of what is lower than its mirrors. O(triangles).
+CRASHRANK_API double guess_mass_kg(BodyKind kind, const TriangleMesh& mesh);
 
 /// Outer material of a body. Selects the friction of a contact, together with that of the body it
 /// touches.
