@@ -85,12 +85,13 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
   if (named == &app && word != nullptr && std::string(word) == "import") {
     return fail(make_error(ErrorCode::usage,
                            "the readers of other formats are in the Python package",
-                           "pip install 'crashrank[formats]', then python -m crashrank import "
-                           "FORMAT FILE -o SCENARIO.json"));
+                           "pip install '.[formats]' in the folder of the source, then python -m "
+                           "crashrank import FORMAT FILE -o SCENARIO.json"));
   }
   if (named == &app && word != nullptr && std::string(word) == "benchmark") {
     return fail(make_error(ErrorCode::usage, "the benchmark is in the Python package",
-                           "pip install crashrank, then python -m crashrank benchmark"));
+                           "pip install . in the folder of the source, then python -m crashrank "
+                           "benchmark"));
   }
   if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
     text = "not expected:";

@@ -61,7 +61,11 @@ def _column(document: dict[str, Any], path: tuple[str | int, ...]) -> list[Any]:
 def missing(package: str, extra: str) -> NotFoundError:
     """Return the error for a package that is not installed."""
     return NotFoundError(
-        "not_found", "", package, "is not installed", f"pip install 'crashrank[{extra}]'"
+        "not_found",
+        "",
+        package,
+        "is not installed",
+        f"pip install '.[{extra}]' in the folder of crashrank's source",
     )
 
 

@@ -281,7 +281,7 @@ def test_without_pyarrow_the_extra_is_named():
     done = subprocess.run(
         [sys.executable, "-c", code], check=True, capture_output=True, text=True, env=environment()
     )
-    assert done.stdout == "pyarrow pip install 'crashrank[arrow]'\n"
+    assert done.stdout == "pyarrow pip install '.[arrow]' in the folder of crashrank's source\n"
 
 
 def test_models_of_a_folder_with_other_rows(tmp_path):

@@ -279,7 +279,8 @@ std::string MeshReading::size_doubt() const {
   return fmt::format(
       "as a car it is small, {:.2f} m long; most are {:g} to {:g} m: --scale {:.2g} to {:.2g} "
       "would "
-      "make its length, width and wheels a car's",
+      "make its length, width and wheels a car's; in a scenario scale, and origin_m and "
+      "wheelbase_m as many times as large",
       length_m, car_length_m[0], car_length_m[1], least_car_scale, most_car_scale);
 }
 

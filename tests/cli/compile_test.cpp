@@ -128,7 +128,7 @@ TEST(Compile, InspectTellsWhatAModelFileHolds) {
   EXPECT_NEAR(file.at("extent_m")[0].get<double>(), 4.0, 1e-6);
   EXPECT_EQ(file.at("parts")[0].at("name"), "body");
   const Json& model = file.at("model");
-  EXPECT_EQ(model.at("version"), 3);
+  EXPECT_EQ(model.at("version"), 4);
   EXPECT_EQ(model.at("checksum"), compiled.json().at("checksum"));
   EXPECT_EQ(model.at("bytes"), compiled.json().at("bytes"));
   EXPECT_EQ(model.at("mass_kg"), 1450.0);

@@ -53,7 +53,7 @@ TEST(Usage, ImportNamesThePackageThatHasTheReaders) {
   const Workplace place;
   const Outcome readers = place.crashrank({"import", "commonroad", "scene.xml"});
   EXPECT_EQ(readers.code, 2);
-  EXPECT_NE(readers.err.find("pip install 'crashrank[formats]'"), std::string::npos) << readers.err;
+  EXPECT_NE(readers.err.find("pip install '.[formats]'"), std::string::npos) << readers.err;
   EXPECT_NE(readers.err.find("python -m crashrank import"), std::string::npos) << readers.err;
 }
 

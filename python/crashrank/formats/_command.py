@@ -20,9 +20,9 @@ format survey writes a table (CSV) of all files in a folder: read or refused, an
 
 _EPILOG = """formats: commonroad (XML 2018b, 2020a), openscenario (followed trajectories), osi
 (ground truth, .osi or .mcap), esmini-csv (its log), poses-csv (columns t_s, id, x_m, y_m, yaw_deg
-and others), ros-bag (predicted objects of Autoware). Packages: pip install 'crashrank[formats]' for
-the first two, [osi] and [ros] for theirs. Exit codes: 0 done, 1 it cannot be written, 2 usage,
-3 bad input, 4 the memory ended it."""
+and others), ros-bag (predicted objects of Autoware). Packages: pip install '.[formats]' in the
+folder of the source for the first two, [osi] and [ros] for theirs. Exit codes: 0 done, 1 it cannot
+be written, 2 usage, 3 bad input, 4 the memory ended it."""
 
 
 def main(words: list[str]) -> int:
