@@ -215,5 +215,5 @@ def test_missing_packages_name_the_extra(monkeypatch, reader, file, module, extr
     from crashrank import formats
 
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(crashrank.NotFoundError, match=rf"crashrank\[{extra}\]"):
+    with pytest.raises(crashrank.NotFoundError, match=rf"\.\[{extra}\]"):
         getattr(formats, reader)(DATA / "formats" / file)
