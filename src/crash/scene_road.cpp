@@ -22,17 +22,34 @@ double SceneRun::plan_share(double changed_mps) const {
   return 1.0 - u * u * (3.0 - 2.0 * u);
 }
 
+/// State of a body at a time on its plan.
+PlanarBody SceneRun::planned_body(std::size_t i, double time_s) const {
+  ContactBody body;
+  body.vehicle = bodies_[i].vehicle;
+  bodies_[i].plan->state_at(time_s, body.pose, body.velocity);
+  body.pose.translation += bodies_[i].shift_m;
+  return make_planar(body, origin_m_);
+}
+
+/// Notes which bodies of the chain have left their plans.
+void SceneRun::compare_with_plans() {
+  for (const std::uint32_t i : chain_) {
+    Member& m = members_[i];
+    if (m.state == State::planned || now_s_ > m.on_plan_until_s) continue;
+    const PlanarBody plan = planned_body(i, now_s_);
+    const PlanarBody& b = body(i);
+    const double turned = plane_length(b.cosine - plan.cosine, b.sine - plan.sine);
+    if (plane_length(b.x - plan.x, b.y - plan.y) + turned * m.radius_m > on_plan_m) {
+      m.on_plan_until_s = now_s_;
+    }
+  }
+}
+
 /// Applies a share of the change of velocity that the plan has in this step, turned by how far the
 /// heading has left the plan's.
 void SceneRun::follow_plan(std::size_t i, double share, double step_s) {
-  const auto planned = [&](double time_s) {
-    ContactBody body;
-    body.vehicle = bodies_[i].vehicle;
-    bodies_[i].plan->state_at(time_s, body.pose, body.velocity);
-    return make_planar(body, origin_m_);
-  };
-  const PlanarBody from = planned(now_s_ - 0.5 * step_s);
-  const PlanarBody to = planned(now_s_ + 0.5 * step_s);
+  const PlanarBody from = planned_body(i, now_s_ - 0.5 * step_s);
+  const PlanarBody to = planned_body(i, now_s_ + 0.5 * step_s);
   PlanarBody& b = motion_of(i);
   const double cosine = b.cosine * to.cosine + b.sine * to.sine;
   const double sine = b.sine * to.cosine - b.cosine * to.sine;

@@ -401,6 +401,7 @@ void SceneRun::step() {
   }
   track_fastest_mps_ = std::max(track_fastest_mps_, fastest_mps_);
   now_s_ += 0.5 * step_s;
+  compare_with_plans();
   ++steps_;
   for (std::size_t k = 0; k < active_.size();) {
     ContactRun& run = runs_[active_[k]];

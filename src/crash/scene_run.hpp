@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace crashrank::detail {
@@ -96,6 +97,7 @@ public:
   /// Blocks of outlines that come near other bodies; further ones do not press.
   static constexpr std::size_t most_near_blocks = std::size_t{3} << 12U;
   static constexpr std::size_t most_near = 32;  ///< near bodies listed for each body
+  static constexpr double on_plan_m = 0.1;
   static constexpr std::size_t most_recorded =
       most_pairs + 1;  ///< bodies whose exposure is recorded
 
@@ -131,6 +133,9 @@ public:
   bool pressed(std::size_t i) const { return members_[i].action.path_mps > 0.0; }
   /// Returns true if a body of the chain has contacted it.
   bool touched(std::size_t i) const { return members_[i].state >= State::free; }
+  /// Time until which no point of the body was further than `on_plan_m` from its plan, s; infinity:
+  /// it still keeps to it.
+  double on_plan_until_s(std::size_t i) const { return members_[i].on_plan_until_s; }
   /// Present pose of the body origin.
   Pose pose(std::size_t i) const { return contact_body(i).pose; }
   /// Returns true if a body on its plan might have come close enough to the chain to press on it or
@@ -202,8 +207,9 @@ private:
     Wheels wheels;
     double last_impact_s = -1e9;  ///< time of the last force larger than a push
     double placed_s = 0.0;        ///< planned body: time of its last placement
-    double slack_m = -1.0;        ///< relative travel until a new list of near bodies is needed
-    std::size_t near = 0;         ///< number of bodies in that list
+    double on_plan_until_s = std::numeric_limits<double>::infinity();
+    double slack_m = -1.0;  ///< relative travel until a new list of near bodies is needed
+    std::size_t near = 0;   ///< number of bodies in that list
   };
 
   PlanarBody& motion_of(std::size_t i) { return memory_.bodies[i].motion; }
@@ -245,7 +251,9 @@ private:
   void record_actions(double step_s);
   double grip_of(std::size_t i) const;
   double plan_share(double changed_mps) const;
+  PlanarBody planned_body(std::size_t i, double time_s) const;
   void follow_plan(std::size_t i, double share, double step_s);
+  void compare_with_plans();
   void apply_road_forces(std::size_t i, double step_s);
   void stop_resting_bodies();
   void step();

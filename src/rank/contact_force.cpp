@@ -1,9 +1,10 @@
 #include "rank/contact_force.hpp"
 
+#include "rank/hits.hpp"
+#include "rank/nearby_actors.hpp"
 #include "rank/report_contacts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -41,49 +42,43 @@ bool lacks_force(const Scene& scene, const CrashChain& chain, const Contact& con
   return first_force_s(scene, chain, contact.actor) > contact.time_of_impact_s + within_s;
 }
 
-/// Most deviation of the ego from its plan for which the contacts of the plan count, m.
-constexpr double on_plan_m = 0.1;
-
-/// Upper bound of the deviation of a body from its plan at a time, by the contacts before, m.
-double deviation_m(const Scene& scene, const CrashChain& chain, std::size_t body, double time_s) {
-  const Body& of = body == ego_body ? scene.ego : scene.actors[body];
-  double deviation = 0.0;
-  for (const SceneContact& contact : chain.contacts()) {
-    const double after_s = time_s - contact.first_force_s;
-    const bool is_a = are_one(scene, chain.body(contact.a), body);
-    if (!(is_a || are_one(scene, chain.body(contact.b), body)) || !(after_s > 0.0)) continue;
-    const BodyContact& own = is_a ? contact.outcome.a : contact.outcome.b;
-    const double turned = std::abs(own.delta_yaw_rate_radps) * after_s;
-    // From 1 m/s on the driver no longer follows the plan, but brakes or coasts.
-    const double braked = 0.5 * standard_gravity_mps2 * std::min(1.0, own.delta_v_mps.norm());
-    deviation += own.delta_v_mps.norm() * after_s + braked * after_s * after_s +
-                 turned * (of.radius_m + 0.5 * own.after.linear_mps.norm() * after_s);
-  }
-  return deviation;
+/// Time until which an actor keeps to its plan in the simulation, s.
+double on_plan_until_s(const Scene& scene, const CrashChain& chain, std::size_t actor) {
+  std::size_t k = 0;
+  while (k < chain.bodies() && !are_one(scene, chain.body(k), actor)) ++k;
+  return k < chain.bodies() ? chain.run().on_plan_until_s(k)
+                            : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
 
-std::size_t actor_without_force(const Scene& scene, const Motion& ego, std::size_t future,
-                                const CrashChain& chain, const Contact& first,
-                                ImpactWorkspace& workspace) {
+std::optional<std::size_t> actor_without_force(const Scene& scene, const Motion& ego,
+                                               std::size_t future, const Contact& first,
+                                               Scratch& scratch, RankWork& work) {
+  const CrashChain& chain = scratch.chain;
   if (lacks_force(scene, chain, first)) return first.actor;
-  double until_s = first.time_of_impact_s;
-  constexpr double step_s = 0.05;
-  while (until_s < scene.slice_s.back() &&
-         deviation_m(scene, chain, ego_body, until_s + step_s) <= on_plan_m) {
-    until_s += step_s;
-  }
-  if (!(until_s > first.time_of_impact_s)) return no_actor;
-  for (std::size_t i = 0; i < scene.actors.size(); ++i) {
-    const std::uint32_t followed = scene.futures.plan(future, i);
-    if (followed == Futures::absent || are_one(scene, i, first.actor)) continue;
-    const Motion& motion = scene.futures.plans[followed].motion;
-    const Impact impact =
-        time_of_impact(scene.ego.model->tree, ego, scene.actors[i].model->tree, motion,
-                       first.time_of_impact_s, until_s, workspace, scene.impact);
-    if (!impact.hit() || deviation_m(scene, chain, i, impact.time_s) > on_plan_m) continue;
-    if (lacks_force(scene, chain, first_touch(scene, ego, i, motion, impact).contact)) return i;
+  const double from_s = first.time_of_impact_s;
+  const double until_s = std::min(on_plan_until_s(scene, chain, ego_body), scene.slice_s.back());
+  if (!(until_s > from_s)) return no_actor;
+  find_nearby_actors(scene, ego, scene.futures.group(future), from_s, until_s, scratch, work);
+  ImpactOptions options = scene.impact;
+  options.stop = scratch.stop.ask;
+  options.stop_context = scratch.stop.context;
+  for (const Scratch::Near& near : scratch.near) {
+    const Plan& plan = scene.futures.plans[near.plan];
+    if (!scene.futures.follows(future, near.plan) || are_one(scene, plan.actor, first.actor)) {
+      continue;
+    }
+    const double begin_s = std::max(from_s, scene.slice_s[near.first_slice]);
+    const double end_s = std::min(
+        {until_s, scene.slice_s[near.last_slice + 1], on_plan_until_s(scene, chain, plan.actor)});
+    if (begin_s > end_s) continue;
+    const Impact impact = find_impact(scene, ego, plan, begin_s, end_s, scratch.impact, options);
+    work.impact += impact.work;
+    if (impact.state == ImpactState::undecided && scratch.stopped()) return {};
+    if (!impact.hit()) continue;
+    const Contact contact = first_touch(scene, ego, plan.actor, plan.motion, impact).contact;
+    if (lacks_force(scene, chain, contact)) return plan.actor;
   }
   return no_actor;
 }

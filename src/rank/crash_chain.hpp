@@ -48,6 +48,7 @@ public:
   /// Body of that index in a contact: an actor or the ego. Of joined bodies it is the actor of the
   /// first contact or, otherwise, their first member.
   std::size_t body(std::size_t index) const { return actors_[index]; }
+  std::size_t bodies() const { return actors_.size(); }
   /// Returns true if the outlines press on each other in the first contact.
   bool first_acts() const;
   /// Index that stands for a first contact without force.

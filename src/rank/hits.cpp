@@ -16,8 +16,24 @@ bool starts_at_ego_pose(const Scene& scene, const Motion& motion) {
          pose.translation == scene.ego_start.translation;
 }
 
-/// First contact of the ego with an actor on a plan. The pair is searched in the order of
-/// `goes_second`, so that exchanging the two bodies does not change a bit of time and points.
+ImpactOptions options_for(const Scene& scene, const Scratch& scratch, const Scratch::Near& near,
+                          bool same_start) {
+  ImpactOptions options = scene.impact;
+  options.stop = scratch.stop.ask;
+  options.stop_context = scratch.stop.context;
+  options.start_is_apart =
+      near.first_slice > 0 || (same_start && scene.apart_at_start[near.plan] != 0);
+  return options;
+}
+
+void sort_by_time(std::vector<Scratch::Hit>& hits) {
+  std::sort(hits.begin(), hits.end(), [](const Scratch::Hit& p, const Scratch::Hit& q) {
+    return p.impact.time_s != q.impact.time_s ? p.impact.time_s < q.impact.time_s : p.plan < q.plan;
+  });
+}
+
+}  // namespace
+
 Impact find_impact(const Scene& scene, const Motion& ego, const Plan& plan, double from_s,
                    double until_s, ImpactWorkspace& workspace, const ImpactOptions& options) {
   const Body& actor = scene.actors[plan.actor];
@@ -38,24 +54,6 @@ Impact find_impact(const Scene& scene, const Motion& ego, const Plan& plan, doub
   impact.normal = Eigen::Vector3d::Zero() - impact.normal;
   return impact;
 }
-
-ImpactOptions options_for(const Scene& scene, const Scratch& scratch, const Scratch::Near& near,
-                          bool same_start) {
-  ImpactOptions options = scene.impact;
-  options.stop = scratch.stop.ask;
-  options.stop_context = scratch.stop.context;
-  options.start_is_apart =
-      near.first_slice > 0 || (same_start && scene.apart_at_start[near.plan] != 0);
-  return options;
-}
-
-void sort_by_time(std::vector<Scratch::Hit>& hits) {
-  std::sort(hits.begin(), hits.end(), [](const Scratch::Hit& p, const Scratch::Hit& q) {
-    return p.impact.time_s != q.impact.time_s ? p.impact.time_s < q.impact.time_s : p.plan < q.plan;
-  });
-}
-
-}  // namespace
 
 bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, Scratch& scratch,
                RankWork& work) {

@@ -10,6 +10,11 @@ namespace crashrank::detail {
 bool find_hits(const Scene& scene, const Motion& ego, const FutureGroup& group, Scratch& scratch,
                RankWork& work);
 
+/// First contact of the ego with an actor on a plan. The pair is searched in the order of
+/// `goes_second`, so that exchanging the two bodies does not change a bit of time and points.
+Impact find_impact(const Scene& scene, const Motion& ego, const Plan& plan, double from_s,
+                   double until_s, ImpactWorkspace& workspace, const ImpactOptions& options);
+
 /// First contact in a future of the searched group; null if there is none.
 const Scratch::Hit* first_hit(const Scene& scene, const Scratch& scratch, std::size_t future);
 

@@ -73,11 +73,12 @@ bool simulate_future(const Scene& scene, const Motion& ego, std::size_t future, 
                    records ? &result.motion : nullptr);
     result.crowded = scratch.chain.run().crowded();
     found.summary.contacts = scratch.chain.contacts().size();
-    const std::size_t unforced =
-        actor_without_force(scene, ego, future, scratch.chain, first, scratch.impact);
+    const std::optional<std::size_t> unforced =
+        actor_without_force(scene, ego, future, first, scratch, work);
+    if (!unforced) return false;
     touch.contact.contact_without_force = unforced == first.actor;
     found.summary.contact_without_force = unforced != no_actor;
-    if (unforced != no_actor) found.summary.unforced_actor = unforced;
+    if (unforced != no_actor) found.summary.unforced_actor = *unforced;
     found.reported =
         report_contacts(scene, scratch.chain, touch, scratch.order, result, found.plans);
     if (!scene.finds_damage) found.plans.clear();

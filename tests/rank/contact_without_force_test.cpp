@@ -87,6 +87,12 @@ TEST(ContactWithoutForce, AnEarlierClipHidesNone) {
   EXPECT_TRUE(clips.futures.front().contact_without_force);
   EXPECT_EQ(clips.futures.front().unforced_actor, 0U);
   EXPECT_NEAR(clips.score_interval.highest, 1.0, 1e-6);
+  // Nor does one that is pushed along.
+  scene.scenario.models[cone].mass_kg = 10.0;
+  scene.scenario.actors.back().pose.translation.y() = 0.0;
+  const CandidateResult pushes = of(scene.ranked(), "on");
+  EXPECT_FALSE(pushes.contacts.front().contact_without_force);
+  EXPECT_EQ(pushes.futures.front().unforced_actor, 0U);
   // What throws the ego off its plan leaves open what comes after.
   scene.scenario.models[cone].mass_kg = 800.0;
   const CandidateResult hits = of(scene.ranked(), "on");

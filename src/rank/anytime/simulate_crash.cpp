@@ -107,10 +107,16 @@ bool simulate_crash(const RefineQuery& q, CandidateState& state, Scratch& scratc
   work.crash_steps += chain.run().steps();
   work.crash_pieces += chain.run().work();
   if (!going) {
-    chain.effects(scratch.effects, scratch.order);
-    future.score = left + scratch.score.score(q.scene, scratch.effects, nominal);
-    future.contact_without_force =
-        actor_without_force(q.scene, ego, index, chain, first, scratch.impact) != no_actor;
+    const std::optional<std::size_t> unforced =
+        actor_without_force(q.scene, ego, index, first, scratch, work);
+    if (unforced) {
+      chain.effects(scratch.effects, scratch.order);
+      future.score = left + scratch.score.score(q.scene, scratch.effects, nominal);
+      future.contact_without_force = unforced != no_actor;
+    } else {
+      in_time = false;
+      bound();
+    }
   }
   if (!share_score(q.scene, index, state, scratch)) {
     future = before;
