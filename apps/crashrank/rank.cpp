@@ -46,6 +46,7 @@ struct RankArguments {
   std::string damage_folder;
   std::size_t damage_top = 5;
   std::string report;
+  std::string mcap;
   std::size_t top = 20;
   unsigned workers = std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
   std::string policy = "late-match";
@@ -195,6 +196,11 @@ bool is_played(const RankArguments& options, const Scenario& scenario) {
 
 int run(const RankArguments& options) {
   if (const Status sound = check_motion(options); !sound) return fail(sound.error());
+  if (!options.mcap.empty()) {
+    return fail(make_error(ErrorCode::usage, "--mcap is written by the Python package",
+                           "pip install '.[mcap]' in the folder of the source, then python -m "
+                           "crashrank rank SCENARIO --mcap OUT.mcap"));
+  }
   if (options.json && is_standard(options.report)) {
     return fail(make_error(ErrorCode::usage,
                            "--json and --report - would both write standard output",
@@ -413,6 +419,9 @@ void add_rank(CLI::App& app, Action& action) {
       ->check([](const std::string& text) {
         return text.empty() ? std::string("names no file") : std::string();
       });
+  add_file(*command, "--mcap", options->mcap,
+           "The scene of the report for Foxglove, and a layout beside it; by the Python package's "
+           "crashrank alone");
   add_count(*command, "--damage-top", options->damage_top,
             "Colliding candidates written there, best first, 0 for all", 0, 1'000'000);
   add_allowed_folders(*command, options->allowed_folders);

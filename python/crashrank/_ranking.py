@@ -19,6 +19,7 @@ from ._scenario import Scenario, as_scenario
 if TYPE_CHECKING:
     import pandas
     import pyarrow
+    import rerun
     from matplotlib.figure import Figure
 
 
@@ -139,8 +140,8 @@ class Ranking(Sequence[RankedCandidate]):
     ``measure_unit``, ``complete``, ``proved``, ``basis``, ``in_race``, ``warnings``,
     ``stability``, ...
 
-    A pickled ranking keeps its answer and its table; `report` and `plot` need the one that was
-    ranked. Copies are the ranking itself: it never changes.
+    A pickled ranking keeps its answer and its table; `report`, `plot`, `to_mcap` and `to_rerun`
+    need the one that was ranked. Copies are the ranking itself: it never changes.
     """
 
     __slots__ = ("__weakref__", "_document", "_ranked")
@@ -279,6 +280,42 @@ class Ranking(Sequence[RankedCandidate]):
             raise NotFoundError(
                 "not_found", file, "", f"cannot be written: {error.strerror}", "choose another file"
             ) from error
+
+    @checked_call
+    def to_mcap(self, path: object, *, drawn: int = 24) -> None:
+        """Write the report's scene as Foxglove's messages; needs ``crashrank[mcap]``.
+
+        Every body of every candidate moves in a frame of its own, with damage in red from its
+        first contact on. Time is counted from the decision. A layout is written beside the file:
+        ``out.layout.json`` for ``out.mcap``.
+
+        Parameters
+        ----------
+        path : path
+            The file to write. Replaced where it exists.
+        drawn : int
+            Most candidates that are written, best first, and the worst; 0 for all.
+        """
+        from ._mcap import write_mcap
+
+        file = as_path(path, "path")
+        write_mcap(self._ranked.html(as_count(drawn, "drawn", 0, 2**31)), file)
+
+    @checked_call
+    def to_rerun(self, *, drawn: int = 24) -> rerun.RecordingStream:
+        """Return the report's scene as a recording; needs ``crashrank[rerun]``.
+
+        ``ranking.to_rerun().save("out.rrd")`` writes it, ``.spawn()`` shows it. One view for each
+        candidate, on the timeline ``decision``.
+
+        Parameters
+        ----------
+        drawn : int
+            Most candidates that are recorded, best first, and the worst; 0 for all.
+        """
+        from ._rerun import to_rerun
+
+        return to_rerun(self._ranked.html(as_count(drawn, "drawn", 0, 2**31)))
 
     @checked_call
     def plot(self, *, candidate: str | int | None = None, top: int = 12) -> Figure:

@@ -1,6 +1,7 @@
 #include "crashrank/base/box.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "report/bytes.hpp"
+#include "report/glb.hpp"
 #include "report/palette.hpp"
 
 #include <nlohmann/json.hpp>
@@ -16,33 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of the glTF 2.0 specification.
-constexpr int float_component = 5126;
-constexpr int uint32_component = 5125;
-constexpr int vertex_target = 34962;
-constexpr int index_target = 34963;
-constexpr std::uint32_t glb_magic = 0x46546c67;
-constexpr std::uint32_t json_chunk = 0x4e4f534a;
-constexpr std::uint32_t binary_chunk = 0x004e4942;
-
-/// Collects the document's arrays while the binary chunk grows.
+/// The document's parts while its arrays grow.
 struct Writer {
-  std::string binary;
-  Json views = Json::array();
-  Json accessors = Json::array();
+  detail::GlbArrays arrays;
   Json meshes = Json::array();
   Json nodes = Json::array();
-
-  std::size_t add_accessor(const std::string& bytes, int target, Json accessor) {
-    views.push_back({{"buffer", 0},
-                     {"byteOffset", binary.size()},
-                     {"byteLength", bytes.size()},
-                     {"target", target}});
-    binary += bytes;
-    accessor["bufferView"] = views.size() - 1;
-    accessors.push_back(std::move(accessor));
-    return accessors.size() - 1;
-  }
 };
 
 Json corner(const Eigen::Vector3f& point) { return {point.x(), point.y(), point.z()}; }
@@ -79,19 +58,19 @@ void add_part(Writer& writer, const TriangleMesh& mesh, const Part& part,
     for (const std::uint32_t vertex : mesh.triangles[i]) place[vertex] = unused;
   }
   if (count == 0) return;
-  const std::size_t position = writer.add_accessor(positions, vertex_target,
-                                                   {{"componentType", float_component},
-                                                    {"count", count},
-                                                    {"type", "VEC3"},
-                                                    {"min", corner(box.min)},
-                                                    {"max", corner(box.max)}});
+  const std::size_t position = writer.arrays.add(positions, detail::gltf_vertices,
+                                                 {{"componentType", detail::gltf_float},
+                                                  {"count", count},
+                                                  {"type", "VEC3"},
+                                                  {"min", corner(box.min)},
+                                                  {"max", corner(box.max)}});
   Json primitives = Json::array();
   for (std::size_t state = 0; state < indices.size(); ++state) {
     if (indices[state].empty()) continue;
-    const std::size_t accessor = writer.add_accessor(indices[state], index_target,
-                                                     {{"componentType", uint32_component},
-                                                      {"count", indices[state].size() / 4},
-                                                      {"type", "SCALAR"}});
+    const std::size_t accessor = writer.arrays.add(indices[state], detail::gltf_indices,
+                                                   {{"componentType", detail::gltf_uint32},
+                                                    {"count", indices[state].size() / 4},
+                                                    {"type", "SCALAR"}});
     primitives.push_back({{"attributes", {{"POSITION", position}}},
                           {"indices", accessor},
                           {"material", state},
@@ -99,12 +78,6 @@ void add_part(Writer& writer, const TriangleMesh& mesh, const Part& part,
   }
   writer.meshes.push_back({{"name", part.name}, {"primitives", std::move(primitives)}});
   writer.nodes.push_back({{"name", part.name}, {"mesh", writer.meshes.size() - 1}});
-}
-
-void put_chunk(std::string& out, std::uint32_t type, const std::string& bytes) {
-  detail::put_u32(out, static_cast<std::uint32_t>(bytes.size()));
-  detail::put_u32(out, type);
-  out += bytes;
 }
 
 }  // namespace
@@ -117,37 +90,16 @@ Result<std::string> damage_glb(const TriangleMesh& mesh, View<const std::uint32_
 
   Json children = Json::array();
   for (std::size_t i = 0; i < writer.nodes.size(); ++i) children.push_back(i);
-  // Forward x, left y, up z become glTF's z, x, y: a turn by -120 degrees about (1, 1, 1).
   writer.nodes.push_back(
-      {{"name", "body"}, {"rotation", {-0.5, -0.5, -0.5, 0.5}}, {"children", std::move(children)}});
+      {{"name", "body"}, {"rotation", detail::gltf_axes()}, {"children", std::move(children)}});
   Json document{{"asset", {{"version", "2.0"}, {"generator", "crashrank"}}},
                 {"scene", 0},
                 {"scenes", Json::array({{{"nodes", Json::array({writer.nodes.size() - 1})}}})},
                 {"nodes", std::move(writer.nodes)},
                 {"meshes", std::move(writer.meshes)},
                 {"materials", Json::array({material("intact", detail::intact_colour),
-                                           material("damaged", detail::damaged_colour)})},
-                {"accessors", std::move(writer.accessors)},
-                {"bufferViews", std::move(writer.views)},
-                {"buffers", Json::array({{{"byteLength", writer.binary.size()}}})}};
-  std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-
-  constexpr std::size_t header_bytes = 12;
-  constexpr std::size_t chunk_header_bytes = 8;
-  const std::size_t total =
-      header_bytes + 2 * chunk_header_bytes + json.size() + writer.binary.size();
-  if (total > std::numeric_limits<std::uint32_t>::max()) {
-    return make_error(ErrorCode::limit_exceeded, "the mesh does not fit into a GLB file of 4 GiB");
-  }
-  std::string out;
-  out.reserve(total);
-  detail::put_u32(out, glb_magic);
-  detail::put_u32(out, 2);
-  detail::put_u32(out, static_cast<std::uint32_t>(total));
-  put_chunk(out, json_chunk, json);
-  put_chunk(out, binary_chunk, writer.binary);
-  return out;
+                                           material("damaged", detail::damaged_colour)})}};
+  return detail::glb_file(std::move(document), std::move(writer.arrays));
 }
 
 }  // namespace crashrank

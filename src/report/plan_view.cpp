@@ -91,8 +91,8 @@ public:
   }
 
   bool shows(const Eigen::Vector2d& world, double reach) const {
-    return std::abs(world.x() - middle_.x()) < half_width_m + reach &&
-           std::abs(world.y() - middle_.y()) < half_height_m + reach;
+    return std::abs(world.x() - middle_.x()) < half_m_.x() + reach &&
+           std::abs(world.y() - middle_.y()) < half_m_.y() + reach;
   }
 
   std::string path(const Outline& world) const {
@@ -170,6 +170,19 @@ std::string arrow(const Canvas& canvas, const Eigen::Vector2d& at,
       right.y());
 }
 
+/// How much larger than usual a page around `middle` has to be so that no edge cuts an outline; a
+/// wall longer than the page twice as large is cut.
+double growth(const Eigen::Vector2d& middle, const Outline& outline, const Pose& pose) {
+  constexpr double margin_m = 0.5;
+  double grown = 1.0;
+  for (const Eigen::Vector2d& point : outline) {
+    const Eigen::Vector2d away = (ground(pose, point) - middle).cwiseAbs();
+    grown = std::max(
+        {grown, (away.x() + margin_m) / half_width_m, (away.y() + margin_m) / half_height_m});
+  }
+  return std::min(grown, 2.0);
+}
+
 /// What is drivable; without areas all is.
 std::string road(const Canvas& canvas, const Road& road) {
   std::string svg;
@@ -216,8 +229,14 @@ std::string PlanView::draw(std::size_t place) const {
   const bool hit = !ranked.contacts.empty();
   const double time_s = hit ? ranked.contacts.front().time_of_impact_s : scenario_.horizon_s;
   const Pose ego_pose = ego.pose_at(time_s);
-  const Canvas canvas(hit ? Eigen::Vector2d(ranked.contacts.front().point_m.head<2>())
-                          : Eigen::Vector2d(ego_pose.translation.head<2>()));
+  const Eigen::Vector2d middle = hit ? ranked.contacts.front().point_m.head<2>().eval()
+                                     : ego_pose.translation.head<2>().eval();
+  double grown = growth(middle, outlines_[scenario_.ego.model], ego_pose);
+  if (hit) {
+    const Contact& first = ranked.contacts.front();
+    grown = std::max(grown, growth(middle, outline_of_actor(first.actor), first.other.pose));
+  }
+  const Canvas canvas(middle, grown * Eigen::Vector2d(half_width_m, half_height_m));
 
   std::string svg =
       fmt::format("<svg class='plan' viewBox='0 0 {:.0f} {:.0f}' role='img'>\n",

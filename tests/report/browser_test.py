@@ -32,6 +32,20 @@ COUNT = """(() => {
   return [red, blue];
 })()"""
 
+# What scrolls sideways, or cuts what it holds.
+SCROLLED = """[...document.querySelectorAll("main *")].filter((each) => each.clientWidth > 0 &&
+  each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).overflowX !== "visible")
+  .map((each) => each.tagName + each.id + each.className)"""
+# Vehicles that the edge of the plan cuts: some of their corners are in the picture, others are not.
+CUT = """BODIES.filter((body) => !modelOf(body).fixed).filter((body) => {
+  const plan = stage.views[0].plan;
+  const seen = outlineAt(body, stage.candidate.poseOf(body, stage.clock.time)).map((corner) => {
+    const [x, y] = plan.to(...corner);
+    return x > 0 && y > 0 && x < plan.width && y < plan.height;
+  });
+  return seen.includes(true) && seen.includes(false);
+}).map(nameOf)"""
+
 
 class ReportTest(unittest.TestCase):
     @classmethod
@@ -43,8 +57,10 @@ class ReportTest(unittest.TestCase):
     def page(self, name):
         if name not in self.pages:
             path = os.path.join(self.folder, name + ".html")
-            scenario = os.path.join(SCENARIOS, name + ".json")
-            subprocess.run([CRASHRANK, "rank", scenario, "--report", path], check=True,
+            scenario = os.path.join(self.folder if name == "long" else SCENARIOS, name + ".json")
+            models = os.path.join(SCENARIOS, "..", "models")
+            subprocess.run([CRASHRANK, "rank", scenario, "--allow", models, "--report", path],
+                           check=True,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=300)
             self.pages[name] = path
         return self.pages[name]
@@ -59,16 +75,46 @@ class ReportTest(unittest.TestCase):
     def test_nothing_is_wider_than_the_page_and_the_console_is_silent(self):
         for name in ("oncoming_truck", "oncoming_may_turn", "room_to_spare"):
             self.assertLessEqual(os.path.getsize(self.page(name)), MOST_BYTES, name)
-            for width in (1400, 820, 390):
+            for width in (1400, 1200, 820, 390):
                 for dark in (False, True):
                     with self.subTest(page=name, width=width, dark=dark):
                         browser = self.open(name, width, dark, touch=width == 390)
                         needed = browser.run("document.documentElement.scrollWidth")
                         self.assertLessEqual(needed, width)
+                        self.assertEqual(browser.run(SCROLLED), [])
                         shade = browser.run("getComputedStyle(document.body).backgroundColor")
                         red = int(re.match(r"rgb\((\d+)", shade)[1])
                         self.assertEqual(red < 128, dark)
                         self.assertEqual(browser.messages, [])
+
+    def test_long_names_and_long_bodies_are_not_cut(self):
+        with open(os.path.join(SCENARIOS, "oncoming_truck.json"), encoding="utf-8") as file:
+            scenario = json.load(file)
+        for model in scenario["models"].values():
+            model["mesh"] = os.path.abspath(os.path.join(SCENARIOS, model["mesh"]))
+        truck = scenario["models"]["truck"]
+        truck["mesh"] = truck["mesh"].replace("truck.obj", "semitrailer.obj")
+        for actor in scenario["actors"]:
+            actor["name"] += "_with_a_name_that_no_line_can_break_anywhere_at_all"
+        for candidate in scenario["candidates"]["listed"]:
+            candidate["name"] += " as long as the grip allows and no other vehicle is in its way"
+        with open(os.path.join(self.folder, "long.json"), "w", encoding="utf-8") as file:
+            json.dump(scenario, file)
+        for width in (1200, 820, 390):
+            with self.subTest(width=width):
+                browser = self.open("long", width, touch=width == 390)
+                needed = browser.run("document.documentElement.scrollWidth")
+                self.assertLessEqual(needed, width)
+                self.assertEqual(browser.run(SCROLLED), [])
+                inside = browser.run("""[...document.querySelectorAll(".bump .name")].every((name) =>
+                    name.getBoundingClientRect().right <= innerWidth)""")
+                self.assertTrue(inside)
+        browser = self.open("long", 1200)
+        for row in range(2):
+            browser.run(f"stage.show({row})")
+            for time in ("0", "stage.candidate.begin", "stage.candidate.first"):
+                browser.run(f"stage.clock.set({time})")
+                self.assertEqual(browser.run(CUT), [], (row, time))
 
     def test_the_slider_moves_bodies_and_damage_is_red(self):
         browser = self.open("oncoming_truck")
@@ -187,7 +233,15 @@ class ReportTest(unittest.TestCase):
         paper = browser.print()
         pages = len(re.findall(rb"/Type\s*/Page\b(?!s)", paper))
         self.assertIn(pages, range(1, 5))
-        self.assertGreaterEqual(len(re.findall(rb"/Subtype\s*/Image", paper)), 2)
+        # The plan is of lines; the view in 3-D is an image that stands over its blank canvas.
+        self.assertGreaterEqual(len(re.findall(rb"/Subtype\s*/Image", paper)), 1)
+        browser.run("window.dispatchEvent(new Event('beforeprint'))")
+        middle = browser.run("""(() => { const canvas = document.querySelector(".words-canvas");
+            return [...canvas.getContext("2d").getImageData(canvas.width / 2, canvas.height / 2,
+              1, 1).data]; })()""")
+        browser.run("window.dispatchEvent(new Event('afterprint'))")
+        self.assertEqual(middle[3], 255)
+        self.assertGreater(sum(middle[:3]), 3 * 100)
         self.assertEqual(browser.messages, [])
 
     def test_without_webgl_a_still_picture_stands_in(self):

@@ -97,7 +97,7 @@ def find_decision_point(
     ordered = sorted(moments, key=lambda moment: moment[0])
     steps: list[DecisionStep] = []
     for at_s, scenario, going_on, _ in ordered:
-        held = _going_on(scenario, going_on, measure, risk)
+        held = going_on_choice(scenario, going_on, measure, risk)
         ranking = rank(
             {**scenario, "candidates": {"grid": grid}}, measure=measure, risk=risk,
             deadline_s=deadline_s, workers=workers,
@@ -128,7 +128,7 @@ def first_contact(found: Imported) -> tuple[float, str] | None:
 
     The earliest of all futures counts.
     """
-    choice = _going_on(found.scenario, found.going_on)
+    choice = going_on_choice(found.scenario, found.going_on)
     if choice.time_of_impact_s is None:
         return None
     return found.report.time_s + choice.time_of_impact_s, choice.other or ""
@@ -180,7 +180,7 @@ def _given(source: object) -> Iterator[_Moment]:
         raise usage("source", "is empty", "give one scenario or more")
 
 
-def _going_on(
+def going_on_choice(
     scenario: Mapping[str, Any],
     motion: Mapping[str, Any],
     measure: str | None = None,

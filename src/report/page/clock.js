@@ -139,7 +139,7 @@ class Clock {
     context.fillRect(at(this.time) - 0.5, 0, 1, base);
     context.fillStyle = COLOURS.soft;
     const words = traces.map(([body]) => [body, candidate.exposureOf(body, this.time)])
-      .filter(([, speed]) => speed > 0.3).map(([body, speed]) => `${nameOf(body)} ${kmh(speed)}`);
+      .filter(([, speed]) => speed > 0.3).map(([body, speed]) => `${shortened(nameOf(body))} ${kmh(speed)}`);
     context.textAlign = "left";
     context.fillText(words.length > 0 ? "change within 0.3 s: " + words.join(", ")
       : "change of velocity within 0.3 s, by contacts and tyres", margin, height - 2);

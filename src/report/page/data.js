@@ -53,6 +53,12 @@ function modelOf(body) {
 const tiltOf = (body) => body === EGO ? DATA.ego.tilt : DATA.actors[body].tilt;
 const nameOf = (body) => body === EGO ? "ego" : DATA.actors[body].name;
 
+// Words that fit a narrow place; the whole name stands in the text of the page.
+function shortened(words, most = 24) {
+  const letters = [...words];
+  return letters.length <= most ? words : letters.slice(0, most - 1).join("").trimEnd() + "…";
+}
+
 // Corners of what is seen of a body from above.
 function outlineAt(body, pose) {
   return modelOf(body).outline.map(([forward, left]) => carry(pose, forward, left));
@@ -170,7 +176,8 @@ function planInFuture(candidate, future) {
 function sceneOf(candidate) {
   const points = [];
   const add = (body, pose) => points.push(...outlineAt(body, pose));
-  const begin = candidate.begin;
+  // What little lies before the begin is seen as well.
+  const begin = candidate.begin < 0.5 ? 0 : candidate.begin;
   const until = candidate.first === null ? candidate.end : Math.min(candidate.end, candidate.first + 3);
   const bodies = new Set(candidate.hit).add(EGO);
   for (const body of bodies) {

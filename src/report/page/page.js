@@ -11,12 +11,23 @@ const table = new RankingTable((row) => {
 });
 showFutures(CANDIDATES[0]);
 showStability();
+let widthBefore = innerWidth;
+window.addEventListener("resize", () => {
+  if (innerWidth === widthBefore) return;
+  widthBefore = innerWidth;
+  showStability();
+});
 
-function repaint() {
+// Reads colours again, and paints with them what was painted once.
+function recolour() {
   readColours();
   for (const view of stage.views) if (view.view) view.view.candidate = null;
-  stage.clock.set(stage.clock.time);
   showFutures(stage.candidate);
+}
+
+function repaint() {
+  recolour();
+  stage.clock.set(stage.clock.time);
 }
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
 
@@ -26,7 +37,7 @@ window.addEventListener("beforeprint", () => {
   stage.clock.pause();
   timeBefore = stage.clock.time;
   document.documentElement.classList.add("paper");
-  readColours();
+  recolour();
   table.print();
   stage.clock.set(stage.candidate.first ?? stage.candidate.end / 2);
 });

@@ -74,13 +74,38 @@ class PlanPane {
     this.turn = -poseOn(candidate.source.plan, 0).heading;
     const c = Math.cos(this.turn);
     const s = Math.sin(this.turn);
-    const points = sceneOf(candidate).map(([x, y]) => [c * x - s * y, s * x + c * y]);
+    const turned = (corners) => corners.map(([x, y]) => [c * x - s * y, s * x + c * y]);
+    let points = turned(sceneOf(candidate));
+    this.frame(points);
+    // Vehicles that the edge of the picture would cut stand in it as a whole. More of them come
+    // into a larger picture: once more, and no further.
+    const until = candidate.first === null ? candidate.end : candidate.first + 1;
+    const outlines = BODIES.filter((body) => !modelOf(body).fixed).flatMap((body) =>
+      [0, candidate.begin, candidate.first ?? until, until, candidate.end].map((time) =>
+        turned(outlineAt(body, candidate.poseOf(body, time)))));
+    for (let i = 0; i < 2; ++i) {
+      points = points.concat(outlines.filter((corners) => this.cuts(corners)).flat());
+      this.frame(points);
+    }
+  }
+
+  // Takes what has to be seen, in turned coordinates.
+  frame(points) {
     const ends = [0, 1].map((axis) => {
       const values = points.map((point) => point[axis]);
       return [Math.min(...values), Math.max(...values)];
     });
     this.middle = ends.map(([low, high]) => (low + high) / 2);
     this.extent = ends.map(([low, high]) => high - low + 5);
+  }
+
+  // Whether some of these corners are in the picture and some are not.
+  cuts(corners) {
+    const size = [this.canvas.clientWidth || 600, this.canvas.clientHeight || 400];
+    const scale = Math.min(size[0] / this.extent[0], size[1] / this.extent[1], 40);
+    const seen = corners.filter((corner) => corner.every(
+      (value, axis) => Math.abs(value - this.middle[axis]) < size[axis] / scale / 2));
+    return seen.length > 0 && seen.length < corners.length;
   }
 
   scaleOf() {
@@ -245,23 +270,37 @@ class PlanPane {
     });
   }
 
-  // Names below the bodies; those that matter most first.
+  // Left, top, right and bottom of a body on the canvas.
+  boxOf(body, pose) {
+    const corners = outlineAt(body, pose).map((corner) => this.to(...corner));
+    const [x, y] = [0, 1].map((axis) => corners.map((corner) => corner[axis]));
+    return [Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)];
+  }
+
+  // Names below the bodies, or above; those that matter most first.
   labels(candidate, time) {
     const labels = new Labels(this.context, this.width, this.height);
+    const boxes = new Map(BODIES.map((body) => [body, this.boxOf(body, candidate.poseOf(body, time))]));
+    const isOnOther = (body, x, y) => [...boxes].some(([other, [left, top, right, bottom]]) =>
+      other !== body && x > left && x < right && y > top && y < bottom + 9);
     const below = (body, pose, text, colour) => {
       const [x] = this.to(...middleOfBody(body, pose));
-      const y = Math.max(...outlineAt(body, pose).map((corner) => this.to(...corner)[1]));
-      labels.add(text, x, y + 13, colour);
+      const [, top, , bottom] = this.boxOf(body, pose);
+      const bases = [bottom + 13, top - 4];
+      if (isOnOther(body, x, bases[0]) && !isOnOther(body, x, bases[1])) bases.reverse();
+      labels.add(text, x, bases, colour);
     };
     const hit = candidate.hit.filter((body) => body !== EGO);
     const rest = BODIES.filter((body) => body !== EGO && !hit.includes(body));
     for (const body of [EGO, ...hit]) {
-      below(body, candidate.poseOf(body, time), nameOf(body), COLOURS.ink);
+      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
     }
     for (const {body, p, plan} of ELSEWHERE) {
-      below(body, poseOn(plan, time), percent(p) + " " + nameOf(body), COLOURS.future);
+      below(body, poseOn(plan, time), percent(p) + " " + shortened(nameOf(body)), COLOURS.future);
     }
-    for (const body of rest) below(body, candidate.poseOf(body, time), nameOf(body), COLOURS.soft);
+    for (const body of rest) {
+      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.soft);
+    }
   }
 
   scaleBar() {
@@ -284,7 +323,8 @@ function middleOfBody(body, pose) {
   return carry(pose, (Math.min(...ends) + Math.max(...ends)) / 2, 0);
 }
 
-// Names on a picture; one that would cover another, or stand outside, is left out.
+// Names on a picture; one that would cover another wherever it may stand, or that stands outside,
+// is left out.
 class Labels {
   constructor(context, width, height) {
     this.context = context;
@@ -293,15 +333,17 @@ class Labels {
     this.placed = [];
   }
 
-  // `x` is the middle of the text, `y` its base.
-  add(text, x, y, colour) {
+  // `x` is the middle of the text, `bases` are heights at which it may stand, best first.
+  add(text, x, bases, colour) {
     this.context.font = "12px system-ui, sans-serif";
     const half = this.context.measureText(text).width / 2;
-    if (x < -half || x > this.width + half || y < 0 || y > this.height + 12) return;
-    const at = [clamp(x, half + 2, this.width - half - 2), clamp(y, 12, this.height - 4)];
-    const covers = ([otherX, otherY, otherHalf]) => Math.abs(otherY - at[1]) < 13 &&
-      Math.abs(otherX - at[0]) < half + otherHalf + 3;
-    if (this.placed.some(covers)) return;
+    if (x < -half || x > this.width + half) return;
+    const covers = (at) => this.placed.some(([otherX, otherY, otherHalf]) =>
+      Math.abs(otherY - at[1]) < 13 && Math.abs(otherX - at[0]) < half + otherHalf + 3);
+    const at = bases.filter((y) => y > 0 && y < this.height + 12)
+      .map((y) => [clamp(x, half + 2, this.width - half - 2), clamp(y, 12, this.height - 4)])
+      .find((place) => !covers(place));
+    if (!at) return;
     this.placed.push([...at, half]);
     drawLabel(this.context, text, at[0] - half, at[1], colour);
   }

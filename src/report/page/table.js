@@ -16,7 +16,9 @@ class RankingTable {
     this.listed = document.getElementById("listed");
     this.isLong = DATA.rows.length > FEW_ROWS;
     this.holder.classList.toggle("long", this.isLong);
-    this.rowHeight = 46;
+    // Of long tables, as the style sheet says for wide and for narrow pages.
+    this.narrow = matchMedia("(max-width: 700px)");
+    this.table.classList.toggle("calm", DATA.rows.every((row) => !row[WARNINGS]));
     this.open = null;
     this.openHeight = 0;
     this.sorted = {column: 0, isDown: false};
@@ -29,8 +31,11 @@ class RankingTable {
     this.filter.addEventListener("input", () => this.arrange());
     this.holder.addEventListener("scroll", () => this.draw());
     window.addEventListener("resize", () => this.draw());
+    this.narrow.addEventListener("change", () => this.draw(true));
     this.arrange();
   }
+
+  get rowHeight() { return this.narrow.matches ? 92 : 46; }
 
   sort(column) {
     this.sorted = {column, isDown: this.sorted.column === column && !this.sorted.isDown};
@@ -113,7 +118,8 @@ class RankingTable {
     if (row[INTERVAL]) score.append(element("span", {class: "interval"}, row[INTERVAL]));
     const warnings = element("td");
     if (row[WARNINGS]) warnings.append(element("em", {}, row[WARNINGS]));
-    made.append(place, name, score, element("td", {title: row[CONTACT]}, row[CONTACT]), warnings);
+    made.append(place, name, score,
+      element("td", {class: "contact", title: row[CONTACT]}, row[CONTACT]), warnings);
     made.addEventListener("click", () => this.toggle(index));
     return made;
   }

@@ -47,7 +47,7 @@ function futurePictures(candidate, most) {
       const canvas = element("canvas", {role: "img", "aria-label": futureWords(future)});
       const figure = element("figure", {}, canvas, element("figcaption", {}, futureWords(future)));
       figure.style.setProperty("--share", 100 * future.score / most + "%");
-      requestAnimationFrame(() => drawFuture(canvas, candidate, future));
+      drawFuture(canvas, candidate, future);
       return figure;
     });
   return element("div", {class: "pictures"}, ...figures);
@@ -87,39 +87,54 @@ function drawFuture(canvas, candidate, future) {
   fill(EGO, ego, COLOURS.ego);
 }
 
-// Places of the first candidates in every sample of what is not known.
+// Places of the first candidates in every sample of what is not known, as wide as the page has room.
 function showStability() {
   const told = DATA.stability;
   if (!told) return;
   const holder = document.getElementById("stability");
   const samples = told.places[0].length;
-  const [width, step, left, right] = [760, 24, 30, 190];
+  const width = clamp(holder.clientWidth, 300, 1000);
+  const [step, left, letter] = [24, 24, 6.6];
+  // Names get what they need, half of the chart at most.
+  const most = Math.floor(width / 2 / letter);
+  const names = told.names.map((name) => shortened(name, most));
+  const right = 14 + letter * Math.max(...names.map((name) => [...name].length));
   const deepest = Math.min(Math.max(...told.places.flat()), told.places.length + 4);
-  const height = 34 + step * deepest;
-  const chart = svg("svg", {viewBox: `0 0 ${width} ${height}`, class: "bump", role: "img",
+  const foot = 8 + step * deepest;
+  const chart = svg("svg", {class: "bump", role: "img",
     "aria-label": "Places of the first candidates over the samples of what is not known"});
   const x = (i) => left + (width - left - right) * (samples > 1 ? i / (samples - 1) : 0);
   const y = (place) => 8 + step * (Math.min(place, deepest) - 0.5);
   for (let place = 1; place <= deepest; ++place) {
     chart.append(svg("text", {x: 4, y: y(place) + 4}, place));
   }
+  // Titles of groups stand in the first line in which they cover none.
+  const lines = [];
   let begin = 0;
   for (const [title, count] of told.groups) {
-    chart.append(svg("line", {x1: x(begin), x2: x(begin), y1: 4, y2: height - 26, class: "rule"}));
     if (count / samples > 0.12) {
-      chart.append(svg("text", {x: x(begin) + 3, y: height - 8}, title));
+      let line = lines.findIndex((end) => end < x(begin));
+      if (line < 0) line = lines.length;
+      lines[line] = x(begin) + letter * title.length + 8;
+      const base = foot + 16 * (line + 1);
+      chart.append(svg("line", {x1: x(begin), x2: x(begin), y1: 4, y2: base, class: "rule"}));
+      chart.append(svg("text", {x: x(begin) + 3, y: base}, title));
     }
     begin += count;
   }
+  const height = foot + 16 * lines.length + 6;
+  chart.setAttribute("viewBox", `0 0 ${width} ${height}`);
   told.places.forEach((places, k) => {
     const points = places.map((place, i) => `${x(i).toFixed(1)},${y(place).toFixed(1)}`).join(" ");
     const line = svg("polyline", {points, class: k === 0 ? "first" : "later"});
     line.style.setProperty("--turn", `${47 * k}deg`);
     line.append(svg("title", {}, told.names[k]));
-    const name = svg("text", {x: width - right + 8, y: y(places[samples - 1]) + 4}, told.names[k]);
+    const name = svg("text", {x: width - right + 8, y: y(places[samples - 1]) + 4, class: "name"},
+      names[k]);
+    name.append(svg("title", {}, told.names[k]));
     chart.append(line, name);
   });
-  spreadNames(chart, step * 0.6, width - right);
+  spreadNames(chart, step * 0.6);
   holder.replaceChildren(
     element("h3", {}, `Places over ${samples} samples of what is not known`), chart,
     element("p", {class: "hint"}, "Every column is one combination of friction, stiffness, " +
@@ -127,9 +142,8 @@ function showStability() {
 }
 
 // Names at the end of the lines stand below each other where they would cover each other.
-function spreadNames(chart, gap, from) {
-  const names = [...chart.querySelectorAll("text")].filter(
-    (text) => Number(text.getAttribute("x")) > from);
+function spreadNames(chart, gap) {
+  const names = [...chart.querySelectorAll(".name")];
   names.sort((a, b) => a.getAttribute("y") - b.getAttribute("y"));
   let before = -Infinity;
   for (const name of names) {
@@ -138,4 +152,3 @@ function spreadNames(chart, gap, from) {
     before = y;
   }
 }
-

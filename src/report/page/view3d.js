@@ -146,7 +146,8 @@ class View3d {
   constructor(canvas, overlay) {
     this.canvas = canvas;
     this.overlay = overlay;
-    const gl = canvas.getContext("webgl2", {antialias: true, preserveDrawingBuffer: true});
+    const gl = canvas.getContext("webgl2",
+      {alpha: false, antialias: true, preserveDrawingBuffer: true});
     if (!gl) throw new Error("no WebGL 2");
     this.gl = gl;
     this.bodies = this.program(BODY_VERTEX, BODY_FRAGMENT);
@@ -492,17 +493,21 @@ class View3d {
     const context = this.overlay.getContext("2d");
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, this.width, this.height);
+    // Browsers print what is drawn with WebGL as a blank.
+    if (document.documentElement.classList.contains("paper")) {
+      context.drawImage(this.canvas, 0, 0, this.width, this.height);
+    }
     const labels = new Labels(context, this.width, this.height);
     const over = (body, pose, text, colour) => {
       const [x, y] = middleOfBody(body, pose);
       const point = this.onCanvas(x, y, pose.z + modelOf(body).height + 0.3);
-      if (point) labels.add(text, ...point, colour);
+      if (point) labels.add(text, point[0], [0, -15, 15].map((shift) => point[1] + shift), colour);
     };
     for (const body of [EGO, ...candidate.hit.filter((each) => each !== EGO)]) {
-      over(body, candidate.poseOf(body, time), nameOf(body), COLOURS.ink);
+      over(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
     }
     for (const {body, p, plan} of ELSEWHERE) {
-      over(body, poseOn(plan, time), percent(p) + " " + nameOf(body), COLOURS.future);
+      over(body, poseOn(plan, time), percent(p) + " " + shortened(nameOf(body)), COLOURS.future);
     }
     for (const contact of candidate.contacts) {
       const age = time - contact.t;
@@ -517,7 +522,8 @@ class View3d {
         if (!tip || speed < 1) return;
         const isEgo = contact.bodies[side] === EGO;
         drawArrow(context, point, tip, isEgo ? COLOURS.ego : COLOURS.other);
-        drawLabel(context, "Δv " + kmh(speed), tip[0] + 6, tip[1], COLOURS.ink);
+        labels.add("Δv " + kmh(speed), tip[0], [-6, 16, 32, -22].map((shift) => tip[1] + shift),
+          COLOURS.ink);
       });
     }
   }

@@ -1,0 +1,134 @@
+"""A measure for CommonRoad CriMe: the least harm that the ego can still reach.
+
+Needs ``crashrank[crime]``; ``import crashrank`` does not import it.
+
+>>> from commonroad_crime.data_structure.configuration import CriMeConfiguration
+>>> from commonroad_crime.data_structure.crime_interface import CriMeInterface
+>>> from crashrank.crime import LeastHarm
+>>> config = CriMeConfiguration()
+>>> config.update(ego_id=34, sce=scenario)  # as commonroad-io has read it
+>>> crime = CriMeInterface(config)
+>>> crime.evaluate_scene([LeastHarm], time_step=48)
+"""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+from typing import TYPE_CHECKING, Any
+
+from ._errors import usage
+from ._ranking import Ranking, rank
+from ._tables import missing
+from .formats._commonroad_write import as_xml, read_text
+from .formats._decision import going_on_choice
+
+try:
+    from commonroad_crime.data_structure.base import CriMeBase
+    from commonroad_crime.data_structure.type import TypeMonotone
+except ImportError:
+    raise missing("commonroad-crime", "crime") from None
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["LeastHarm", "TypeHarm"]
+
+
+class TypeHarm(str, Enum):
+    """Names of the measures of this module, as CriMe's own are named."""
+
+    LEAST_HARM = "least harm still reachable"
+
+
+class LeastHarm(CriMeBase):  # type: ignore[misc]
+    """The least harm, persons with MAIS3+, of all manoeuvres that the ego can still begin.
+
+    At a time step a grid of manoeuvres and the ego's own recording, else its speed and curvature
+    held, are ranked; the value is the least score: 0 where the crash can still be avoided, and
+    greater the fewer ways are left. All obstacles of the scenario count together, those that the
+    crash drives into each other too. nan where the ego has no state.
+
+    Settings are members of the class; a subclass changes them for `CriMeInterface`.
+
+    Attributes
+    ----------
+    horizon_s : float
+        How long contacts count, s.
+    accelerations, steerings : int
+        Levels of the grid; odd numbers contain holding the speed and going straight.
+    risk : str or None
+        Risk model, as of `crashrank.rank`.
+    workers : int
+        Threads.
+    ranking : Ranking or None
+        Of the last step; None before the first.
+    """
+
+    measure_name = TypeHarm.LEAST_HARM
+    monotone = TypeMonotone.POS
+
+    horizon_s: float = 4.0
+    accelerations: int = 15
+    steerings: int = 15
+    risk: str | None = None
+    workers: int = 1
+
+    def __init__(self, config: Any) -> None:
+        super().__init__(config)
+        self.ranking: Ranking | None = None
+        # The base class changes the states of its copy; the configuration's scenario is as read.
+        source = config.scenario or getattr(config.scene, "_scenario", config.scene)
+        self._text = as_xml(source)
+
+    def compute_criticality(
+        self, time_step: int, vehicle_id: int | None = None, verbose: bool = True
+    ) -> float:
+        """Return `compute`; the base class would ask for each other obstacle by itself."""
+        return self.compute(time_step, vehicle_id, verbose)
+
+    def compute(
+        self,
+        time_step: int,
+        vehicle_id: int | None = None,  # noqa: ARG002
+        verbose: bool = True,
+    ) -> float:
+        """Return the least harm that can be reached from a time step.
+
+        Parameters
+        ----------
+        time_step : int
+            When the manoeuvres begin.
+        vehicle_id : int, optional
+            Without effect: all obstacles count together.
+        verbose : bool
+            Whether CriMe prints that it computes.
+
+        Raises
+        ------
+        crashrank.Error
+            Where the scenario cannot be read or ranked.
+        """
+        if not self.validate_update_states_log(None, time_step, verbose):
+            self.value = math.nan
+            return math.nan
+        ego = self.configuration.vehicle.ego_id
+        found = read_text(self._text, time_step, ego, self.horizon_s)
+        grid = {"accelerations": self.accelerations, "steerings": self.steerings}
+        held = going_on_choice(found.scenario, found.going_on, "harm", self.risk)
+        self.ranking = rank(
+            {**found.scenario, "candidates": {"grid": grid}}, measure="harm", risk=self.risk,
+            workers=self.workers,
+        )  # fmt: skip
+        best = self.ranking.best.score
+        # No deadline leaves a score open.
+        self.value = held.most if best is None else min(best, held.most)
+        return self.value
+
+    def visualize(self) -> Figure:
+        """Return the plan of the least harmful manoeuvre of the last step, and the scores."""
+        if self.ranking is None:
+            self.compute(self.time_step, verbose=False)
+        if self.ranking is None:
+            raise usage("time_step", "has no state of the ego", "choose a step of its recording")
+        return self.ranking.plot()
