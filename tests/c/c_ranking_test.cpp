@@ -5,6 +5,7 @@
 #include "crashrank/model/model.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -270,7 +271,8 @@ double delta_v_of(double told_kg, double stored_kg, const crashrank::StatedMass&
   stored.mass = crashrank::shell_properties(box);
   stored.stated = stated;
   if (stored_kg > 0.0) stored.stated.mass_kg = stored_kg;
-  const std::string file = testing::TempDir() + "/c_api_mass.crm";
+  // Tests run side by side.
+  const std::string file = testing::TempDir() + "/c_api_mass." + std::to_string(::getpid());
   EXPECT_TRUE(crashrank::save_model(stored, file, true).ok());
 
   crashrank_error error{};
