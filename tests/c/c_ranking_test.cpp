@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
