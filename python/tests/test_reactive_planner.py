@@ -15,7 +15,7 @@ FOLDER = pathlib.Path(
 OVER = FOLDER / "commonroad/ZAM_Over-1_1.xml"
 THERE = importlib.util.find_spec("commonroad_rp") is not None
 needs_planner = pytest.mark.skipif(
-    not THERE, reason="commonroad-reactive-planner is not installed: scripts/comparison runs this"
+    not THERE, reason="commonroad-reactive-planner is not installed: it takes an own environment"
 )
 needs_file = pytest.mark.skipif(
     not OVER.is_file(), reason=f"{OVER} is not there: no files of others are read"
