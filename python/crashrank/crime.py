@@ -2,11 +2,13 @@
 
 Needs ``crashrank[crime]``; ``import crashrank`` does not import it.
 
+>>> from commonroad.common.file_reader import CommonRoadFileReader
 >>> from commonroad_crime.data_structure.configuration import CriMeConfiguration
 >>> from commonroad_crime.data_structure.crime_interface import CriMeInterface
 >>> from crashrank.crime import LeastHarm
+>>> scenario, _ = CommonRoadFileReader("scene.xml").open(lanelet_assignment=True)
 >>> config = CriMeConfiguration()
->>> config.update(ego_id=34, sce=scenario)  # as commonroad-io has read it
+>>> config.update(ego_id=34, sce=scenario)
 >>> crime = CriMeInterface(config)
 >>> crime.evaluate_scene([LeastHarm], time_step=48)
 """
