@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import pathlib
@@ -16,6 +17,25 @@ import pytest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = ROOT / "data"
 SCENARIOS = sorted(DATA.glob("scenarios/*.json")) + sorted(DATA.glob("scenarios/choosers/*.json"))
+SHARED = pathlib.Path(
+    os.environ.get("CRASHRANK_SHARED_SCENARIOS") or ROOT.parent / "shared/scenarios"
+)
+"""Files of others, which the project does not hold."""
+
+
+def needs_file(path: pathlib.Path) -> pytest.MarkDecorator:
+    """Return the mark that skips a test where a file of others is not there."""
+    return pytest.mark.skipif(
+        not path.is_file(), reason=f"{path} is not there: no files of others are read"
+    )
+
+
+def expect_extra_named(module: str, package: str, extra: str) -> None:
+    """Expect that a module without its package is refused by names of package and extra."""
+    with pytest.raises(crashrank.NotFoundError) as caught:
+        importlib.import_module(module)
+    assert f"{package}: is not installed" in str(caught.value)
+    assert f"[{extra}]" in caught.value.remedy
 
 
 def program() -> str:

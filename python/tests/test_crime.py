@@ -3,34 +3,23 @@
 import importlib
 import importlib.util
 import math
-import os
-import pathlib
 import sys
 
-import crashrank
 import pytest
-from conftest import ROOT
+from conftest import ROOT, SHARED, expect_extra_named, needs_file
 from crashrank import formats
 
-FOLDER = pathlib.Path(
-    os.environ.get("CRASHRANK_SHARED_SCENARIOS") or ROOT.parent / "shared/scenarios"
-)
-PEDESTRIAN = FOLDER / "commonroad/OSC_PedestrianCollision-1_1_T-1.xml"
+PEDESTRIAN = SHARED / "commonroad/OSC_PedestrianCollision-1_1_T-1.xml"
 THERE = importlib.util.find_spec("commonroad_crime") is not None
 needs_crime = pytest.mark.skipif(
     not THERE, reason="commonroad-crime is not installed: scripts/comparison runs this test"
 )
-needs_file = pytest.mark.skipif(
-    not PEDESTRIAN.is_file(), reason=f"{PEDESTRIAN} is not there: no files of others are read"
-)
+with_file = needs_file(PEDESTRIAN)
 
 
 @pytest.mark.skipif(THERE, reason="commonroad-crime is installed")
 def test_the_error_names_the_extra():
-    with pytest.raises(crashrank.NotFoundError) as caught:
-        importlib.import_module("crashrank.crime")
-    assert "commonroad-crime: is not installed" in str(caught.value)
-    assert "[crime]" in caught.value.remedy
+    expect_extra_named("crashrank.crime", "commonroad-crime", "crime")
 
 
 def test_the_package_alone_does_not_import_it():
@@ -48,7 +37,7 @@ def settings(path, ego):
 
 
 @needs_crime
-@needs_file
+@with_file
 def test_the_interface_evaluates_it():
     from commonroad_crime.data_structure.crime_interface import CriMeInterface
     from crashrank.crime import LeastHarm
@@ -71,7 +60,7 @@ def test_the_interface_evaluates_it():
 
 
 @needs_crime
-@needs_file
+@with_file
 def test_the_last_avoidable_step_is_that_of_the_decision_curve():
     from crashrank.crime import LeastHarm
 

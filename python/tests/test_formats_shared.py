@@ -4,30 +4,26 @@ folder that CRASHRANK_SHARED_SCENARIOS names. None of them is part of the projec
 
 import json
 import math
-import os
 import pathlib
 import random
 
 import crashrank
 import pytest
-from conftest import DATA, ROOT
+from conftest import DATA, SHARED
 from crashrank import formats
 from test_formats_hostile import accepted, mutated
 
-FOLDER = pathlib.Path(
-    os.environ.get("CRASHRANK_SHARED_SCENARIOS") or ROOT.parent / "shared/scenarios"
-)
-COMMONROAD = sorted(FOLDER.glob("commonroad/*.xml"))
-OPENSCENARIO = sorted(FOLDER.glob("openscenario/*.xosc"))
-OSI = sorted(FOLDER.glob("osi/*.*"))
-PEDESTRIAN = FOLDER / "commonroad/OSC_PedestrianCollision-1_1_T-1.xml"
+COMMONROAD = sorted(SHARED.glob("commonroad/*.xml"))
+OPENSCENARIO = sorted(SHARED.glob("openscenario/*.xosc"))
+OSI = sorted(SHARED.glob("osi/*.*"))
+PEDESTRIAN = SHARED / "commonroad/OSC_PedestrianCollision-1_1_T-1.xml"
 
 
 def files(found):
     """Return parameters for files, or one that is skipped and says why."""
     if found:
         return [pytest.param(path, id=path.stem) for path in found]
-    reason = f"{FOLDER} is not there: no files of others are read"
+    reason = f"{SHARED} is not there: no files of others are read"
     return [pytest.param(None, id="missing", marks=pytest.mark.skip(reason=reason))]
 
 
@@ -127,7 +123,7 @@ def test_every_file_that_is_read_ranks_within_a_deadline(path):
 
 
 @pytest.mark.parametrize(
-    "path", files(sorted(FOLDER.glob("commonroad/OSC_PedestrianCollision-1_1_T-*.xml")))
+    "path", files(sorted(SHARED.glob("commonroad/OSC_PedestrianCollision-1_1_T-*.xml")))
 )
 def test_when_the_persons_could_last_be_spared(path):
     """The recording collides at step 56; its successors begin 26, 38 and 47 steps later.
@@ -153,14 +149,14 @@ def test_when_the_persons_could_last_be_spared(path):
 
 
 def test_the_survey_names_every_file():
-    if not FOLDER.is_dir():
-        pytest.skip(f"{FOLDER} is not there: no survey of the files of others")
+    if not SHARED.is_dir():
+        pytest.skip(f"{SHARED} is not there: no survey of the files of others")
     pytest.importorskip("lxml")
     pytest.importorskip("osi3")
     from crashrank.formats._survey import survey
 
-    rows = list(survey(FOLDER))
-    expected = COMMONROAD + OSI + sorted(FOLDER.glob("openscenario/**/*.xosc"))
+    rows = list(survey(SHARED))
+    expected = COMMONROAD + OSI + sorted(SHARED.glob("openscenario/**/*.xosc"))
     assert sorted(row["file"] for row in rows) == sorted(map(str, expected))
     for row in rows:
         assert row["read"] or row["reason"]

@@ -2,32 +2,21 @@
 
 import importlib
 import importlib.util
-import os
-import pathlib
 
-import crashrank
 import pytest
-from conftest import ROOT
+from conftest import SHARED, expect_extra_named, needs_file
 
-FOLDER = pathlib.Path(
-    os.environ.get("CRASHRANK_SHARED_SCENARIOS") or ROOT.parent / "shared/scenarios"
-)
-OVER = FOLDER / "commonroad/ZAM_Over-1_1.xml"
+OVER = SHARED / "commonroad/ZAM_Over-1_1.xml"
 THERE = importlib.util.find_spec("commonroad_rp") is not None
 needs_planner = pytest.mark.skipif(
     not THERE, reason="commonroad-reactive-planner is not installed: it takes an own environment"
 )
-needs_file = pytest.mark.skipif(
-    not OVER.is_file(), reason=f"{OVER} is not there: no files of others are read"
-)
+with_file = needs_file(OVER)
 
 
 @pytest.mark.skipif(THERE, reason="commonroad-reactive-planner is installed")
 def test_the_error_names_the_extra():
-    with pytest.raises(crashrank.NotFoundError) as caught:
-        importlib.import_module("crashrank.reactive_planner")
-    assert "commonroad-reactive-planner: is not installed" in str(caught.value)
-    assert "[planner]" in caught.value.remedy
+    expect_extra_named("crashrank.reactive_planner", "commonroad-reactive-planner", "planner")
 
 
 def blocked_planner(blocked):
@@ -70,7 +59,7 @@ def blocked_planner(blocked):
 
 
 @needs_planner
-@needs_file
+@with_file
 def test_the_least_harmful_is_planned_once_none_is_free():
     from crashrank.reactive_planner import HarmCost
 
@@ -87,7 +76,7 @@ def test_the_least_harmful_is_planned_once_none_is_free():
 
 
 @needs_planner
-@needs_file
+@with_file
 def test_a_free_road_is_planned_as_before():
     from crashrank.reactive_planner import HarmCost
 
