@@ -15,8 +15,9 @@
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/harm_options.hpp"
 #include "crashrank/scenario/scenario.hpp"
-#include "crashrank/scenario/scenario_models.hpp"
 #include "crashrank/tree/build.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,7 @@ namespace crashrank::cli {
 namespace {
 
 constexpr OutputKind html_page{"an HTML page", "<!DOCTYPE html"};
+constexpr OutputKind animation_file{"a GLB file", "glTF"};
 
 struct RankArguments {
   std::string scenario;
@@ -46,6 +48,7 @@ struct RankArguments {
   std::string damage_folder;
   std::size_t damage_top = 5;
   std::string report;
+  std::string animation;
   std::string mcap;
   std::size_t top = 20;
   unsigned workers = std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
@@ -114,41 +117,17 @@ Result<HarmOptions> read_harm(const RankArguments& options, const Scenario& scen
   return harm;
 }
 
-/// Says what is to be warned of in the meshes, and adds it to `warnings`.
-Result<std::vector<Model>> load_models(Scenario& scenario, const std::string& file,
-                                       const TreeArguments& trees,
-                                       std::vector<std::string>& warnings) {
-  const Result<BuildOptions> build = trees.build_options();
-  if (!build) return build.error();
-  ScenarioModelOptions how;
-  how.build = *build;
-  how.scenario = file;
-  std::vector<Model> models;
-  Progress progress("reading meshes", scenario.models.size());
-  for (ScenarioModel& wanted : scenario.models) {
-    if (trees.given() && is_model_file(wanted.path)) {
-      return Error{ErrorCode::bad_input, wanted.path, "models." + wanted.name,
-                   "a model file has its trees already",
-                   "leave out --split and --frame: they are for crashrank compile"};
-    }
-    Result<LoadedScenarioModel> read = load_scenario_model(wanted, how);
-    if (!read) return read.error();
-    for (const std::string& warning : read->warnings) {
-      warn(wanted.path, warning);
-      warnings.push_back(wanted.path + ": " + warning);
-    }
-    add_stated_mass(read->stated, wanted);
-    models.push_back(std::move(read->model));
-    progress.update(models.size());
-  }
-  return models;
+Status write_file(const std::string& path, const OutputKind& kind, const std::string& content) {
+  Result<OutputFile> file = OutputFile::open(path, kind);
+  if (!file) return file.error();
+  file->write(content);
+  return file->close();
 }
 
-Status write_report(const std::string& path, const std::string& page) {
-  Result<OutputFile> file = OutputFile::open(path, html_page);
-  if (!file) return file.error();
-  file->write(page);
-  return file->close();
+Status write_animation(const RankArguments& options, const Scenario& scenario,
+                       const std::vector<Model>& models, const RankResult& ranked) {
+  const Result<std::string> made = ranking_animation(scenario, models, ranked);
+  return made ? write_file(options.animation, animation_file, *made) : Status(made.error());
 }
 
 RankBudget budget_of(const RankArguments& options) {
@@ -172,26 +151,42 @@ void warn_of_end(const RankArguments& options, const RankResult& ranked, bool an
   for (std::size_t i = before; i < warnings.size(); ++i) warn("", warnings[i]);
 }
 
-/// Motions are recorded for the JSON answer, and not by the search that ends early.
+/// Motions are recorded for the JSON answer and the animation, and not by the search that ends
+/// early.
 Status check_motion(const RankArguments& options) {
-  if (!options.motion) return Success{};
-  if (!options.json) {
+  if (options.motion && !options.json) {
     return make_error(ErrorCode::usage, "--motion is part of the JSON answer alone",
                       "add --json, or leave out --motion");
   }
-  if (options.bounded()) {
-    return make_error(ErrorCode::usage, "--motion is not recorded by an answer within a budget",
-                      "leave out --deadline-ms, --work-budget and --first-place, or --motion");
+  if ((options.motion || !options.animation.empty()) && options.bounded()) {
+    const std::string option = options.motion ? "--motion" : "--animation";
+    return make_error(ErrorCode::usage, option + " is not recorded by an answer within a budget",
+                      "leave out --deadline-ms, --work-budget and --first-place, or " + option);
   }
   return Success{};
 }
 
-/// Whether the report plays what happens; an answer within a budget has no motion to play.
+/// An answer within a budget has no motion to play, nor has one of too many candidates.
 bool is_played(const RankArguments& options, const Scenario& scenario) {
   const std::size_t generated =
       scenario.grid ? scenario.grid->accelerations * scenario.grid->steerings : 0;
-  return !options.report.empty() && !options.bounded() &&
-         scenario.listed.size() + generated <= most_played_candidates;
+  return !options.bounded() && scenario.listed.size() + generated <= most_played_candidates;
+}
+
+/// Whether the files could be written, before the work for them is begun.
+Status check_files(const RankArguments& options, const std::vector<std::string>& inputs) {
+  if (Status sound = can_be_written(options.report, html_page, inputs, options.damage_folder);
+      !sound) {
+    return sound;
+  }
+  if (same_place(options.animation, options.report)) {
+    return Error{ErrorCode::usage,
+                 options.animation,
+                 {},
+                 "is the file of --report",
+                 "name another file with --animation"};
+  }
+  return can_be_written(options.animation, animation_file, inputs, options.damage_folder);
 }
 
 int run(const RankArguments& options) {
@@ -246,14 +241,23 @@ int run(const RankArguments& options) {
   const Result<HarmOptions> harm = read_harm(options, *scenario);
   if (!harm) return fail(harm.error());
   how.harm = *harm;
-  how.records_motion = options.motion || is_played(options, *scenario);
+  const bool is_shown = !options.report.empty() || !options.animation.empty();
+  const bool can_play = is_played(options, *scenario);
+  if (!options.animation.empty() && !can_play) {
+    return fail(Error{ErrorCode::limit_exceeded,
+                      shown_name(options.scenario),
+                      {},
+                      fmt::format("has more than {} candidates, whose motion --animation would "
+                                  "have to record",
+                                  most_played_candidates),
+                      "list fewer candidates or make the grid coarser"});
+  }
+  how.records_motion = options.motion || (is_shown && can_play);
   // Where the answer goes is seen to before the work.
   std::vector<std::string> inputs{options.scenario, options.profile};
   for (const ScenarioModel& model : scenario->models) inputs.push_back(model.path);
-  if (const Status sound = can_be_written(options.report, html_page, inputs, options.damage_folder);
-      !sound) {
-    return fail(sound.error());
-  }
+  if (const Status sound = check_files(options, inputs); !sound) return fail(sound.error());
+  inputs.push_back(options.animation);  // nor may a file of --damage replace it
   DamageOptions damage{options.damage_folder, options.damage_top, inputs, options.report};
   damage.workers = options.workers;
   if (!options.damage_folder.empty()) {
@@ -292,8 +296,8 @@ int run(const RankArguments& options) {
   ranked->has_motion = options.motion;  // what the page plays is no part of the JSON answer
   if (is_interrupted()) {
     warnings.push_back(ranking_progress(*ranked));
-    if (!options.report.empty() || !options.damage_folder.empty()) {
-      warnings.back() += "; files of --damage and --report are not written";
+    if (is_shown || !options.damage_folder.empty()) {
+      warnings.back() += "; files of --damage, --animation and --report are not written";
     }
     print(text_of(*ranked, warnings));
     say("interrupted: " + warnings.back());
@@ -303,15 +307,21 @@ int run(const RankArguments& options) {
   const bool answered = ranked->complete || (options.first_place && ranked->proved);
   const PartialAnswer partial([&, so_far = warnings] {
     return Interruption{text_of(*ranked, so_far),
-                        "the ranking is complete, files of --damage and --report are missing"};
+                        "the ranking is complete, files of --damage, --animation and --report are "
+                        "missing"};
   });
   if (!options.damage_folder.empty()) {
     const Status written = write_damage(damage, *scenario, *models, *ranked);
     if (!written) return fail(written.error());
   }
+  if (!options.animation.empty()) {
+    const Status written = write_animation(options, *scenario, *models, *ranked);
+    if (!written) return fail(written.error());
+  }
   if (!options.report.empty()) {
     const Progress progress("writing the report");
-    const Status written = write_report(options.report, html_report(*scenario, *models, *ranked));
+    const Status written =
+        write_file(options.report, html_page, html_report(*scenario, *models, *ranked));
     if (!written) return fail(written.error());
   }
   warn_of_end(options, *ranked, answered, warnings);
@@ -330,7 +340,7 @@ Examples:
   crashrank rank scenario.json
   crashrank rank scenario.json --measure closing-energy --json --damage out
   crashrank rank scenario.json --profile weights.json
-  crashrank rank scenario.json --report report.html
+  crashrank rank scenario.json --report report.html --animation winner.glb
   crashrank rank scenario.json --deadline-ms 20 --workers 2)";
 
 }  // namespace
@@ -418,6 +428,14 @@ void add_rank(CLI::App& app, Action& action) {
            "output, without the table")
       ->check([](const std::string& text) {
         return text.empty() ? std::string("names no file") : std::string();
+      });
+  add_file(*command, "--animation", options->animation,
+           "GLB file (glTF 2.0 binary) for Blender and other viewers: what the report plays of the "
+           "winner, all bodies with whole meshes, as linear key frames of one animation; metres, "
+           "seconds, without damage; for up to 1000 candidates and without a deadline")
+      ->check([](const std::string& text) {
+        return is_standard(text) ? std::string("needs a file: the answer goes to standard output")
+                                 : std::string();
       });
   add_file(*command, "--mcap", options->mcap,
            "The scene of the report for Foxglove, and a layout beside it; by the Python package's "

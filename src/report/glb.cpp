@@ -1,5 +1,6 @@
 #include "report/glb.hpp"
 
+#include "crashrank/base/box.hpp"
 #include "report/bytes.hpp"
 
 #include <cstdint>
@@ -21,6 +22,8 @@ void put_chunk(std::string& out, std::uint32_t type, const std::string& bytes) {
   out += bytes;
 }
 
+Json corner(const Eigen::Vector3f& point) { return {point.x(), point.y(), point.z()}; }
+
 }  // namespace
 
 std::size_t GlbArrays::add(const std::string& bytes, int target, Json accessor) {
@@ -33,7 +36,47 @@ std::size_t GlbArrays::add(const std::string& bytes, int target, Json accessor) 
   return accessors.size() - 1;
 }
 
+std::size_t GlbArrays::add_positions(View<const Eigen::Vector3f> points) {
+  std::string bytes;
+  bytes.reserve(12 * points.size());
+  Box box;
+  for (const Eigen::Vector3f& point : points) {
+    for (int axis = 0; axis < 3; ++axis) put_f32(bytes, point[axis]);
+    box.grow(point);
+  }
+  return add(bytes, gltf_vertices,
+             {{"componentType", gltf_float},
+              {"count", points.size()},
+              {"type", "VEC3"},
+              {"min", corner(box.min)},
+              {"max", corner(box.max)}});
+}
+
+std::size_t GlbArrays::add_indices(const std::string& bytes) {
+  return add(bytes, gltf_indices,
+             {{"componentType", gltf_uint32}, {"count", bytes.size() / 4}, {"type", "SCALAR"}});
+}
+
+Json gltf_material(const std::string& name, const Colour& colour) {
+  return {{"name", name},
+          {"doubleSided", true},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {colour.red, colour.green, colour.blue, 1.0}},
+            {"metallicFactor", 0.1},
+            {"roughnessFactor", 0.6}}}};
+}
+
+Json gltf_triangles(std::size_t positions, std::size_t indices, std::size_t material) {
+  return {{"attributes", {{"POSITION", positions}}},
+          {"indices", indices},
+          {"material", material},
+          {"mode", 4}};
+}
+
 Result<std::string> glb_file(Json document, GlbArrays arrays) {
+  document["asset"] = {{"version", "2.0"}, {"generator", "crashrank"}};
+  document["scene"] = 0;
+  document["scenes"] = Json::array({{{"nodes", Json::array({document["nodes"].size() - 1})}}});
   document["accessors"] = std::move(arrays.accessors);
   document["bufferViews"] = std::move(arrays.views);
   document["buffers"] = Json::array({{{"byteLength", arrays.binary.size()}}});
@@ -45,7 +88,7 @@ Result<std::string> glb_file(Json document, GlbArrays arrays) {
   const std::size_t total =
       header_bytes + 2 * chunk_header_bytes + json.size() + arrays.binary.size();
   if (total > std::numeric_limits<std::uint32_t>::max()) {
-    return make_error(ErrorCode::limit_exceeded, "the mesh does not fit into a GLB file of 4 GiB");
+    return make_error(ErrorCode::limit_exceeded, "the meshes do not fit into a GLB file of 4 GiB");
   }
   std::string out;
   out.reserve(total);

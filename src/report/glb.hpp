@@ -1,7 +1,10 @@
 #pragma once
 
 #include "crashrank/base/result.hpp"
+#include "crashrank/base/view.hpp"
+#include "report/palette.hpp"
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -27,9 +30,21 @@ struct GlbArrays {
   /// Index of the accessor of these bytes, a multiple of 4. `target`: 0 for neither vertices nor
   /// indices.
   std::size_t add(const std::string& bytes, int target, nlohmann::ordered_json accessor);
+  /// The same of vertices.
+  std::size_t add_positions(View<const Eigen::Vector3f> points);
+  /// The same of corners of triangles, four bytes each.
+  std::size_t add_indices(const std::string& bytes);
 };
 
-/// A GLB file; `document` without its arrays. Fails above 4 GiB.
+/// A material of this name, seen from both sides.
+nlohmann::ordered_json gltf_material(const std::string& name, const Colour& colour);
+
+/// Triangles of a mesh: indices of accessors and of a material.
+nlohmann::ordered_json gltf_triangles(std::size_t positions, std::size_t indices,
+                                      std::size_t material);
+
+/// A GLB file; `document` without its arrays, asset and scene, which is its last node. Fails above
+/// 4 GiB.
 Result<std::string> glb_file(nlohmann::ordered_json document, GlbArrays arrays);
 
 }  // namespace crashrank::detail

@@ -39,11 +39,6 @@ bool is_fixed(BodyKind kind) {
   return kind == BodyKind::barrier || kind == BodyKind::pole || kind == BodyKind::building;
 }
 
-Motion motion_of(const ActorMotion& stated) {
-  Result<Motion> motion = make_motion(stated, {});
-  return motion ? std::move(*motion) : Motion::at_rest(stated.pose);
-}
-
 Json ring_json(const std::vector<Eigen::Vector2d>& ring) {
   Json corners = Json::array();
   for (const Eigen::Vector2d& corner : ring) corners.push_back(plane_json(corner));
@@ -170,7 +165,8 @@ public:
         most_triangles_(std::min(most_page_triangles, model_triangles)) {
     for (const ScenarioActor& actor : scenario.actors) plans_.push_back(motion_of(actor));
     until_s_ = scenario.horizon_s;
-    for (const std::size_t place : places) until_s_ = std::max(until_s_, end_s(place));
+    for (const std::size_t place : places)
+      until_s_ = std::max(until_s_, played_end_s(scenario, result.ranking[place]));
   }
 
   Json write(const std::vector<std::string>& scores) {
@@ -214,15 +210,6 @@ private:
     return *meshes_[model];
   }
 
-  /// When there is nothing more to see.
-  double end_s(std::size_t place) const {
-    constexpr double still_s = 0.5;
-    const CandidateResult& ranked = result_.ranking[place];
-    if (!ranked.motion.empty()) return rest_time_s(ranked.motion) + still_s;
-    return ranked.contacts.empty() ? scenario_.horizon_s
-                                   : ranked.contacts.front().time_of_impact_s + still_s;
-  }
-
   Json model_json(std::size_t model) {
     const Box box = models_[model].mesh.bounds();
     Json outline = Json::array();
@@ -248,9 +235,7 @@ private:
 
   /// How a body leans beside its heading, row by row; null where it stands upright.
   static Json tilt_json(const Pose& pose) {
-    const double heading = std::atan2(pose.rotation(1, 0), pose.rotation(0, 0));
-    const Eigen::Matrix3d tilt =
-        Eigen::AngleAxisd(-heading, Eigen::Vector3d::UnitZ()).toRotationMatrix() * pose.rotation;
+    const Eigen::Matrix3d tilt = tilt_of(pose);
     constexpr double rounding = 1e-6;
     if ((tilt - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < rounding) return nullptr;
     Json rows = Json::array();
@@ -263,11 +248,11 @@ private:
   Json actor_json(std::size_t i) {
     const ScenarioActor& actor = scenario_.actors[i];
     const double existence = asked_.actors[i].existence_probability;
-    Json plan = track_json(plans_[i], until_s_);
+    Json plan = track_json(track_of(plans_[i], until_s_));
     Json others = Json::array();
     double elsewhere = 1.0 - existence;
     const auto add = [&](const ActorMotion& stated, double probability) {
-      Json track = track_json(motion_of(stated), until_s_);
+      Json track = track_json(track_of(motion_of(stated), until_s_));
       if (track == plan) return;
       elsewhere += probability;
       others.push_back({{"p", thousandths(probability)}, {"plan", std::move(track)}});
@@ -311,7 +296,8 @@ private:
     for (const BodyMotion& motion : ranked.motion) {
       if (motion.t_s.empty()) continue;
       Json& body = bodies[number_of(motion.body)];
-      body["motion"] = track_json(motion, motion.body == ego_body ? plan : plans_[motion.body]);
+      body["motion"] =
+          track_json(track_of(motion, motion.body == ego_body ? plan : plans_[motion.body]));
       body["exposure"] = exposure_json(motion);
     }
     Json list = Json::array();
@@ -321,8 +307,8 @@ private:
       list.push_back(std::move(entry));
     }
     Json entry{{"row", place},
-               {"end", thousandths(end_s(place))},
-               {"plan", track_json(plan, until_s_)},
+               {"end", thousandths(played_end_s(scenario_, ranked))},
+               {"plan", track_json(track_of(plan, until_s_))},
                {"bodies", std::move(list)},
                {"contacts", contacts_json(ranked)},
                {"futures", futures_json(ranked)}};

@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Colour ego_paint{0.055F, 0.16F, 0.36F};
-constexpr Colour other_paint{0.52F, 0.44F, 0.31F};
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 constexpr float steps = 65535.0F;
 

@@ -15,10 +15,17 @@ struct Colour {
   float red = 0.0F;
   float green = 0.0F;
   float blue = 0.0F;
+
+  friend bool operator==(const Colour& a, const Colour& b) {
+    return a.red == b.red && a.green == b.green && a.blue == b.blue;
+  }
 };
 
 inline constexpr Colour intact_colour{0.46F, 0.50F, 0.56F};
 inline constexpr Colour damaged_colour{0.80F, 0.035F, 0.012F};
+// Paint of bodies that move in the report's page and in animations.
+inline constexpr Colour ego_paint{0.055F, 0.16F, 0.36F};
+inline constexpr Colour other_paint{0.52F, 0.44F, 0.31F};
 
 /// What a part of this name is usually coloured like: glass dark, tyres black, lamps bright;
 /// `paint` otherwise.
