@@ -37,6 +37,21 @@ if TYPE_CHECKING:
 __all__ = ["LeastHarm", "TypeHarm"]
 
 
+def _check_ego(source: Any, ego_id: int) -> None:
+    """Refuse what the base class fails at: an ego without lanelets, or without a trajectory."""
+    body: Any = None if source is None else source.obstacle_by_id(ego_id)
+    if getattr(getattr(body, "prediction", None), "trajectory", None) is None:
+        raise usage(
+            "ego_id", f"is {ego_id}, no obstacle with a trajectory",
+            "give CriMeConfiguration.update a scenario and the id of a vehicle in it",
+        )  # fmt: skip
+    if not (body.prediction.center_lanelet_assignment or {}).get(body.initial_state.time_step):
+        raise usage(
+            "scenario", f"assigns obstacle {ego_id} to no lanelet where it begins",
+            "open it with lanelet_assignment=True, and choose an ego on a lanelet",
+        )  # fmt: skip
+
+
 class TypeHarm(str, Enum):
     """Names of the measures of this module, as CriMe's own are named."""
 
@@ -46,10 +61,11 @@ class TypeHarm(str, Enum):
 class LeastHarm(CriMeBase):  # type: ignore[misc]
     """The least harm, persons with MAIS3+, of all manoeuvres that the ego can still begin.
 
-    At a time step a grid of manoeuvres and the ego's own recording, else its speed and curvature
-    held, are ranked; the value is the least score: 0 where the crash can still be avoided, and
-    greater the fewer ways are left. All obstacles of the scenario count together, those that the
-    crash drives into each other too. nan where the ego has no state.
+    At a time step the first of a grid of manoeuvres and of the ego's own recording, else its speed
+    and curvature held, is found; the value is its score: 0 where the crash can still be avoided,
+    and greater the fewer ways are left, as ``least`` of `crashrank.formats.find_decision_point` for
+    as long a time. All obstacles of the scenario count together, those that the crash drives into
+    each other too. nan where the ego has no state.
 
     Settings are members of the class; a subclass changes them for `CriMeInterface`.
 
@@ -64,7 +80,12 @@ class LeastHarm(CriMeBase):  # type: ignore[misc]
     workers : int
         Threads.
     ranking : Ranking or None
-        Of the last step; None before the first.
+        Of the last step, with bounds behind its first place; None before the first.
+
+    Raises
+    ------
+    crashrank.UsageError
+        Where the ego is no obstacle with a trajectory that begins on a lanelet.
     """
 
     measure_name = TypeHarm.LEAST_HARM
@@ -77,10 +98,11 @@ class LeastHarm(CriMeBase):  # type: ignore[misc]
     workers: int = 1
 
     def __init__(self, config: Any) -> None:
-        super().__init__(config)
-        self.ranking: Ranking | None = None
         # The base class changes the states of its copy; the configuration's scenario is as read.
         source = config.scenario or getattr(config.scene, "_scenario", config.scene)
+        _check_ego(source, config.vehicle.ego_id)
+        super().__init__(config)
+        self.ranking: Ranking | None = None
         self._text = as_xml(source)
 
     def compute_criticality(
@@ -120,7 +142,7 @@ class LeastHarm(CriMeBase):  # type: ignore[misc]
         held = going_on_choice(found.scenario, found.going_on, "harm", self.risk)
         self.ranking = rank(
             {**found.scenario, "candidates": {"grid": grid}}, measure="harm", risk=self.risk,
-            workers=self.workers,
+            workers=self.workers, first_place_only=True,
         )  # fmt: skip
         best = self.ranking.best.score
         # No deadline leaves a score open.

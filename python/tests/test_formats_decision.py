@@ -175,6 +175,36 @@ def test_curves_are_text_json_and_plot():
     assert list(going_on.get_ydata()) == [step.going_on.score for step in curve.steps]
 
 
+def test_the_least_is_that_of_the_whole_grid():
+    """What is not evaluated changes no score, and no way that is named."""
+    grid = {"accelerations": 5, "steerings": 5}
+    curve = formats.find_decision_point(CROSSING, step_s=0.5, before_s=1.5, **grid)
+    for step in curve.steps:
+        found = formats.read_poses_csv(
+            CROSSING, step.time_s, horizon_s=curve.contact_time_s - step.time_s + 2.0
+        )
+        ranking = crashrank.rank({**found.scenario, "candidates": {"grid": grid}})
+        least = min(ranking.best.score, step.going_on.score)
+        assert step.best.score == pytest.approx(least, rel=1e-3)
+        straight = [r for r in ranking if not r.curvature_per_m and r.acceleration_mps2 < 0]
+        held = [r for r in ranking if r.curvature_per_m and not r.acceleration_mps2]
+        for way, rows in ((step.braking, straight), (step.steering, held)):
+            assert way.score == pytest.approx(rows[0].score, rel=1e-3)
+            assert rows[0].candidate.startswith(way.candidate)
+
+
+def test_the_command_says_what_it_computes(tmp_path, capsys):
+    from crashrank.formats._command import main
+
+    words = ["poses-csv", str(CROSSING), "-o", str(tmp_path / "a.json"), "--decide"]
+    assert main([*words, "--step", "1"]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert "searching 3 moments" in lines[0]
+    assert any(" m from " in line for line in lines if line.startswith("crashrank: last avoidable"))
+    assert main([*words, "--step", "1", "--quiet"]) == 0
+    assert not capsys.readouterr().err
+
+
 def test_a_deadline_leaves_bounds():
     curve = formats.find_decision_point(CROSSING, step_s=0.5, deadline_s=0.0)
     for step in curve.steps:

@@ -5,6 +5,7 @@ import math
 import crashrank
 import format_scenes as scenes
 import pytest
+from conftest import DATA
 
 pytest.importorskip("lxml")
 from crashrank.formats import read_openscenario
@@ -176,6 +177,12 @@ def test_what_the_ego_would_do_is_left_out(tmp_path):
     assert any("of the ego" in each for each in found.report.left_out)
     with pytest.raises(crashrank.BadInputError, match="engine"):
         read(tmp_path, text, time_s=1.0)
+
+
+def test_an_ego_of_one_state_is_moved_on_for_a_minute_at_most():
+    for time_s in (-2.0, 61.0):
+        with pytest.raises(crashrank.BadInputError, match="a time from -1 to 60 s"):
+            read_openscenario(DATA / "formats/crossing.xosc", time_s)
 
 
 def test_versions_and_catalogues_are_no_scenarios(tmp_path):

@@ -95,6 +95,37 @@ class TestOsi:
         with pytest.raises(crashrank.BadInputError, match="message 10: is cut off"):
             read_osi(path)
 
+    @pytest.mark.parametrize(
+        ("change", "text"),
+        [
+            (lambda _, m: m.ClearField("timestamp"), "messages of one time alone"),
+            (lambda i, m: setattr(m.timestamp, "seconds", 9 - i), "message 2: is of -1 s"),
+            (lambda _, m: m.moving_object.add().CopyFrom(m.moving_object[0]), "is there twice"),
+            (lambda _, m: m.moving_object[0].ClearField("base"), "object 1: has no finite pose"),
+        ],
+    )
+    def test_what_would_be_read_wrong_is_refused(self, tmp_path, change, text):
+        messages = scenes.osi_messages()
+        for i, message in enumerate(messages):
+            message.timestamp.nanos = 0
+            change(i, message)
+        with pytest.raises(crashrank.BadInputError, match=text):
+            read_osi(write(tmp_path, messages))
+
+    def test_times_before_the_trace_are_refused(self):
+        with pytest.raises(crashrank.BadInputError, match="the trace has 0 to 4 s"):
+            read_osi(DATA / "formats/crossing.osi", -1.0)
+
+    def test_mcap_files_begin_and_end_as_such(self, tmp_path):
+        pytest.importorskip("mcap")
+        path = tmp_path / "a.mcap"
+        scenes.write_osi_mcap(path)
+        data = path.read_bytes()
+        for damaged, text in ((data[:-3], "is cut off"), (data[1:], "is no MCAP file")):
+            path.write_bytes(damaged)
+            with pytest.raises(crashrank.BadInputError, match=text):
+                read_osi(path)
+
     def test_sensor_views_hold_ground_truth(self, tmp_path):
         from osi3.osi_sensorview_pb2 import SensorView
 
@@ -135,8 +166,19 @@ class TestBag:
         with pytest.raises(crashrank.NotFoundError):
             read_bag(tmp_path / "none")
         (tmp_path / "empty").mkdir()
-        with pytest.raises(crashrank.BadInputError):
+        with pytest.raises(crashrank.NotFoundError, match=r"metadata\.yaml"):
             read_bag(tmp_path / "empty")
+        with pytest.raises(crashrank.UsageError, match="no Odometry on ''"):
+            read_bag(folder, ego="")
+
+    def test_the_ego_of_a_snapshot_moves_on(self, tmp_path):
+        folder = scenes.write_bag(tmp_path / "bag")
+        x, y, _ = scenes.rear_axle(scenes.ego(6))
+        pose = read_bag(folder, 3.0).scenario["ego"]["pose"]
+        assert (pose["x_m"], pose["y_m"]) == pytest.approx((x, y), abs=2e-3)
+        for time_s in (-5.0, 1e6):
+            with pytest.raises(crashrank.BadInputError, match="a time from -1 to 60 s"):
+                read_bag(folder, time_s)
 
     def test_cylinders_and_footprints(self, tmp_path):
         def change(objects, types):

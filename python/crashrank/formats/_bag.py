@@ -10,6 +10,7 @@ from ._boxes import oriented_box
 from ._document import Imported, make_document
 from ._refusals import (
     checked_choices,
+    checked_file,
     choice_error,
     guarded_parse,
     refuse,
@@ -130,6 +131,7 @@ def _checked_folder(path: object) -> str:
         raise NotFoundError(
             "not_found", folder, "", what, "name the folder of a bag, the one of metadata.yaml"
         )
+    checked_file(os.path.join(folder, "metadata.yaml"), MAX_MESSAGE)
     size = 0
     with os.scandir(folder) as entries:
         for entry in entries:
@@ -200,21 +202,22 @@ def _read(bag: _Bag, chosen: str | None, at_s: float, horizon_s: float, report: 
 
 def _ego(bag: _Bag, chosen: str | None, first_s: float, at_s: float, report: Report) -> Body:
     topics = bag.topics(_ODOMETRY)
-    topic = chosen or (_USUAL_TOPIC if _USUAL_TOPIC in topics else None)
+    topic = chosen if chosen is not None else (_USUAL_TOPIC if _USUAL_TOPIC in topics else None)
     if topic is None and len(topics) == 1:
         topic = topics[0]
     if topic not in topics:
         listed = f"choose of {', '.join(topics)}" if topics else "record one"
-        raise choice_error(
-            bag.file, "ego", f"has no Odometry on {topic or 'a usual topic'}", listed
-        )
+        where = "a usual topic" if topic is None else repr(topic)
+        raise choice_error(bag.file, "ego", f"has no Odometry on {where}", listed)
     length, width, height = DEFAULT_SIZE_M["car"]
     ahead = (0.5 - ORIGIN_SHARE["car"]) * length
     states: list[State] = []
+    older = 0
     for place, stamp_s, message in bag.messages(topic):
         t_s = stamp_s - first_s
         if t_s < at_s - _MARGIN_S:
-            continue
+            older += 1
+            states.clear()  # the last of the older ones is enough
         axle = _pose(bag.file, place, message.pose.pose)
         velocity, rate = _twist(bag.file, place, axle.yaw_rad, message.twist.twist)
         middle = moved(axle, ahead, 0.0)
@@ -224,7 +227,8 @@ def _ego(bag: _Bag, chosen: str | None, first_s: float, at_s: float, report: Rep
         states.append(State(t_s, middle, velocity, rate))
         if t_s > at_s + _MARGIN_S:
             break
-    if not states:
+    # A bag of one message is a snapshot, whose ego is moved on; a recording that has ended is not.
+    if not states or (older > 1 and states[-1].t_s < at_s - _MARGIN_S):
         refuse(bag.file, topic, f"has no message near {at_s:g} s", "choose another time")
     report.assume(
         f"the ego is a car of {length:g} x {width:g} m, and its odometry that of its rear axle"

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from typing import Any
 
+from .. import _core
 from .._errors import Error, NotFoundError, printable
 from ._decision import find_decision_point
 from ._readers import READERS, reader_of
@@ -62,14 +64,29 @@ def _converted(options: argparse.Namespace) -> tuple[str, dict[str, Any], list[s
     reader, time_s, curve = reader_of(options.file, options.format), options.time, None
     if options.decide:
         curve = find_decision_point(
-            options.file, format=options.format, ego=options.ego, time_s=time_s, **horizon
-        )
+            options.file, format=options.format, ego=options.ego, time_s=time_s, **horizon,
+            step_s=options.step, workers=min(os.cpu_count() or 1, _core.max_workers),
+            progress=None if options.quiet or options.json else _show_progress,
+        )  # fmt: skip
         time_s = (curve.last_avoidable or curve.steps[0]).time_s
     found = reader(options.file, time_s=time_s, ego=options.ego, **horizon)
     report, lines = found.report.to_dict(), found.report.lines()
     if curve is not None:
         report, lines = {**report, "decision": curve.to_dict()}, lines + curve.lines()
     return found.to_json(), report, lines
+
+
+def _show_progress(done: int, steps: int) -> None:
+    """Say once what is computed; on a terminal count the steps, too."""
+    if done == 0:
+        print(
+            f"crashrank: searching {steps} moments before the contact for the least harm; a longer "
+            "--step makes them fewer",
+            file=sys.stderr,
+        )
+    if sys.stderr.isatty():
+        end = "\n" if done + 1 == steps else ""
+        print(f"\r{done + 1} of {steps}", end=end, file=sys.stderr, flush=True)
 
 
 def _fail(text: str, code: int) -> int:
@@ -99,6 +116,10 @@ def _parser() -> argparse.ArgumentParser:
         help="choose the last moment at which the crash can be "
         "avoided, and print the curve of the least harm over time",
     )
+    add(
+        "--step", type=float, default=0.1, metavar="S",
+        help="seconds between the moments of --decide; default: 0.1",
+    )  # fmt: skip
     add("--json", action="store_true", help="print the report as JSON, on standard error")
     add("--quiet", action="store_true", help="print no report")
     return parser

@@ -34,7 +34,7 @@ class Choice:
     score: float | None
     """In the measure's unit; None where a deadline left only the interval."""
     score_interval: tuple[float, float]
-    """Bounds on the score."""
+    """Bounds on the score; not how uncertain it is."""
     collision_probability: float | None
     """Over all futures; None where a deadline left it open."""
     time_of_impact_s: float | None
@@ -43,6 +43,10 @@ class Choice:
     """Actor that is hit first, in the likeliest future."""
     leaves_road: bool
     """A wheel leaves the drivable areas."""
+    least_distance_m: float | None = None
+    """To the nearest actor, where no contact is made; None also where a deadline left it open."""
+    nearest: str | None = None
+    """That actor."""
 
     @property
     def avoids(self) -> bool:
@@ -75,7 +79,7 @@ class DecisionStep:
     steering: Choice | None
     """First of those that hold the speed and steer."""
     complete: bool
-    """Every score is known."""
+    """The scores of all of these are known."""
 
     @property
     def avoidable(self) -> bool:
@@ -194,6 +198,8 @@ class DecisionCurve:
                 found.append(f"last {text}: at no step")
                 continue
             away = ", leaves the road" if choice.leaves_road else ""
+            if choice.avoids and choice.least_distance_m is not None:
+                away += f", passes {choice.least_distance_m:.2f} m from {choice.nearest}"
             found.append(
                 f"last {text}: {step.time_s:.2f} s, {self.contact_time_s - step.time_s:.2f} s "
                 f"before the contact: {choice.candidate}{away}"

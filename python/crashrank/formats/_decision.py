@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any, NoReturn
@@ -19,6 +20,7 @@ from ._refusals import MAX_HORIZON_S, refuse
 MAX_STEPS = 10_000
 # A grid's level of no acceleration or curvature, rounded.
 _ZERO = 1e-9
+_PLACE = re.compile(r" \(a\d+ s\d+\)$")
 
 
 def find_decision_point(
@@ -37,12 +39,14 @@ def find_decision_point(
     risk: str | None = None,
     deadline_s: float | None = None,
     workers: int = 1,
+    progress: Callable[[int, int], object] | None = None,
 ) -> DecisionCurve:
     """Step back from a contact; say when it could last be avoided, or its harm be halved, and how.
 
-    At each step a grid of manoeuvres is ranked, and beside it the one that goes on: the ego's own
-    recording where the file has one, else its speed and curvature held. Contacts count until
-    `after_s` after the contact, whenever a manoeuvre begins.
+    At each step the first of a grid of manoeuvres is found, and beside it the one that goes on: the
+    ego's own recording where the file has one, else its speed and curvature held. Contacts count
+    until `after_s` after the contact, whenever a manoeuvre begins. Where going on, braking straight
+    ahead or steering at held speed stays free and on the road, no other manoeuvre is evaluated.
 
     Parameters
     ----------
@@ -65,6 +69,8 @@ def find_decision_point(
         Levels of the grid; odd numbers contain holding the speed and going straight.
     measure, risk, deadline_s, workers
         As of `crashrank.rank`, for each step.
+    progress : callable, optional
+        Called before each step with the numbers of steps done and of all.
 
     Returns
     -------
@@ -95,14 +101,13 @@ def find_decision_point(
     else:
         moments = _given(source)
     ordered = sorted(moments, key=lambda moment: moment[0])
+    options = {"measure": measure, "risk": risk, "deadline_s": deadline_s, "workers": workers}
     steps: list[DecisionStep] = []
     for at_s, scenario, going_on, _ in ordered:
-        held = going_on_choice(scenario, going_on, measure, risk)
-        ranking = rank(
-            {**scenario, "candidates": {"grid": grid}}, measure=measure, risk=risk,
-            deadline_s=deadline_s, workers=workers,
-        )  # fmt: skip
-        steps.append(_step(at_s, held, ranking))
+        if progress is not None:
+            progress(len(steps), len(ordered))
+        alone = _rank_alone(scenario, going_on, measure, risk)
+        steps.append(_step(at_s, _choice(alone.best), scenario, grid, options))
     hits = [each for each in steps if each.going_on.time_of_impact_s is not None]
     if not hits:
         _refuse_free(file)
@@ -116,8 +121,8 @@ def find_decision_point(
         ego=ordered[0][3],
         other=last.other or "",
         contact_time_s=contact_s,
-        measure=ranking.measure,
-        measure_unit=ranking.measure_unit,
+        measure=alone.measure,
+        measure_unit=alone.measure_unit,
         step_s=round(max(between, default=step), 9),
         steps=tuple(each for each in steps if each.time_s < contact_s),
     )
@@ -187,23 +192,59 @@ def going_on_choice(
     risk: str | None = None,
 ) -> Choice:
     """Return what going on leads to; ranked alone, so that no deadline leaves it open."""
+    return _choice(_rank_alone(scenario, motion, measure, risk).best)
+
+
+def _rank_alone(
+    scenario: Mapping[str, Any], motion: Mapping[str, Any], measure: str | None, risk: str | None
+) -> Ranking:
+    """Return the ranking of one candidate: a motion, or the speed held where it is empty."""
     listed = [{"name": "go on", **(motion or {"acceleration_mps2": 0.0})}]
     alone = {"listed": listed, "grid": False, "add_straight_braking": False}
-    return _choice(rank({**scenario, "candidates": alone}, measure=measure, risk=risk).best)
+    return rank({**scenario, "candidates": alone}, measure=measure, risk=risk)
 
 
-def _step(at_s: float, going_on: Choice, ranking: Ranking) -> DecisionStep:
-    grid = [_choice(row) for row in ranking]
-    straight = (c for c in grid if abs(c.curvature_per_m) < _ZERO and c.acceleration_mps2 < -_ZERO)
-    held = (c for c in grid if abs(c.curvature_per_m) > _ZERO > abs(c.acceleration_mps2))
+def _step(
+    at_s: float, going_on: Choice, scenario: Mapping[str, Any], grid: Mapping[str, int],
+    options: Mapping[str, Any],
+) -> DecisionStep:  # fmt: skip
+    straight, held = {**grid, "steerings": 1}, {**grid, "accelerations": 1}
+    braking = _first(
+        scenario, {"grid": straight}, options, lambda row: row.acceleration_mps2 < -_ZERO
+    )
+    steering = _first(
+        scenario, {"grid": held, "add_straight_braking": False}, options,
+        lambda row: abs(row.curvature_per_m) > _ZERO,
+    )  # fmt: skip
+    ways = [way for way in (going_on, braking, steering) if way is not None]
+    best = next((way for way in ways if way.avoids and not way.leaves_road), None)
+    if best is None:
+        first = _first(scenario, {"grid": grid}, options)
+        best = min(ways if first is None else [first, *ways], key=lambda way: way.most)
     return DecisionStep(
         time_s=at_s,
         going_on=going_on,
-        best=grid[0] if grid[0].most <= going_on.most else going_on,
-        braking=next(straight, None),
-        steering=next(held, None),
-        complete=ranking.complete,
+        best=best,
+        braking=braking,
+        steering=steering,
+        complete=all(way.score is not None for way in (best, *ways)),
     )
+
+
+def _first(
+    scenario: Mapping[str, Any], candidates: Mapping[str, Any], options: Mapping[str, Any],
+    wanted: Callable[[RankedCandidate], bool] = bool,
+) -> Choice | None:  # fmt: skip
+    """Return the first of the wanted candidates, None without one."""
+    # The proof of the first place leaves the order behind it open.
+    for first_place_only in (True, False):
+        ranking = rank(
+            {**scenario, "candidates": candidates}, first_place_only=first_place_only, **options
+        )
+        place = next((i for i, row in enumerate(ranking) if wanted(row)), None)
+        if not place:
+            break
+    return None if place is None else _choice(ranking[place])
 
 
 def _choice(row: RankedCandidate) -> Choice:
@@ -214,7 +255,8 @@ def _choice(row: RankedCandidate) -> Choice:
         impacts.append(row.time_of_impact_s)
     others = [row.other] + [future.other for future in row.futures]
     return Choice(
-        candidate=row.candidate,
+        # Its place in a grid of one level would not be that in the whole grid.
+        candidate=_PLACE.sub("", row.candidate),
         acceleration_mps2=row.acceleration_mps2,
         curvature_per_m=row.curvature_per_m,
         score=row.score,
@@ -223,6 +265,8 @@ def _choice(row: RankedCandidate) -> Choice:
         time_of_impact_s=min(impacts, default=None),
         other=next((other for other in others if other is not None), None),
         leaves_road=row.leaves_road is not None,
+        least_distance_m=row.least_distance_m,
+        nearest=row.nearest,
     )
 
 
@@ -236,5 +280,5 @@ def _seconds(value: object, name: str) -> float:
 def _refuse_free(file: str) -> NoReturn:
     refuse(
         file, "ego", "goes on without a contact",
-        "name another ego or time, or a longer horizon_s",
+        "name another ego or time, or a longer horizon",
     )  # fmt: skip

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._boxes import overlap_depths
-from ._refusals import refuse
+from ._refusals import MAX_HORIZON_S, refuse
 from ._road import near_areas
 from ._scene import (
     FIXED,
@@ -36,6 +36,8 @@ MAX_SIDE_M = 100.0
 LEAST_SIDE_M = 0.02
 LEVEL_M = 3.0
 _GRADE = 0.1
+# How long before an ego's only state its velocity is taken to hold, s; after it MAX_HORIZON_S.
+_EARLIER_S = 1.0
 _MOST_WARNINGS = 20
 _MOST_PAIRS = 50_000
 
@@ -79,11 +81,13 @@ def make_document(scene: Scene) -> Imported:
     if ego.kind not in VEHICLES:
         refuse(report.file, ego.place, f"is a {ego.kind}, not a vehicle", "choose another ego")
     states = ego.tracks[0].states
-    there = states[0].t_s - 1e-6 <= scene.time_s <= states[-1].t_s + 1e-6
-    if len(states) > 1 and not there:
+    first_s, last_s = states[0].t_s, states[-1].t_s
+    if len(states) == 1:  # moved on with its velocity
+        first_s, last_s = first_s - _EARLIER_S, last_s + MAX_HORIZON_S
+    if not first_s - 1e-6 <= scene.time_s <= last_s + 1e-6:
         refuse(
             report.file, ego.place, f"is not there at {scene.time_s:g} s",
-            f"choose a time from {states[0].t_s:g} to {states[-1].t_s:g} s, or another ego",
+            f"choose a time from {first_s:g} to {last_s:g} s, or another ego",
         )  # fmt: skip
     if len(states) == 1 and abs(states[0].t_s - scene.time_s) > 1e-6:
         report.assume(f"its only state, at {states[0].t_s:g} s, is moved on", ego.name)

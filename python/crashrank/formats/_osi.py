@@ -103,7 +103,9 @@ def read_osi(
     trace = _Trace(file, at_s, horizon)
     for place, message in trace_messages(file):
         trace.add(place, message)
-    if not trace.tracks:
+    if trace.count > 1 and trace.last_s <= 0.0:
+        refuse(file, "", "has messages of one time alone", "give each message its timestamp")
+    if not trace.tracks or at_s < 0.0:
         span = f"the trace has 0 to {trace.last_s:g} s" if trace.count else "it has no message"
         refuse(file, "", f"has no moving object at {at_s:g} s", f"choose another time: {span}")
     bodies = {str(key): _body(key, each, report) for key, each in trace.tracks.items()}
@@ -150,7 +152,10 @@ class _Trace:
         clock = stamp.seconds + 1e-9 * stamp.nanos
         self._first = clock if self._first is None else self._first
         t_s = clock - self._first
-        self.last_s = max(self.last_s, t_s)
+        if t_s < self.last_s:
+            refuse(self._file, place, f"is of {t_s:g} s, the one before of {self.last_s:g} s",
+                   "write the messages in order of time")  # fmt: skip
+        self.last_s = t_s
         if message.HasField("host_vehicle_id"):
             self.host = message.host_vehicle_id.value
         for each in message.stationary_object:
@@ -163,7 +168,12 @@ class _Trace:
         self._states += len(message.moving_object)
         if self._states > MAX_STATES:
             refuse_size(self._file, place, f"is beyond {MAX_STATES} states", "cut out what matters")
+        seen: set[int] = set()
         for each in message.moving_object:
+            if each.id.value in seen:
+                refuse(self._file, f"{place}, moving object {each.id.value}", "is there twice",
+                       "give each object an id of its own")  # fmt: skip
+            seen.add(each.id.value)
             state = _state(self._file, place, each, t_s)
             self.tracks.setdefault(each.id.value, _Object(each)).states.append(state)
 
@@ -174,7 +184,10 @@ def _state(file: str, place: str, moving: Any, t_s: float) -> State:
         base.position.x, base.position.y, base.position.z, base.orientation.yaw,
         base.velocity.x, base.velocity.y, base.orientation_rate.yaw,
     )  # fmt: skip
-    if not all(math.isfinite(value) and abs(value) < 1e8 for value in numbers):
+    if not (
+        base.HasField("position")
+        and all(math.isfinite(value) and abs(value) < 1e8 for value in numbers)
+    ):
         refuse(file, f"{place}, moving object {moving.id.value}", "has no finite pose", "remove it")
     velocity = (base.velocity.x, base.velocity.y) if base.HasField("velocity") else None
     rate = base.orientation_rate.yaw if base.HasField("orientation_rate") else None

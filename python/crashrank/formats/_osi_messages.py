@@ -12,6 +12,7 @@ from ._refusals import guarded_parse, guarded_read, refuse, refuse_size, require
 MAX_MESSAGE = 64 * 2**20
 MAX_CHUNK = 256 * 2**20
 MAX_MESSAGES = 1_000_000
+_MAGIC = b"\x89MCAP0\r\n"
 
 
 def trace_messages(file: str) -> Iterator[tuple[str, Any]]:
@@ -67,6 +68,7 @@ def _mcap(file: str) -> Iterator[tuple[str, Any]]:
     topics: dict[int, tuple[str, str]] = {}
     chosen, found = "", 0
     with guarded_read(file, lambda: open(file, "rb")) as stream:
+        _check_ends(file, stream)
         for record in _records(file, stream):
             what = type(record).__name__
             if what == "Schema":
@@ -85,7 +87,17 @@ def _mcap(file: str) -> Iterator[tuple[str, Any]]:
                 _parse(file, place, message, record.data)
                 yield place, message.global_ground_truth if schema.endswith("View") else message
     if not found:
-        refuse(file, "", "has no OSI ground truth", f"know the schemas {', '.join(makers)}")
+        refuse(file, "", "has no OSI ground truth", f"name one with {' or '.join(makers)}")
+
+
+def _check_ends(file: str, stream: Any) -> None:
+    """Refuse a file that does not begin and end as MCAP does; the stream is at its start again."""
+    if stream.read(len(_MAGIC)) != _MAGIC:
+        refuse(file, "", "is no MCAP file", "name one, or an .osi trace")
+    stream.seek(-len(_MAGIC), os.SEEK_END)
+    if stream.read() != _MAGIC:
+        refuse(file, "", "is cut off", "write the trace again")
+    stream.seek(0)
 
 
 def _records(file: str, stream: Any) -> Iterator[Any]:

@@ -114,7 +114,7 @@ def guarded_parse(file: str, what: str, parse: Callable[[], T]) -> T:
     ):  # packages allocate the sizes that a file states, whether it has them or not
         refuse_size(file, "", "does not fit into memory", "write the file again, or cut it")
     except Exception as error:
-        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")
         refuse(file, "", f"is no {what}: {reason}", "write the file again")
 
 

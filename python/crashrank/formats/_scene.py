@@ -195,7 +195,8 @@ class Report:
         """Return the report as text, a line for each entry."""
         found = [
             f"{self.file}: {self.format}, ego {self.ego} at {self.time_s:g} s, "
-            f"{self.bodies} other bodies, {self.areas} drivable areas"
+            f"{counted(self.bodies, 'other body', 'other bodies')}, "
+            f"{counted(self.areas, 'drivable area', 'drivable areas')}"
         ]
         for title, entries in (
             ("assumed", self.assumed),
@@ -217,6 +218,11 @@ class Scene:
     report: Report
     areas: list[Ring] = field(default_factory=list)
     horizon_s: float = 4.0
+
+
+def counted(number: int, one: str, many: str) -> str:
+    """Return a number with its noun."""
+    return f"{number} {one if number == 1 else many}"
 
 
 def kind_by_size(size_m: tuple[float, float, float]) -> str:
