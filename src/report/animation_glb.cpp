@@ -45,11 +45,11 @@ detail::Track with_short_turns(const detail::Track& track) {
   detail::Track keys;
   for (const PoseKey& key : track) {
     const PoseKey last = keys.empty() ? key : keys.back();
-    const double steps = std::max(1.0, std::ceil(std::abs(key.at[3] - last.at[3]) / longest_rad));
-    for (double step = 1.0; step <= steps; ++step) {
+    const int steps = 1 + static_cast<int>(std::abs(key.at[3] - last.at[3]) / longest_rad);
+    for (int step = 1; step <= steps; ++step) {
       PoseKey between = key;
       if (step < steps) {
-        const double share = step / steps;
+        const double share = static_cast<double>(step) / steps;
         between.time_s = last.time_s + share * (key.time_s - last.time_s);
         for (std::size_t k = 0; k < between.at.size(); ++k) {
           between.at[k] = last.at[k] + share * (key.at[k] - last.at[k]);
