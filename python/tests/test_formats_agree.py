@@ -133,6 +133,8 @@ def test_the_command_surveys_a_folder():
         assert row["read"] == "True"
         assert row["hits"].endswith(("person", "2"))
         assert float(row["contact_time_s"]) == pytest.approx(2.17, abs=0.03)
+        assert float(row["least_harm_persons"]) == 0  # braking at once
+        assert row["proved"] == "True"
     done = run("import", "survey", "no-folder", "-o", "-")
     assert done.returncode == 3
     assert "is no folder" in done.stderr

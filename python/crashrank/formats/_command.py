@@ -18,7 +18,8 @@ EXIT_CODES = {"usage": 2, "internal": 1, "out_of_memory": 4, "out_of_budget": 4}
 
 _DESCRIPTION = """Converts a scene of another tool to a scenario file, and prints what was assumed.
 With --decide the moment of decision is the last at which the contact ahead can be avoided. The
-format survey writes a table (CSV) of all files in a folder: read or refused, and what is hit."""
+format survey writes a table (CSV) of all files in a folder: read or refused, what is hit, and the
+least harm that is found within a second."""
 
 _EPILOG = """formats: commonroad (XML 2018b, 2020a), openscenario (followed trajectories), osi
 (ground truth, .osi or .mcap), esmini-csv (its log), poses-csv (columns t_s, id, x_m, y_m, yaw_deg
