@@ -55,9 +55,9 @@ double BodyPair::intrusion_m(bool of_first_body) const {
 }
 
 double BodyPair::height_m() const {
-  Box pressed = in_first.own;
-  pressed.grow(in_second.own);
-  return pressed.empty() ? 0.0 : static_cast<double>(pressed.center().z());
+  Box place = in_first.own;
+  place.grow(in_second.own);
+  return place.empty() ? 0.0 : static_cast<double>(place.center().z());
 }
 
 void BodyPair::move_rail(const Deflection& rail, double seconds) {

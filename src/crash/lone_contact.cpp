@@ -28,11 +28,11 @@ bool LoneContact::advance(int steps) {
     const double step_s = run_.next_step_s();
     for (PressedBody& body : state_.bodies) body.motion.move(0.5 * step_s);
     run_.compute_forces(step_s);
-    for (std::size_t i = 0; i < state_.bodies.size(); ++i) {
-      if (!state_.bodies[i].vehicle->breakaway) continue;
+    for (std::size_t body = 0; body < state_.bodies.size(); ++body) {
+      if (!state_.bodies[body].vehicle->breakaway) continue;
       FootLoad load;
-      run_.add_load(i, load);
-      if (state_.load_post(i, load)) run_.forget_held(i);
+      run_.add_load(body, load);
+      if (state_.load_post(body, load)) run_.forget_held(body);
     }
     run_.apply_forces();
     for (PressedBody& body : state_.bodies) body.motion.move(0.5 * step_s);

@@ -317,7 +317,7 @@ MeshReading guess_reading(const TriangleMesh& mesh, const ImportTransform& trans
   // What parts do not show, the format says unless proportions contradict it.
   const Vector3d format_up = body_axis(transform, Axis::plus_y);
   const Vector3d format_forward = body_axis(transform, Axis::plus_z);
-  const auto extent_along = [&](const Vector3d& unit) { return unit.cwiseAbs().dot(extent_m); };
+  const auto extent_along = [&](const Vector3d& axis) { return axis.cwiseAbs().dot(extent_m); };
   const bool as_format = is_gltf && extent_along(format_forward) > 0.8 * extent_m.maxCoeff();
   int height = 2;
   if (up == none && as_format && (forward == none || forward.dot(format_up) == 0.0)) {
