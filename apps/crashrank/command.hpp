@@ -15,6 +15,7 @@ void add_inspect(CLI::App& app, Action& action);
 void add_compile(CLI::App& app, Action& action);
 void add_collide(CLI::App& app, Action& action);
 void add_rank(CLI::App& app, Action& action);
+void add_view(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_new(CLI::App& app, Action& action);
 void add_sweep(CLI::App& app, Action& action);

@@ -142,6 +142,7 @@ int run(int argc, char** argv) {
   add_compile(app, action);
   add_collide(app, action);
   add_rank(app, action);
+  add_view(app, action);
   add_new(app, action);
   add_check(app, action);
   add_sweep(app, action);

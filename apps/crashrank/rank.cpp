@@ -168,9 +168,7 @@ Status check_motion(const RankArguments& options) {
 
 /// An answer within a budget has no motion to play, nor has one of too many candidates.
 bool is_played(const RankArguments& options, const Scenario& scenario) {
-  const std::size_t generated =
-      scenario.grid ? scenario.grid->accelerations * scenario.grid->steerings : 0;
-  return !options.bounded() && scenario.listed.size() + generated <= most_played_candidates;
+  return !options.bounded() && candidate_count(scenario) <= most_played_candidates;
 }
 
 /// Whether the files could be written, before the work for them is begun.

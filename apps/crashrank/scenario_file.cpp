@@ -25,6 +25,11 @@ Error name_allow(Error error) {
   return error;
 }
 
+std::size_t candidate_count(const Scenario& scenario) {
+  return scenario.listed.size() +
+         (scenario.grid ? scenario.grid->accelerations * scenario.grid->steerings : 0);
+}
+
 Result<std::vector<Model>> load_models(Scenario& scenario, const std::string& file,
                                        const TreeArguments& trees,
                                        std::vector<std::string>& warnings) {

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ std::string shown_name(const std::string& scenario);
 /// A file outside its scenario's folder: the library's remedy, with the option for what a caller
 /// can do.
 Error name_allow(Error error);
+
+/// The number of manoeuvres that a scenario lists or its grid generates.
+std::size_t candidate_count(const Scenario& scenario);
 
 /// Reads the models of a scenario in `file`, and adds the masses that model files state. Says what
 /// is to be warned of in the meshes, and adds it to `warnings`.

@@ -37,7 +37,7 @@ public:
         models_(models),
         result_(result),
         plan_(scenario, models, result),
-        has_still_(options.still) {
+        options_(options) {
     const std::size_t all = result.ranking.size();
     const std::size_t drawn = options.drawn == 0 ? all : std::min(options.drawn, all);
     for (std::size_t place = 0; place < drawn; ++place) places_.push_back(place);
@@ -80,12 +80,22 @@ private:
     out_ +=
         "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'>\n"
         "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; "
-        "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n"
+        "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
+    if (options_.served_version > 0) out_ += "; connect-src 'self'";
+    out_ +=
+        "\">\n"
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
         "<meta name='color-scheme' content='light dark'>\n<title>";
     out_ += escape_xml(scenario_.name) + " - crashrank</title>\n<style>";
     out_ += detail::embedded_style();
-    out_ += "</style></head><body>\n<header><h1>" + escape_xml(scenario_.name) + "</h1>\n";
+    out_ += "</style></head><body";
+    if (options_.served_version > 0) {
+      out_ += fmt::format(" data-version='{}'", options_.served_version);
+    }
+    out_ += ">\n<header><h1>" + escape_xml(scenario_.name) + "</h1>\n";
+    if (!options_.notice.empty()) {
+      out_ += "<p class='note' role='alert'>" + escape_xml(options_.notice) + "</p>\n";
+    }
     if (!scenario_.description.empty()) paragraph(scenario_.description);
     out_ += "</header>\n<main>\n";
     if (result_.ranking.empty()) out_ += "<p class='note'>There is no candidate to rank.</p>\n";
@@ -181,7 +191,7 @@ private:
 
   /// The winner's scene as a picture, for print and for browsers without WebGL.
   void still() {
-    if (!has_still_) return;
+    if (!options_.still) return;
     const Result<std::string> drawn = detail::still_picture(scenario_, models_, result_, 0);
     if (!drawn) return;
     const std::string caption =
@@ -383,6 +393,11 @@ private:
       for (const std::string_view part : detail::embedded_scripts()) out_ += part;
       out_ += "</script>\n";
     }
+    if (options_.served_version > 0) {
+      out_ += "<script>\n\"use strict\";\n";
+      out_ += detail::embedded_reload();
+      out_ += "</script>\n";
+    }
     out_ += "</body></html>\n";
   }
 
@@ -393,7 +408,7 @@ private:
   std::vector<std::size_t> places_;  // drawn, rising
   std::vector<std::string> scores_;  // by row
   double full_bar_ = 0.0;
-  bool has_still_;
+  const HtmlReportOptions& options_;
   detail::PageData data_;
   std::string out_;
 };

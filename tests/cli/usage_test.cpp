@@ -37,7 +37,7 @@ TEST(Usage, HelpAndVersionAreData) {
 TEST(Usage, HelpIsACommandToo) {
   const Workplace place;
   EXPECT_EQ(place.crashrank({"help"}).out, place.crashrank({"--help"}).out);
-  for (const std::string command : {"inspect", "compile", "collide", "rank", "new", "check",
+  for (const std::string command : {"inspect", "compile", "collide", "rank", "view", "new", "check",
                                     "sweep", "validate", "completion"}) {
     const Outcome help = place.crashrank({"help", command});
     EXPECT_EQ(help.code, 0);
@@ -103,7 +103,7 @@ TEST(Usage, CompletionKnowsCommandsOptionsAndTheirWords) {
   const std::string zsh = place.crashrank({"completion", "zsh"}).out;
   EXPECT_EQ(zsh.rfind("#compdef crashrank\n", 0), 0U);
   for (const char* command :
-       {"inspect", "compile", "collide", "rank", "new", "check", "sweep", "validate"}) {
+       {"inspect", "compile", "collide", "rank", "view", "new", "check", "sweep", "validate"}) {
     std::istringstream help(place.crashrank({command, "--help"}).out);
     for (std::string line; std::getline(help, line);) {
       const std::size_t at = line.find("--");
@@ -254,8 +254,8 @@ TEST(Usage, HowOftenAnOptionOrItsValueIsThereIsToldInPlainWords) {
   for (const auto& [arguments, told] :
        std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{},
-            "no command is given; choose inspect, compile, collide, rank, new, check, sweep, "
-            "validate"},
+            "no command is given; choose inspect, compile, collide, rank, view, new, check, "
+            "sweep, validate"},
            {{"rank", "s.json", "--deadline-ms"}, "--deadline-ms needs a value"},
            {{"rank", "s.json", "--top", "3", "--top", "4"}, "--top is given more than once"},
            {{"rank", "s.json", "--first-place=3"}, "--first-place takes no value"},

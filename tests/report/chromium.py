@@ -108,8 +108,9 @@ class Browser:
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
 
     def open(self, path):
-        """Open a file and wait until it is loaded."""
-        self._ask("Page.navigate", url="file://" + os.path.abspath(path))
+        """Open a file or a URL and wait until it is loaded."""
+        url = path if "://" in path else "file://" + os.path.abspath(path)
+        self._ask("Page.navigate", url=url)
         self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
 
     def run(self, script):

@@ -79,6 +79,11 @@ struct HtmlReportOptions {
   std::size_t model_triangles = 7'000;
   /// Holds a still picture of the first one, for browsers without WebGL, some 150 kB.
   bool still = true;
+  /// The page's version on the server that it is to come from, 0 without a server: the page asks
+  /// that server for /version?after=VERSION, and reloads itself when the answer is another one.
+  std::uint64_t served_version = 0;
+  /// A line above the report, such as an error of a newer scenario; empty: none.
+  std::string notice;
 };
 
 /// One page for people, from what `rank` was given and what it answered: the decision in a

@@ -15,6 +15,7 @@ std::string_view embedded_scene();        ///< scene.js
 std::string_view embedded_table();        ///< table.js
 std::string_view embedded_uncertainty();  ///< uncertainty.js
 std::string_view embedded_page();         ///< page.js
+std::string_view embedded_reload();       ///< reload.js, of pages that `crashrank view` serves
 
 /// The page's script, in the order in which its parts are read.
 inline std::array<std::string_view, 8> embedded_scripts() {
