@@ -75,7 +75,7 @@ struct Watched {
 
 /// Models that serve until their files or their entries in the scenario change.
 struct LoadedModels {
-  Json entries;                       ///< "models" of the scenario file
+  std::string entries;                ///< "models" of the scenario file, as JSON
   std::vector<Stamp> stamps;          ///< of the scenario's files but the first
   std::vector<ScenarioModel> stated;  ///< with what model files state
   std::vector<Model> models;          ///< with outlines
@@ -119,7 +119,7 @@ Result<Shown> rank_anew(const ViewArguments& options,
   Shown shown;
   shown.scenario = std::move(*scenario);
   LoadedModels wanted;
-  wanted.entries = Json::parse(*text).at("models");
+  wanted.entries = Json::parse(*text).at("models").dump();
   wanted.stamps.assign(watched.stamps.begin() + 1, watched.stamps.end());
   if (known && known->entries == wanted.entries && known->stamps == wanted.stamps) {
     shown.scenario.models = known->stated;
