@@ -6,6 +6,7 @@
 #include "interrupt.hpp"
 #include "json.hpp"
 #include "options.hpp"
+#include "scenario_file.hpp"
 #include "streams.hpp"
 #include "validate_pairs.hpp"
 
@@ -13,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -28,8 +30,11 @@ namespace {
 struct ValidateArguments {
   std::string rows;
   std::string car;
+  std::string plot;
   bool json = false;
   bool boxes = false;
+
+  const char* shape() const { return boxes ? "boxes" : "meshes"; }
 };
 
 int fail_in(const std::string& file, Error error) {
@@ -139,13 +144,35 @@ std::string barriers_text(const ValidateArguments& options, const std::vector<Cr
   Json entries = Json::array();
   for (std::size_t i = 0; i < rows.size(); ++i) entries.push_back(row_json(rows[i], outcomes[i]));
   Json document{{"rows", std::move(entries)}};
-  document["shape"] = options.boxes ? "boxes" : "meshes";
+  document["shape"] = options.shape();
   document.update(errors_of(rows, outcomes).json());
   return json_text(document);
 }
 
 template <class T> std::vector<T> first_of(const std::vector<T>& all, std::size_t count) {
   return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+ComparedShape compare_barriers(const std::vector<CrashTestRow>& rows,
+                               const std::vector<Outcome>& outcomes, const std::string& shape) {
+  ComparedShape compared{shape, {}, {}};
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    compared.add(rows[i].test.id, outcomes[i].delta_v_mps(), rows[i].measured_delta_v_mps,
+                 outcomes[i].yaw_rate_dps(), rows[i].measured_yaw_rate_dps);
+  }
+  return compared;
+}
+
+Status write_plot(const ValidateArguments& options, const std::vector<ComparedShape>& shapes) {
+  if (options.plot.empty()) return Success{};
+  Result<OutputFile> out = OutputFile::open(options.plot, svg_picture);
+  if (!out) return out.error();
+  out->write(validate_plot("Crash tests of " + shown_name(options.rows), shapes));
+  return out->close();
+}
+
+template <class T> bool is_measured(const T& row) {
+  return row.measured_delta_v_mps || row.measured_yaw_rate_dps;
 }
 
 int run_barriers(const ValidateArguments& options, const RigCar& car,
@@ -172,6 +199,9 @@ int run_barriers(const ValidateArguments& options, const RigCar& car,
       return fail(run.error());
     }
   }
+  std::vector<ComparedShape> shapes{compare_barriers(rows, outcomes.list, options.shape())};
+  if (both) shapes.push_back(compare_barriers(rows, boxes.list, "boxes"));
+  if (const Status written = write_plot(options, shapes); !written) return fail(written.error());
   print(barriers_text(options, rows, outcomes.list, both ? boxes.list : outcomes.list));
   return exit_done;
 }
@@ -180,7 +210,7 @@ std::string pairs_answer(const ValidateArguments& options, const std::vector<Pai
                          const std::vector<PairOutcome>& outcomes) {
   if (!options.json) return pairs_text(tests, outcomes);
   Json document = pairs_json(tests, outcomes);
-  document["shape"] = options.boxes ? "boxes" : "meshes";
+  document["shape"] = options.shape();
   return json_text(document);
 }
 
@@ -205,11 +235,19 @@ int run_pairs(const ValidateArguments& options, const RigCar& car,
     outcomes.push_back(std::move(*outcome));
     progress.advance();
   }
+  if (const Status written = write_plot(options, {compare_pairs(tests, outcomes, options.shape())});
+      !written) {
+    return fail(written.error());
+  }
   print(pairs_answer(options, tests, outcomes));
   return exit_done;
 }
 
 int run(const ValidateArguments& options) {
+  if (is_standard(options.plot)) {
+    return fail(
+        make_error(ErrorCode::usage, "--plot needs a file: the answer goes to standard output"));
+  }
   constexpr std::size_t most_bytes = std::size_t{16} << 20U;
   const Result<std::string> text = read_text(options.rows, most_bytes);
   if (!text) return fail(text.error());
@@ -225,11 +263,24 @@ int run(const ValidateArguments& options) {
   }
   if (!tests) return fail_in(options.rows, tests.error());
   if (!rows) return fail_in(options.rows, rows.error());
+  const bool can_be_drawn = std::any_of(rows->begin(), rows->end(), is_measured<CrashTestRow>) ||
+                            std::any_of(tests->begin(), tests->end(), [](const PairTest& test) {
+                              return is_measured(test.cars[0]) || is_measured(test.cars[1]);
+                            });
+  if (!options.plot.empty() && !can_be_drawn) {
+    return fail_in(options.rows,
+                   make_error(ErrorCode::bad_input, "no row has a value for --plot to compare with",
+                              "fill in a column measured_..., or leave out --plot"));
+  }
   std::string path = options.car;
   if (path.empty()) {
     const Result<std::string> found = find_rig_car();
     if (!found) return fail(found.error());
     path = *found;
+  }
+  if (const Status sound = can_be_written(options.plot, svg_picture, {options.rows, path});
+      !sound) {
+    return fail(sound.error());
   }
   const Result<RigCar> car = load_rig_car(path);
   if (!car) return fail(car.error());
@@ -254,7 +305,7 @@ the centre of mass at first contact or before), measured_delta_vN_mps, measured_
 Yaw to the left is positive.
 
 Examples:
-  crashrank validate data/validation/small_overlap.csv
+  crashrank validate data/validation/small_overlap.csv --plot small_overlap.svg
   crashrank validate data/validation/car_to_car.csv --json)";
 
 }  // namespace
@@ -266,6 +317,9 @@ void add_validate(CLI::App& app, Action& action) {
   add_file(*command, "--car", options->car,
            "Mesh of the car, listed in models.json beside it [default: the shipped saloon]");
   command->add_flag("--json", options->json, "Answer in JSON");
+  add_file(*command, "--plot", options->plot,
+           "Draw simulated over measured values into this SVG file, a panel a quantity, with the "
+           "lines of equality and of 20 % more and less");
   command->add_flag("--boxes", options->boxes, "Replace both bodies by their bounding boxes");
   command->footer(validate_epilogue);
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -89,6 +89,21 @@ std::string TestErrors::text(const std::string& what) const {
   return text + "\n";
 }
 
+ComparedShape compare_pairs(const std::vector<PairTest>& tests,
+                            const std::vector<PairOutcome>& outcomes, const std::string& shape) {
+  ComparedShape compared{shape, {}, {}};
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const PairedCar& car = tests[i].cars.at(k);
+      const BodyOutcome& side = side_of(outcomes[i], k);
+      compared.add(fmt::format("{}, car {}", tests[i].id, k + 1), side.delta_v_mps,
+                   car.measured_delta_v_mps, degrees(side.yaw_rate_change_radps),
+                   car.measured_yaw_rate_dps);
+    }
+  }
+  return compared;
+}
+
 Json pairs_json(const std::vector<PairTest>& tests, const std::vector<PairOutcome>& outcomes) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < tests.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include "crash_test_pairs.hpp"
 #include "json.hpp"
+#include "validate_plot.hpp"
 
 #include <string>
 #include <vector>
@@ -30,6 +31,10 @@ struct TestErrors {
 double relative_error(double simulated, double measured);
 /// Such as "+7 %"; empty without a measured value.
 std::string relative_error_text(double simulated, const std::optional<double>& measured);
+
+/// The measured values of both cars.
+ComparedShape compare_pairs(const std::vector<PairTest>& tests,
+                            const std::vector<PairOutcome>& outcomes, const std::string& shape);
 
 /// The answer for crashes between two cars in JSON.
 Json pairs_json(const std::vector<PairTest>& tests, const std::vector<PairOutcome>& outcomes);

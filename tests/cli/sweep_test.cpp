@@ -76,6 +76,12 @@ std::vector<std::string> cells(const std::string& line) {
   return list;
 }
 
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; ++at) ++n;
+  return n;
+}
+
 TEST(Sweep, ByDefaultAllDepthsAndPoliciesOfFourWorkersWithStoresOfTheirOwn) {
   const Balls balls;
   const Outcome run = balls.sweep({"--json"});
@@ -152,9 +158,7 @@ TEST(Sweep, ABudgetTrimsLinesAndIsNoFailure) {
   EXPECT_LE(answer["rows"][0]["peak_part_bytes"], 40000.0);
   EXPECT_EQ(answer["rows"][1]["status"], "ok");
   const std::string svg = balls.place.read("out.svg");
-  std::size_t dots = 0;
-  for (std::size_t at = 0; (at = svg.find("<circle", at)) != std::string::npos; ++at) ++dots;
-  EXPECT_EQ(dots, 2U) << "one depth left, two panels";
+  EXPECT_EQ(count(svg, "<circle"), 2U) << "one depth left, two panels";
 
   std::vector<std::string> csv = tight;
   csv.emplace_back("--csv");
@@ -194,6 +198,7 @@ TEST(Sweep, ThePlotIsSvgWithEscapedNames) {
   EXPECT_EQ(svg.rfind("<svg ", 0), 0U);
   EXPECT_NE(svg.find("a&amp;b&lt;c&gt;.obj"), std::string::npos);
   EXPECT_EQ(svg.find("<c>"), std::string::npos);
+  EXPECT_EQ(count(svg, "stroke='#555555' stroke-dasharray='4 4'"), 2U) << "a line at 1 a panel";
   for (const char* policy : {"best-match", "random", "lowest", "best-match-load", "late-match"}) {
     EXPECT_NE(svg.find(std::string(">") + policy + "<"), std::string::npos) << policy;
   }

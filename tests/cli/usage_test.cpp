@@ -370,6 +370,7 @@ TEST(Usage, EveryMistakeIsExitTwoAndOneLine) {
             "private"},
            {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--json", "--csv"},
            {"sweep", "a.obj", "a.obj", "--poses", "p.txt", "--plot", "-"},
+           {"validate", "rows.csv", "--plot", "-"},
            {"inspect", "a.obj", "--profile", "-"},
            {"inspect", "a.obj", "a.obj", "--profile", "p.svg"},
            {"sweep", "-", "a.obj", "--poses", "-", "--format", "obj"},

@@ -223,4 +223,64 @@ TEST(Validate, BadRowsAreNamed) {
   EXPECT_EQ(place.crashrank({"validate", "absent.csv"}).code, 3);
 }
 
+/// Centres of the points of a plot, in px.
+std::vector<std::pair<double, double>> points_of(const std::string& svg) {
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t at = 0; (at = svg.find("<circle", at)) != std::string::npos; ++at) {
+    std::pair<double, double> point;
+    EXPECT_EQ(
+        std::sscanf(svg.c_str() + at, "<circle cx='%lf' cy='%lf'", &point.first, &point.second), 2);
+    points.push_back(point);
+  }
+  return points;
+}
+
+TEST(Validate, APlotHasAPointForEachMeasuredValue) {
+  const Workplace place;
+  const std::string rows = data + "/validation/small_overlap.csv";
+  const Json answer = validated(place, rows, {"--plot", "out.svg"});
+  const std::string svg = place.read("out.svg");
+  const std::vector<std::pair<double, double>> points = points_of(svg);
+  ASSERT_EQ(points.size(), 22U);
+  for (const char* words :
+       {">delta-v<", ">measured [km/h]<", ">simulated [km/h]<", ">change of yaw rate<",
+        ">measured [degrees/s]<", ">simulated [degrees/s]<", ">equal<", ">20 % above and below<"}) {
+    EXPECT_NE(svg.find(words), std::string::npos) << words;
+  }
+  // One scale for both axes: what is simulated too low lies as far below the line of equality.
+  const Json& first = answer.at("rows")[0];
+  const double scale = (points[1].first - points[0].first) /
+                       (answer.at("rows")[1].at("measured_delta_v_mps").get<double>() -
+                        first.at("measured_delta_v_mps").get<double>());
+  EXPECT_GT(scale, 0.0);
+  for (std::size_t i = 1; i < 11; ++i) {
+    const Json& row = answer.at("rows")[i];
+    EXPECT_NEAR(points[i].first - points[0].first,
+                scale * (row.at("measured_delta_v_mps").get<double>() -
+                         first.at("measured_delta_v_mps").get<double>()),
+                2.0);
+    EXPECT_NEAR(
+        points[0].second - points[i].second,
+        scale * (row.at("delta_v_mps").get<double>() - first.at("delta_v_mps").get<double>()), 2.0);
+  }
+}
+
+TEST(Validate, APlotWithoutMeasuredValuesIsRefused) {
+  const Workplace place;
+  place.write("rows.csv",
+              "id,length_m,width_m,height_m,wheelbase_m,mass_kg,barrier,overlap,speed_mps\n"
+              "<one>,4.8,1.8,1.4,2.7,1600,full,1,15\n");
+  const Outcome run = place.crashrank({"validate", "rows.csv", "--plot", "out.svg"});
+  EXPECT_EQ(run.code, 3);
+  EXPECT_NE(run.err.find("rows.csv: no row has a value for --plot"), std::string::npos) << run.err;
+  place.write("rows.csv",
+              "id,length_m,width_m,height_m,wheelbase_m,mass_kg,barrier,overlap,speed_mps,"
+              "measured_delta_v_mps\n<one>,4.8,1.8,1.4,2.7,1600,full,1,15,16\n");
+  EXPECT_EQ(place.crashrank({"validate", "rows.csv", "--plot", "out.svg"}).code, 0);
+  const std::string svg = place.read("out.svg");
+  EXPECT_NE(svg.find("&lt;one&gt;"), std::string::npos);
+  EXPECT_EQ(svg.find("yaw rate"), std::string::npos) << "a panel for measured quantities alone";
+  EXPECT_EQ(points_of(svg).size(), 2U) << "meshes and boxes";
+}
+
 }  // namespace
