@@ -453,10 +453,10 @@ void ContactRun::end_step() {
   // `low_force_share` of the impulse so far, and at least `min_impulse_share` of the relative
   // momentum has been exchanged. The last condition keeps a light graze from hiding the crash that
   // follows it.
-  constexpr double separation_m = 0.15;
+  constexpr double separation_m = 0.3;
   constexpr double window_s = 0.03;
   constexpr double window_m = 0.1;
-  constexpr double low_force_share = 0.03;
+  constexpr double low_force_share = 0.05;
   constexpr double min_impulse_share = 0.3;
   constexpr double no_contact_m = 0.5;
   time_s_ += step_s_;

@@ -85,7 +85,7 @@ TEST(ContactLaw, DeltaVRarelyFallsWithTheClosingSpeed) {
   EXPECT_LE(share_over(drops, 0.1), 0.22) << "the goal is none";
   EXPECT_LE(share_over(full, 0.02), 0.14);
   EXPECT_LE(share_over(full, 0.05), 0.11) << "the goal is none";
-  EXPECT_LE(share_over(full, 0.1), 0.085) << "the goal is none";
+  EXPECT_LE(share_over(full, 0.1), 0.08) << "the goal is none";
 }
 
 TEST(ContactLaw, WallCutIntoBlocksActsAsOneWall) {
