@@ -154,7 +154,8 @@ public:
                       "tells them apart.",
                       first.sharing));
     }
-    if (!result_.samples.empty() && result_.ranking.size() > 1 && first.sharing == 1) {
+    if (!result_.samples.empty() && result_.ranking.size() > 1 && first.sharing == 1 &&
+        first.sample_scores.size() >= range_sample_count(result_)) {
       lines.push_back(stability(first));
     }
     const std::string interval = interval_text(first);
@@ -204,23 +205,31 @@ private:
       return "The next best scores alike; this one is first because " +
              tie_words(scenario_, first, second) + ".";
     }
-    if (first.separable) {
-      const long better = std::lround(first.overtaken * static_cast<double>(samples));
-      return fmt::format(
-          "The first place is clear: the next best would be better in {} of {} combinations of what "
-          "is not known.",
-          better == 0 ? "none" : "only " + std::to_string(better), samples);
+    // How often each would be first.
+    std::vector<std::size_t> wins(result_.ranking.size(), 0);
+    for (std::size_t i = 0; i < samples; ++i) {
+      std::size_t best = 0;
+      for (std::size_t row = 1; row < wins.size(); ++row) {
+        const CandidateResult& other = result_.ranking[row];
+        if (!other.feasible || other.sample_scores.size() <= i) continue;
+        if (other.sample_scores[i] < result_.ranking[best].sample_scores[i]) best = row;
+      }
+      ++wins[best];
     }
-    if (first.overtaken > separable_share) {
-      return fmt::format(
-          "Not clear from the next best: it would be better in {} of {} "
-          "combinations of what is not known.",
-          std::lround(first.overtaken * static_cast<double>(samples)), samples);
-    }
-    return first.within_sampling_error
-               ? "Not clear from the next best: another sample of futures may reverse the order."
-               : "Not clear from the next best: the difference is within the accuracy of the "
-                 "simulation.";
+    const auto rival = std::max_element(wins.begin() + 1, wins.end());
+    std::string text =
+        wins[0] == samples
+            ? fmt::format("It is first in all of {} combinations of what is not known", samples)
+            : fmt::format("It is first in {} of {} combinations of what is not known; {}“{}”, in "
+                          "place {}, in {}",
+                          wins[0], samples, wins[0] + *rival == samples ? "" : "most often else ",
+                          manoeuvre(static_cast<std::size_t>(rival - wins.begin())),
+                          result_.ranking[static_cast<std::size_t>(rival - wins.begin())].place,
+                          *rival);
+    if (first.separable || first.overtaken > separable_share) return text + ".";
+    return text + (first.within_sampling_error
+                       ? ". Another sample of futures may put the next best before it."
+                       : ". The next best is within the accuracy of the simulation.");
   }
 
   const Scenario& scenario_;

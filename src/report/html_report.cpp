@@ -225,9 +225,9 @@ private:
         "<label><input id='slow' type='checkbox' checked> slow at contacts</label>\n"
         "<canvas id='trace' role='img' aria-label='Exposure of each body over "
         "time'></canvas></div>\n"
-        "<p class='hint'>Space plays, arrows step, N and P go from contact to contact. Orange marks: "
-        "until then another manoeuvre can still be chosen. In a picture that has focus: drag to "
-        "move or turn, wheel or pinch to come nearer, 0 for all.</p>\n";
+        "<p class='hint'>Space plays, arrows step, N and P go from contact to contact. Orange "
+        "marks: until then another manoeuvre can still be chosen. In a picture that has focus: "
+        "drag to move or turn, wheel or pinch to come nearer, 0 for all.</p>\n";
     still();
     const bool is_played = std::any_of(places_.begin(), places_.end(), [this](std::size_t place) {
       const CandidateResult& ranked = result_.ranking[place];
@@ -364,7 +364,8 @@ private:
 
   void damage(const CandidateResult& ranked) {
     out_ += "<div class='damage'><div>";
-    out_ += detail::parts_table(name_of_body(ego_body), models_[scenario_.ego.model].mesh, ranked.ego);
+    out_ += detail::parts_table(name_of_body(ego_body), models_[scenario_.ego.model].mesh,
+                                ranked.ego);
     for (const detail::DamagedBody& body : detail::damaged_others(scenario_, models_, ranked)) {
       out_ +=
           "</div>\n<div>" +
@@ -383,16 +384,17 @@ private:
       out_ += fmt::format(
           "<tr><td>{}</td><td class='n'>{:g}</td><td class='n'>{}</td><td class='n'>{:.0f}</td>"
           "</tr>\n",
-          escape_xml(name_of_body(risk.body)), risk.persons, detail::chance_words(risk.probability), 3.6 * risk.exposure_mps);
+          escape_xml(name_of_body(risk.body)), risk.persons,
+          detail::chance_words(risk.probability), 3.6 * risk.exposure_mps);
     }
     out_ += "</tbody></table>\n";
   }
 
   void foot() {
     out_ +=
-        "</main>\n<footer>Made by crashrank. Our car, the ego, is blue, others are sand, damage is red; a "
-        "ring is where two others collide. Damage is what the bodies pass through of each other, "
-        "as rigid ones, in the simulated contact; dents are drawn to the simulated crush.";
+        "</main>\n<footer>Made by crashrank. Our car, the ego, is blue, others are sand, damage is "
+        "red; a ring is where two others collide. Damage is what the bodies pass through of each "
+        "other, as rigid ones, in the simulated contact; dents are drawn to the simulated crush.";
     if (result_.measure != Measure::harm) {
       out_ += " The measure is one of the crash, not of harm to people.";
     } else {

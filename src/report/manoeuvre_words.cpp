@@ -118,7 +118,8 @@ std::string manoeuvre_words(const Scenario& scenario, const CandidateResult& ran
                          scenario.actors[*ranked.soonest].name);
   }
   if (ranked.at_horizon) {
-    words += fmt::format(", and is at {:.0f} km/h at the horizon", 3.6 * ranked.at_horizon->speed_mps);
+    words +=
+        fmt::format(", and is at {:.0f} km/h at the horizon", 3.6 * ranked.at_horizon->speed_mps);
   }
   words += ".";
   if (ranked.imminent) {

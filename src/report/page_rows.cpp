@@ -77,13 +77,13 @@ std::string contact_words(const Scenario& scenario, const CandidateResult& ranke
     if (future.collides && (hit == nullptr || future.probability > hit->probability)) hit = &future;
   }
   words += " in the likeliest future";
-  if (hit != nullptr) {
-    words += fmt::format("; with {}{} {}{}", probability,
-                         probability == percent_text(hit->probability) ? "" : " a crash, likeliest",
-                         scenario.actors[hit->actor].name,
-                         when(hit->time_of_impact_s, hit->closing_speed_mps));
-  }
-  return words;
+  if (hit == nullptr) return words;
+  const std::string contact =
+      scenario.actors[hit->actor].name + when(hit->time_of_impact_s, hit->closing_speed_mps);
+  return words + (probability == percent_text(hit->probability)
+                      ? fmt::format("; but {} with a probability of {}", contact, probability)
+                      : fmt::format("; a crash with a probability of {}, likeliest {}", probability,
+                                    contact));
 }
 
 PageRow page_row(const Scenario& scenario, const RankResult& result,

@@ -224,27 +224,30 @@ std::string harm_text(double persons) {
 
 std::string in_kmh(const std::string& text) {
   constexpr std::string_view unit = " m/s";
-  const auto ends_name = [&](std::size_t at) {
-    return at + 1 == text.size() || std::string_view(" ,.;:)").find(text[at + 1]) != text.npos;
+  const auto ends_at = [&text](std::size_t at) {
+    return at == text.size() || std::string_view(" ,.;:)").find(text[at]) != std::string::npos;
+  };
+  const auto begins_at = [&text](std::size_t at) {
+    return at == 0 || text[at - 1] == ' ' || text[at - 1] == '(';
   };
   std::string out;
   bool in_name = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool begins_name = text[i] == '\'' && (i == 0 || text[i - 1] == ' ' || text[i - 1] == '(');
-    if (text.compare(i, 3, "“") == 0 || (!in_name && begins_name)) in_name = true;
-    else if (text.compare(i, 3, "”") == 0 || (text[i] == '\'' && ends_name(i))) in_name = false;
+    if (text.compare(i, 3, "“") == 0 || (!in_name && text[i] == '\'' && begins_at(i))) {
+      in_name = true;
+    } else if (text.compare(i, 3, "”") == 0 || (text[i] == '\'' && ends_at(i + 1))) {
+      in_name = false;
+    }
     const std::size_t number = out.find_last_not_of("0123456789.") + 1;
-    const std::size_t end = i + unit.size();
-    const bool is_speed = !in_name && text.compare(i, unit.size(), unit) == 0 &&
-                          number < out.size() &&
-                          (end == text.size() || std::string_view(" ,.;:)").find(text[end]) != text.npos);
-    if (!is_speed) {
+    if (in_name || number == out.size() || text.compare(i, unit.size(), unit) != 0 ||
+        !ends_at(i + unit.size())) {
       out += text[i];
       continue;
     }
-    out = out.substr(0, number) +
-          fmt::format("{:.0f} km/h", 3.6 * std::strtod(out.c_str() + number, nullptr));
-    i = end - 1;
+    const double speed_mps = std::strtod(out.c_str() + number, nullptr);
+    out.resize(number);
+    out += fmt::format("{:.0f} km/h", 3.6 * speed_mps);
+    i += unit.size() - 1;
   }
   return out;
 }

@@ -210,6 +210,7 @@ class View3d {
     this.candidate = candidate;
     const raised = (flat) => flat.flatMap(([x, y]) => [[x, y, 0], [x, y, 1.6]]);
     const points = raised(sceneOf(candidate));
+    const crash = candidate.first === null ? [] : raised(crashOf(candidate));
     const width = this.canvas.clientWidth || 600;
     const height = this.canvas.clientHeight || 400;
     const heading = poseOn(candidate.source.plan, candidate.first ?? candidate.begin).heading;
@@ -222,18 +223,17 @@ class View3d {
     let best = null;
     for (const beside of [2.75, -2.75, 2.45, -2.45, 2.1, -2.1, 1.75, -1.75]) {
       for (const elevation of [0.28, 0.38, 0.5]) {
-        const found = this.fitted(points, heading + beside, elevation, width, height);
+        const [found, near] = [points, crash].map((each) =>
+          each.length > 0 ? this.fitted(each, heading + beside, elevation, width, height) : null);
         // What is far is small: none of the three shall be.
         const reach = meant.reduce(
           (sum, point) => sum + Math.log(Math.hypot(...plus(found.eye, point, -1))),
-          isHidden(candidate, candidate.first ?? 0, found.eye) ? 2 : 0);
-        if (best === null || reach < best.reach) best = {...found, reach};
+          near && isHidden(candidate, candidate.first, near.eye) ? 2 : 0);
+        if (best === null || reach < best.reach) best = {...found, reach, near};
       }
     }
     const {azimuth, elevation, target, distance} = best;
-    Object.assign(this, {azimuth, elevation, target, distance, whole: best});
-    this.near = candidate.first === null ? null
-      : this.fitted(raised(crashOf(candidate)), azimuth, elevation, width, height);
+    Object.assign(this, {azimuth, elevation, target, distance, whole: best, near: best.near});
     this.paintRoad(points);
   }
 
