@@ -219,7 +219,7 @@ private:
     const auto rival = std::max_element(wins.begin() + 1, wins.end());
     std::string text =
         wins[0] == samples
-            ? fmt::format("It is first in all of {} combinations of what is not known", samples)
+            ? fmt::format("It is first in all {} combinations of what is not known", samples)
             : fmt::format("It is first in {} of {} combinations of what is not known; {}“{}”, in "
                           "place {}, in {}",
                           wins[0], samples, wins[0] + *rival == samples ? "" : "most often else ",

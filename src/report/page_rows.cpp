@@ -58,6 +58,11 @@ std::string contact_words(const Scenario& scenario, const CandidateResult& ranke
         scenario.actors[touch.actor].name + when(touch.time_of_impact_s, touch.closing_speed_mps);
   } else if (ranked.contacts.empty()) {
     words = passing_words(scenario, ranked);
+    const bool is_clear = ranked.grazes.empty() && ranked.collision_probability == 0.0;
+    if (in_short && is_clear && ranked.nearest) {
+      words = fmt::format("nothing, stays {:.1f} m from {}", *ranked.least_distance_m,
+                          scenario.actors[*ranked.nearest].name);
+    }
   } else {
     const Contact& first = ranked.contacts.front();
     const std::string name = contact_name(scenario, first);
