@@ -7,12 +7,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 namespace crashrank::detail {
 namespace {
+
+constexpr double no_share_across = 0.01;
+
+/// What steering takes of the grip, left positive.
+double share_across(const Scenario& scenario, const Candidate& candidate) {
+  const double speed = scenario.ego.speed_mps;
+  return candidate.curvature_per_m * speed * speed / (scenario.grip * standard_gravity_mps2);
+}
 
 std::string capitalised(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
@@ -21,10 +32,16 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-std::string with_full_stop(std::string text) {
-  text = capitalised(std::move(text));
-  if (!text.empty() && text.back() != '.') text += '.';
-  return text;
+/// Which way a generated manoeuvre leads: -1 to the right, 0 straight on, 1 to the left.
+std::optional<int> side_of(const Scenario& scenario, const Candidate& candidate) {
+  if (candidate.origin != CandidateOrigin::grid) return std::nullopt;
+  const double share = share_across(scenario, candidate);
+  return std::abs(share) < no_share_across ? 0 : share > 0.0 ? 1 : -1;
+}
+
+/// "about 2 in 100"
+std::string about(std::string chance) {
+  return chance[0] >= '0' && chance[0] <= '9' ? "about " + chance : chance;
 }
 
 bool is_clear(const CandidateResult& ranked) {
@@ -48,8 +65,7 @@ std::string pace_words(double share) {
 std::string way_words(double share) {
   constexpr double hard = 0.7;
   constexpr double slight = 0.3;
-  constexpr double none = 0.01;
-  if (std::abs(share) < none) return "straight on";
+  if (std::abs(share) < no_share_across) return "straight on";
   const std::string how = std::abs(share) > hard     ? "hard "
                           : std::abs(share) > slight ? ""
                                                      : "slightly ";
@@ -71,10 +87,10 @@ public:
     if (!ranked.feasible) return "the vehicle cannot follow it";
     if (is_clear(ranked)) return "no crash";
     if (result_.measure == Measure::harm && ranked.score && !ranked.people.empty()) {
-      return chance_words(chance_of_any(ranked)) +
-             (is_short
-                  ? ""
-                  : fmt::format(" that somebody is {}", outcome_participle(result_.harm.model)));
+      const std::string chance = about(chance_words(chance_of_any(ranked)));
+      return is_short ? chance
+                      : fmt::format("{} that somebody is {}", chance,
+                                    outcome_participle(result_.harm.model));
     }
     const std::string score = scores_[row] + " " + measure_unit(result_.measure);
     return is_short ? score : score + " (" + measure_meaning(result_.measure) + ")";
@@ -94,17 +110,27 @@ public:
     return text + ".";
   }
 
-  std::string next() const {
-    const std::size_t rows = result_.ranking.size();
-    if (rows < 2) return "It is the only candidate.";
-    const bool is_tied = result_.ranking[1].place == result_.ranking[0].place;
-    std::string text = fmt::format("{}, {}: {}", is_tied ? "Just as good" : "The next best",
-                                   manoeuvre(1), outcome(1, true));
-    if (rows > 2) {
-      text += fmt::format("; the worst of {}, {}: {}", rows, manoeuvre(rows - 1),
-                          outcome(rows - 1, true));
+  std::vector<Choice> choices() const {
+    const std::vector<CandidateResult>& rows = result_.ranking;
+    std::vector<Choice> all;
+    const auto add = [&](std::size_t row, std::string role) {
+      all.push_back({row, std::move(role), manoeuvre(row), outcome(row, true)});
+    };
+    add(0, rows.size() < 2 ? "the only one" : "best");
+    if (rows.size() > 1) add(1, rows[1].place == rows[0].place ? "just as good" : "next best");
+    // Neighbours of a grid are much alike: the best that goes straight on, or elsewhere, says more.
+    const auto side = [&](std::size_t row) {
+      return side_of(scenario_, result_.candidates[rows[row].candidate]);
+    };
+    for (std::size_t row = 2; row + 1 < rows.size() && side(0) == side(1); ++row) {
+      if (!side(0) || !side(row) || side(row) == side(0) || !rows[row].feasible) continue;
+      if (side(0) != 0 && side(row) != 0) continue;
+      constexpr std::array<const char*, 3> ways{"to the right", "straight on", "to the left"};
+      add(row, fmt::format("best {}", ways.at(static_cast<std::size_t>(*side(row) + 1))));
+      break;
     }
-    return text + ".";
+    if (rows.size() > 2) add(rows.size() - 1, fmt::format("worst of {}", rows.size()));
+    return all;
   }
 
   std::vector<std::string> sure() const {
@@ -128,18 +154,20 @@ public:
                       "tells them apart.",
                       first.sharing));
     }
-    if (!result_.samples.empty() && result_.ranking.size() > 1 && first.sharing == 1) {
+    if (!result_.samples.empty() && result_.ranking.size() > 1 && first.sharing == 1 &&
+        first.sample_scores.size() >= range_sample_count(result_)) {
       lines.push_back(stability(first));
     }
     const std::string interval = interval_text(first);
     if (!interval.empty()) {
       lines.push_back(
-          fmt::format("With all that is not known its {} is {} {}; the upper end is "
-                      "the worst case.",
-                      measure_name(result_.measure), interval, measure_unit(result_.measure)));
+          fmt::format("With all that is not known, its {} ({}) is {} {}; the upper end is the "
+                      "worst case.",
+                      measure_name(result_.measure), measure_meaning(result_.measure), interval,
+                      measure_unit(result_.measure)));
     }
     if (const std::string other = other_order_words(result_); !other.empty()) {
-      lines.push_back(with_full_stop(other));
+      lines.push_back(other + ".");
     }
     return lines;
   }
@@ -155,7 +183,7 @@ public:
     }
     if (first.leaves_road) {
       const std::string probability = leaving_probability(first);
-      lines.push_back("It " + leaving_words(first) +
+      lines.push_back("It " + in_kmh(leaving_words(first)) +
                       (probability.empty() ? "." : ", with a probability of " + probability + "."));
     }
     if (first.imminent) {
@@ -177,22 +205,31 @@ private:
       return "The next best scores alike; this one is first because " +
              tie_words(scenario_, first, second) + ".";
     }
-    if (first.separable) {
-      return fmt::format(
-          "The first place is clear: in {} of {} combinations of what is not known "
-          "the next best would be better.",
-          std::lround(first.overtaken * static_cast<double>(samples)), samples);
+    // How often each would be first.
+    std::vector<std::size_t> wins(result_.ranking.size(), 0);
+    for (std::size_t i = 0; i < samples; ++i) {
+      std::size_t best = 0;
+      for (std::size_t row = 1; row < wins.size(); ++row) {
+        const CandidateResult& other = result_.ranking[row];
+        if (!other.feasible || other.sample_scores.size() <= i) continue;
+        if (other.sample_scores[i] < result_.ranking[best].sample_scores[i]) best = row;
+      }
+      ++wins[best];
     }
-    if (first.overtaken > separable_share) {
-      return fmt::format(
-          "Not clear from the next best: it would be better in {} of {} "
-          "combinations of what is not known.",
-          std::lround(first.overtaken * static_cast<double>(samples)), samples);
-    }
-    return first.within_sampling_error
-               ? "Not clear from the next best: another sample of futures may reverse the order."
-               : "Not clear from the next best: the difference is within the accuracy of the "
-                 "simulation.";
+    const auto rival = std::max_element(wins.begin() + 1, wins.end());
+    std::string text =
+        wins[0] == samples
+            ? fmt::format("It is first in all {} combinations of what is not known", samples)
+            : fmt::format("It is first in {} of {} combinations of what is not known; {}“{}”, in "
+                          "place {}, in {}",
+                          wins[0], samples, wins[0] + *rival == samples ? "" : "most often else ",
+                          manoeuvre(static_cast<std::size_t>(rival - wins.begin())),
+                          result_.ranking[static_cast<std::size_t>(rival - wins.begin())].place,
+                          *rival);
+    if (first.separable || first.overtaken > separable_share) return text + ".";
+    return text + (first.within_sampling_error
+                       ? ". Another sample of futures may put the next best before it."
+                       : ". The next best is within the accuracy of the simulation.");
   }
 
   const Scenario& scenario_;
@@ -212,8 +249,9 @@ std::string plain_manoeuvre(const Scenario& scenario, const Candidate& candidate
                                     : most_mps2;
   const double along =
       strongest_mps2 > 0.0 ? candidate.acceleration_mps2 * forward / strongest_mps2 : 0.0;
-  const double across = candidate.curvature_per_m * speed * speed / most_mps2;
-  return pace_words(along) + (std::abs(across) < 0.01 ? ", " : " and ") + way_words(across);
+  const double across = share_across(scenario, candidate);
+  return pace_words(along) + (std::abs(across) < no_share_across ? ", " : " and ") +
+         way_words(across);
 }
 
 std::string chance_words(double probability) {
@@ -221,9 +259,9 @@ std::string chance_words(double probability) {
   constexpr double rare = 0.0095;
   constexpr double nearly_all = 0.995;
   if (!(probability > 0.0)) return "no chance";
-  if (probability < seldom) return "fewer than 1 in 1000";
-  if (probability < rare) return fmt::format("about {:.0f} in 1000", 1e3 * probability);
-  if (probability < nearly_all) return fmt::format("about {:.0f} in 100", 1e2 * probability);
+  if (probability < seldom) return "under 0.1 in 100";
+  if (probability < rare) return fmt::format("{:.1f} in 100", 1e2 * probability);
+  if (probability < nearly_all) return fmt::format("{:.0f} in 100", 1e2 * probability);
   return "nearly certain";
 }
 
@@ -242,7 +280,7 @@ const char* outcome_participle(RiskModel model) {
 Decision decision_of(const Scenario& scenario, const RankResult& result,
                      const std::vector<std::string>& scores) {
   const Words words(scenario, result, scores);
-  return {words.sentence(), words.next(), is_clear(result.ranking.front()), words.sure(),
+  return {words.sentence(), words.choices(), is_clear(result.ranking.front()), words.sure(),
           words.against()};
 }
 

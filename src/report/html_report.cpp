@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -113,80 +114,88 @@ private:
     out_ += fmt::format("<section class='decision {}' {} aria-label='Decision'>\n<h2>{}</h2>\n",
                         decision.is_clear ? "clear" : "crash",
                         share_style(best.score.value_or(0.0)), escape_xml(decision.sentence));
-    out_ += "<p class='next'>" + escape_xml(decision.next) + "</p>\n<div class='why'>\n";
-    people();
+    choices(decision.choices);
+    out_ += "<div class='why'>\n";
     list("How sure", decision.sure);
     std::vector<std::string> against = decision.against;
     for (const std::string& doubt : ranking_doubts(scenario_, models_, result_)) {
-      against.push_back("Doubtful: " + doubt + ".");
+      (is_of_later(doubt) ? later_doubts_ : against)
+          .push_back("Doubtful: " + detail::in_kmh(doubt) + ".");
     }
     if (against.empty()) against.emplace_back("Nothing that is known.");
     list("What speaks against it", against);
     out_ += "</div>\n";
     if (result_.ranking.size() > 1) {
-      out_ += "<details open><summary>Why it stands before the next, in numbers</summary>\n";
+      out_ += "<details><summary>Why it stands before the next, in numbers</summary>\n";
       paragraph(detail::reason_words(scenario_, models_, result_, scores_, 0));
       out_ += "</details>\n";
     }
     out_ += "</section>\n";
   }
 
-  /// Who is in danger in the first row, and in the second.
-  void people() {
-    out_ += "<div><h3>Who may be hurt</h3>\n";
-    const CandidateResult& best = result_.ranking.front();
-    const CandidateResult* const next = result_.ranking.size() > 1 ? &result_.ranking[1] : nullptr;
-    std::vector<std::size_t> bodies;
-    const auto add = [&bodies](const CandidateResult& ranked) {
-      for (const PersonRisk& risk : ranked.people) {
-        if (risk.persons > 0.0 &&
-            std::find(bodies.begin(), bodies.end(), risk.body) == bodies.end()) {
-          bodies.push_back(risk.body);
-        }
-      }
-    };
-    add(best);
-    if (next != nullptr) add(*next);
-    if (bodies.empty()) {
-      out_ += result_.measure == Measure::harm
-                  ? "<p>Nobody comes to harm.</p></div>\n"
-                  : "<p>The measure is one of the crash, not of harm to people.</p></div>\n";
-      return;
-    }
-    out_ += fmt::format("<table class='people'><thead><tr><th>who</th><th>chance to be {}</th>",
-                        detail::outcome_participle(result_.harm.model));
-    out_ += next != nullptr ? "<th>next best</th></tr></thead><tbody>\n" : "</tr></thead><tbody>\n";
-    for (const std::size_t body : bodies) {
-      out_ += "<tr><th scope='row'>" + escape_xml(who(best, next, body)) + "</th>";
-      out_ += chance_cell(best, body);
-      if (next != nullptr) out_ += chance_cell(*next, body);
+  /// The first row beside others: what each hits, and whom it hurts.
+  void choices(const std::vector<detail::Choice>& choices) {
+    const bool is_harm = result_.measure == Measure::harm;
+    const std::string outcome =
+        is_harm ? fmt::format("somebody is {}", detail::outcome_participle(result_.harm.model))
+                : std::string(measure_meaning(result_.measure));
+    out_ += "<table class='choices'><thead><tr><th>manoeuvre</th><th>hits</th><th>" +
+            escape_xml(outcome) + "</th>";
+    if (is_harm) out_ += "<th>who</th>";
+    out_ += "</tr></thead><tbody>\n";
+    for (const detail::Choice& choice : choices) {
+      const CandidateResult& ranked = result_.ranking[choice.row];
+      out_ += "<tr><th scope='row'><span class='words'>" + choice.role + "</span>" +
+              escape_xml(choice.manoeuvre) + "</th><td data-title='hits '>" +
+              escape_xml(detail::contact_words(scenario_, ranked, true)) +
+              "</td><td><span class='bar' " +
+              share_style(ranked.score.value_or(ranked.score_interval.highest)) +
+              "></span>" + escape_xml(choice.outcome) + "</td>";
+      if (is_harm) out_ += "<td>" + escape_xml(hurt(ranked)) + "</td>";
       out_ += "</tr>\n";
     }
-    out_ += "</tbody></table></div>\n";
+    out_ += "</tbody></table>\n";
+    if (!is_harm) paragraph("The measure is one of the crash, not of harm to people.");
   }
 
-  static const PersonRisk* risk_of(const CandidateResult& ranked, std::size_t body) {
-    const auto found = std::find_if(ranked.people.begin(), ranked.people.end(),
-                                    [body](const PersonRisk& risk) { return risk.body == body; });
-    return found == ranked.people.end() ? nullptr : &*found;
+  /// "our car 2 in 100, saloon (2 people) 1 in 100 each"; those in most danger first.
+  std::string hurt(const CandidateResult& ranked) const {
+    constexpr std::size_t most = 3;
+    std::vector<PersonRisk> people = ranked.people;
+    const auto is_safe = [](const PersonRisk& risk) {
+      return !(risk.persons > 0.0 && risk.probability > 0.0);
+    };
+    people.erase(std::remove_if(people.begin(), people.end(), is_safe), people.end());
+    std::stable_sort(people.begin(), people.end(), [](const PersonRisk& p, const PersonRisk& q) {
+      return p.persons * p.probability > q.persons * q.probability;
+    });
+    if (people.empty()) return ranked.score ? "nobody" : "not known";
+    std::string words;
+    for (std::size_t i = 0; i < std::min(most, people.size()); ++i) {
+      const PersonRisk& risk = people[i];
+      const bool is_one = risk.persons == 1.0;
+      words += fmt::format("{}{}{} {}{}", i > 0 ? "; " : "", name_of_body(risk.body),
+                           is_one ? "" : fmt::format(" ({:g} people)", risk.persons),
+                           detail::chance_words(risk.probability), is_one ? "" : " each");
+    }
+    if (people.size() > most) words += fmt::format("; {} more", people.size() - most);
+    return words;
   }
 
-  /// "saloon, 2 persons"
-  std::string who(const CandidateResult& best, const CandidateResult* next,
-                  std::size_t body) const {
-    const PersonRisk* risk = risk_of(best, body);
-    if (risk == nullptr && next != nullptr) risk = risk_of(*next, body);
-    std::string name = body == ego_body ? "our own car" : scenario_.actors[body].name;
-    if (risk == nullptr || risk->persons == 1.0) return name;
-    return fmt::format("{}, {:g} persons", name, risk->persons);
+  std::string name_of_body(std::size_t body) const {
+    return body == ego_body ? "our car" : scenario_.actors[body].name;
   }
 
-  static std::string chance_cell(const CandidateResult& ranked, std::size_t body) {
-    const PersonRisk* const risk = risk_of(ranked, body);
-    if (risk == nullptr) return "<td>not hit</td>";
-    return fmt::format("<td><span class='chance' style='--share:{:.1f}%'></span>{}{}</td>",
-                       100.0 * risk->probability, detail::chance_words(risk->probability),
-                       risk->persons == 1.0 ? "" : " each");
+  /// Whether a doubt names candidates, but not the first.
+  static bool is_of_later(const std::string& doubt) {
+    const std::string_view place = "in place ";
+    bool names = false;
+    for (std::size_t at = doubt.find(place); at != std::string::npos; at = doubt.find(place, at)) {
+      at += place.size();
+      if (std::strtol(doubt.c_str() + at, nullptr, 10) == 1) return false;
+      names = true;
+    }
+    return names && doubt.find("the first place") == std::string::npos;
   }
 
   /// The winner's scene as a picture, for print and for browsers without WebGL.
@@ -216,9 +225,9 @@ private:
         "<label><input id='slow' type='checkbox' checked> slow at contacts</label>\n"
         "<canvas id='trace' role='img' aria-label='Exposure of each body over "
         "time'></canvas></div>\n"
-        "<p class='hint'>Space plays, arrows step, N and P go from contact to contact. In a "
-        "picture "
-        "that has focus: drag to move or turn, wheel or pinch to come nearer, 0 for all.</p>\n";
+        "<p class='hint'>Space plays, arrows step, N and P go from contact to contact. Orange "
+        "marks: until then another manoeuvre can still be chosen. In a picture that has focus: "
+        "drag to move or turn, wheel or pinch to come nearer, 0 for all.</p>\n";
     still();
     const bool is_played = std::any_of(places_.begin(), places_.end(), [this](std::size_t place) {
       const CandidateResult& ranked = result_.ranking[place];
@@ -247,10 +256,12 @@ private:
     out_ += "<section class='table' aria-label='Ranking'><h2>All candidates</h2>\n";
     out_ += fmt::format(
         "<p class='facts'>{} candidates, {} other{} on the road, {} {}touch nothing. Ranked by {} "
-        "[{}], lower is better, in {:.1f} ms{}.</p>\n",
+        "[{}], lower is better, in {}{}.</p>\n",
         result_.ranking.size(), scenario_.actors.size(), scenario_.actors.size() == 1 ? "" : "s",
         free, result_.complete ? "" : "are known to ", measure_name(result_.measure),
-        escape_xml(measure_unit(result_.measure)), result_.elapsed_s * 1e3,
+        escape_xml(measure_unit(result_.measure)),
+        result_.elapsed_s < 1.0 ? fmt::format("{:.1f} ms", result_.elapsed_s * 1e3)
+                                : fmt::format("{:.1f} s", result_.elapsed_s),
         result_.complete ? "" : "; the answer is partial");
     out_ += fmt::format(
         "<div class='tools'><label>Filter <input id='filter' type='search'></label>\n"
@@ -296,12 +307,15 @@ private:
 
   void uncertainty() {
     std::vector<std::string> lines = detail::future_words(scenario_, result_);
-    const std::vector<std::string> pushed =
-        detail::pushed_words(scenario_, result_, result_.ranking.size());
+    constexpr std::size_t pushing = 3;
+    const std::vector<std::string> pushed = detail::pushed_words(scenario_, result_, pushing);
     std::vector<std::string> open = detail::not_separable_words(result_, result_.ranking.size());
     out_ +=
         "<section class='uncertainty' aria-label='Uncertainty'><h2>What is not known</h2>\n"
         "<div id='futures'></div>\n";
+    for (std::string& line : lines) {
+      if (result_.measure != Measure::delta_v) line = detail::in_kmh(line);
+    }
     if (!lines.empty()) list("Futures", lines);
     out_ += "<div id='stability'></div>\n";
     constexpr std::size_t shown = 12;
@@ -321,6 +335,7 @@ private:
     }
     if (!open.empty()) list("Places", open);
     if (!pushed.empty()) list("Hurt by a contact between others", pushed);
+    if (!later_doubts_.empty()) list("Doubts about other candidates", later_doubts_);
     out_ += "</section>\n";
   }
 
@@ -349,7 +364,8 @@ private:
 
   void damage(const CandidateResult& ranked) {
     out_ += "<div class='damage'><div>";
-    out_ += detail::parts_table("ego", models_[scenario_.ego.model].mesh, ranked.ego);
+    out_ += detail::parts_table(name_of_body(ego_body), models_[scenario_.ego.model].mesh,
+                                ranked.ego);
     for (const detail::DamagedBody& body : detail::damaged_others(scenario_, models_, ranked)) {
       out_ +=
           "</div>\n<div>" +
@@ -368,17 +384,17 @@ private:
       out_ += fmt::format(
           "<tr><td>{}</td><td class='n'>{:g}</td><td class='n'>{}</td><td class='n'>{:.0f}</td>"
           "</tr>\n",
-          risk.body == ego_body ? "ego" : escape_xml(scenario_.actors[risk.body].name),
-          risk.persons, detail::chance_words(risk.probability), 3.6 * risk.exposure_mps);
+          escape_xml(name_of_body(risk.body)), risk.persons,
+          detail::chance_words(risk.probability), 3.6 * risk.exposure_mps);
     }
     out_ += "</tbody></table>\n";
   }
 
   void foot() {
     out_ +=
-        "</main>\n<footer>Made by crashrank. The ego is blue, others are sand, damage is red; a "
-        "ring is where two others collide. Damage is what the bodies pass through of each other, "
-        "as rigid ones, in the simulated contact; dents are drawn to the simulated crush.";
+        "</main>\n<footer>Made by crashrank. Our car, the ego, is blue, others are sand, damage is "
+        "red; a ring is where two others collide. Damage is what the bodies pass through of each "
+        "other, as rigid ones, in the simulated contact; dents are drawn to the simulated crush.";
     if (result_.measure != Measure::harm) {
       out_ += " The measure is one of the crash, not of harm to people.";
     } else {
@@ -407,6 +423,7 @@ private:
   detail::PlanView plan_;
   std::vector<std::size_t> places_;  // drawn, rising
   std::vector<std::string> scores_;  // by row
+  std::vector<std::string> later_doubts_;
   double full_bar_ = 0.0;
   const HtmlReportOptions& options_;
   detail::PageData data_;

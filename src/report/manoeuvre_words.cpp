@@ -118,7 +118,8 @@ std::string manoeuvre_words(const Scenario& scenario, const CandidateResult& ran
                          scenario.actors[*ranked.soonest].name);
   }
   if (ranked.at_horizon) {
-    words += fmt::format(", and is at {:.1f} m/s at the horizon", ranked.at_horizon->speed_mps);
+    words +=
+        fmt::format(", and is at {:.0f} km/h at the horizon", 3.6 * ranked.at_horizon->speed_mps);
   }
   words += ".";
   if (ranked.imminent) {
@@ -167,7 +168,8 @@ std::string tie_words(const Scenario& scenario, const CandidateResult& first,
   if (!first.collides || first.contacts.empty() || second.contacts.empty()) {
     const double speed = first.at_horizon ? first.at_horizon->speed_mps : 0.0;
     const double other = second.at_horizon ? second.at_horizon->speed_mps : 0.0;
-    return fmt::format("it is slower at the horizon, {:.2f} m/s against {:.2f} m/s", speed, other);
+    return fmt::format("it is slower at the horizon, {:.2f} km/h against {:.2f} km/h", 3.6 * speed,
+                       3.6 * other);
   }
   const Contact& p = first.contacts.front();
   const Contact& q = second.contacts.front();
@@ -175,8 +177,8 @@ std::string tie_words(const Scenario& scenario, const CandidateResult& first,
     return fmt::format("its first contact is later, {:.3f} s against {:.3f} s", p.time_of_impact_s,
                        q.time_of_impact_s);
   }
-  return fmt::format("its closing speed is lower, {:.2f} m/s against {:.2f} m/s",
-                     p.closing_speed_mps, q.closing_speed_mps);
+  return fmt::format("its closing speed is lower, {:.2f} km/h against {:.2f} km/h",
+                     3.6 * p.closing_speed_mps, 3.6 * q.closing_speed_mps);
 }
 
 }  // namespace crashrank::detail

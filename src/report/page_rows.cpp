@@ -31,7 +31,23 @@ std::string hit_names(const Scenario& scenario, const CandidateResult& ranked) {
   return names;
 }
 
-std::string contact_words(const Scenario& scenario, const CandidateResult& ranked) {
+/// "lorry and 1 crash between others", "3 more"; nothing where all is said with the first.
+std::string more_words(const Scenario& scenario, const CandidateResult& ranked) {
+  const std::vector<std::size_t> hit = hit_actors(ranked);
+  const std::size_t pairs = further_pairs(ranked).size();
+  std::string words;
+  if (hit.size() == 2) words = scenario.actors[hit[1]].name;
+  if (hit.size() > 2) words = fmt::format("{} more", hit.size() - 1);
+  if (pairs > 0) {
+    words += fmt::format("{}{} crash{} between others", words.empty() ? "" : " and ", pairs,
+                         pairs == 1 ? "" : "es");
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string contact_words(const Scenario& scenario, const CandidateResult& ranked, bool in_short) {
   const auto when = [](double time_s, double speed_mps) {
     return fmt::format(" after {:.2f} s at {:.0f} km/h", time_s, 3.6 * speed_mps);
   };
@@ -42,20 +58,38 @@ std::string contact_words(const Scenario& scenario, const CandidateResult& ranke
         scenario.actors[touch.actor].name + when(touch.time_of_impact_s, touch.closing_speed_mps);
   } else if (ranked.contacts.empty()) {
     words = passing_words(scenario, ranked);
+    const bool is_clear = ranked.grazes.empty() && ranked.collision_probability == 0.0;
+    if (in_short && is_clear && ranked.nearest) {
+      words = fmt::format("nothing, stays {:.1f} m from {}", *ranked.least_distance_m,
+                          scenario.actors[*ranked.nearest].name);
+    }
   } else {
     const Contact& first = ranked.contacts.front();
     const std::string name = contact_name(scenario, first);
-    const std::string others = hit_names(scenario, ranked).substr(name.size());
-    words = name + when(first.time_of_impact_s, first.closing_speed_mps) +
-            (others.empty() ? "" : "; then" + others.substr(1));
+    words = name + when(first.time_of_impact_s, first.closing_speed_mps);
+    const std::string others = in_short ? ", " + more_words(scenario, ranked)
+                                        : hit_names(scenario, ranked).substr(name.size());
+    if (others.size() > 2) words += "; then" + others.substr(1);
   }
-  if (ranked.futures.size() > 1) {
-    words += "; collides with " + percent_text(ranked.collision_probability);
+  if (ranked.futures.size() < 2 || !(ranked.collision_probability > 0.0)) return words;
+  const std::string probability = percent_text(ranked.collision_probability);
+  if (ranked.collides) {
+    if (probability != "100 %") words += "; probability of a crash " + probability;
+    return words;
   }
-  return words;
+  const FutureOutcome* hit = nullptr;
+  for (const FutureOutcome& future : ranked.futures) {
+    if (future.collides && (hit == nullptr || future.probability > hit->probability)) hit = &future;
+  }
+  words += " in the likeliest future";
+  if (hit == nullptr) return words;
+  const std::string contact =
+      scenario.actors[hit->actor].name + when(hit->time_of_impact_s, hit->closing_speed_mps);
+  return words + (probability == percent_text(hit->probability)
+                      ? fmt::format("; but {} with a probability of {}", contact, probability)
+                      : fmt::format("; a crash with a probability of {}, likeliest {}", probability,
+                                    contact));
 }
-
-}  // namespace
 
 PageRow page_row(const Scenario& scenario, const RankResult& result,
                  const std::vector<std::string>& scores, std::size_t place) {
@@ -75,7 +109,7 @@ PageRow page_row(const Scenario& scenario, const RankResult& result,
   row.value = ranked.score.value_or(ranked.score_estimate.value_or(ranked.score_interval.highest));
   row.lowest = ranked.score_interval.lowest;
   row.highest = std::max(row.value, ranked.score_interval.highest);
-  row.contact = contact_words(scenario, ranked);
+  row.contact = contact_words(scenario, ranked, false);
   if (ranked.first_touch) {
     row.time_s = ranked.first_touch->time_of_impact_s;
   } else if (!ranked.contacts.empty()) {

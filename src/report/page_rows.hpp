@@ -28,6 +28,9 @@ struct PageRow {
 };
 
 /// `scores` are those of `score_texts`.
+/// What a row hits first, when and at which speed, and what then: by name, or `in_short` counted.
+std::string contact_words(const Scenario& scenario, const CandidateResult& ranked, bool in_short);
+
 PageRow page_row(const Scenario& scenario, const RankResult& result,
                  const std::vector<std::string>& scores, std::size_t place);
 

@@ -30,8 +30,8 @@ std::string other_view(const Scenario& scenario, View<const Model> models, const
   const double first_speed = first.contacts.front().closing_speed_mps;
   const double second_speed = second.contacts.front().closing_speed_mps;
   if (first_speed > second_speed + 0.1) {
-    return fmt::format(" Its closing speed is the higher one, though: {:.1f} m/s against {:.1f}.",
-                       first_speed, second_speed);
+    return fmt::format(" Its closing speed is the higher one, though: {:.0f} km/h against {:.0f}.",
+                       3.6 * first_speed, 3.6 * second_speed);
   }
   const double first_m2 = damaged_area_m2(scenario, models, first);
   const double second_m2 = damaged_area_m2(scenario, models, second);
@@ -165,18 +165,18 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
   if (ranked.contacts.empty()) {
     std::string text = fmt::format("touches nothing within {:.1f} s{}", scenario.horizon_s,
                                    ranked.grazes.empty() ? "" : ", but grazes");
-    if (leaves_in_likeliest(ranked)) text += ", but " + leaving_words(ranked);
+    if (leaves_in_likeliest(ranked)) text += ", but " + in_kmh(leaving_words(ranked));
     return text;
   }
   const Contact& first = ranked.contacts.front();
   std::string text =
-      fmt::format("hits {} after {:.2f} s at {:.1f} m/s", scenario.actors[first.actor].name,
-                  first.time_of_impact_s, first.closing_speed_mps);
+      fmt::format("hits {} after {:.2f} s at {:.0f} km/h", scenario.actors[first.actor].name,
+                  first.time_of_impact_s, 3.6 * first.closing_speed_mps);
   if (begins_in_contact(first)) {
-    text = fmt::format("overlaps {} at the start, closing at {:.1f} m/s",
-                       scenario.actors[first.actor].name, first.closing_speed_mps);
+    text = fmt::format("overlaps {} at the start, closing at {:.0f} km/h",
+                       scenario.actors[first.actor].name, 3.6 * first.closing_speed_mps);
   }
-  if (leaves_in_likeliest(ranked)) text = leaving_words(ranked) + " and " + text;
+  if (leaves_in_likeliest(ranked)) text = in_kmh(leaving_words(ranked)) + " and " + text;
   const std::vector<std::size_t> actors = hit_actors(ranked);
   for (std::size_t i = 1; i < actors.size(); ++i) {
     text += (i + 1 == actors.size() ? " and " : ", ") + scenario.actors[actors[i]].name;
@@ -227,7 +227,7 @@ std::string outcome_words(const Scenario& scenario, const CandidateResult& ranke
                            percent_text(ranked.collision_probability),
                            leaving.empty() ? "" : ", of leaving the road " + leaving);
   if (!ranked.leaves_road || leaves_in_likeliest(ranked)) return likeliest;
-  return likeliest + "; in another it " + leaving_words(ranked);
+  return likeliest + "; in another it " + in_kmh(leaving_words(ranked));
 }
 
 std::string reason_words(const Scenario& scenario, View<const Model> models,

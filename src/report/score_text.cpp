@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace crashrank::detail {
@@ -219,6 +220,36 @@ std::string harm_text(double persons) {
   constexpr double least = 1e-4;
   if (persons > 0.0 && persons < least) return "under 0.0001";
   return fmt::format("{:.2g}", persons);
+}
+
+std::string in_kmh(const std::string& text) {
+  constexpr std::string_view unit = " m/s";
+  const auto ends_at = [&text](std::size_t at) {
+    return at == text.size() || std::string_view(" ,.;:)").find(text[at]) != std::string::npos;
+  };
+  const auto begins_at = [&text](std::size_t at) {
+    return at == 0 || text[at - 1] == ' ' || text[at - 1] == '(';
+  };
+  std::string out;
+  bool in_name = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.compare(i, 3, "“") == 0 || (!in_name && text[i] == '\'' && begins_at(i))) {
+      in_name = true;
+    } else if (text.compare(i, 3, "”") == 0 || (text[i] == '\'' && ends_at(i + 1))) {
+      in_name = false;
+    }
+    const std::size_t number = out.find_last_not_of("0123456789.") + 1;
+    if (in_name || number == out.size() || text.compare(i, unit.size(), unit) != 0 ||
+        !ends_at(i + unit.size())) {
+      out += text[i];
+      continue;
+    }
+    const double speed_mps = std::strtod(out.c_str() + number, nullptr);
+    out.resize(number);
+    out += fmt::format("{:.0f} km/h", 3.6 * speed_mps);
+    i += unit.size() - 1;
+  }
+  return out;
 }
 
 std::string percent_text(double probability) {

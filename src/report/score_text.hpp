@@ -28,6 +28,9 @@ std::string harm_text(double persons);
 /// A probability in whole percent; "<1 %" and ">99 %" where 0 or 100 would say that it is certain.
 std::string percent_text(double probability);
 
+/// "at 12.4 m/s" as people say it, "at 45 km/h"; what stands in quotes is a name and stays.
+std::string in_kmh(const std::string& text);
+
 /// The interval, ends rounded outwards to that digit: "0.1 to 0.4"; empty where it is a point.
 std::string interval_text(const CandidateResult& ranked);
 

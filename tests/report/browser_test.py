@@ -216,6 +216,9 @@ class ReportTest(unittest.TestCase):
         browser = self.open("many")
         rows = "document.querySelectorAll('tr[data-row]').length"
         self.assertLess(browser.run(rows), 100)
+        # Where rows are not as high as they are taken for, others are drawn than are seen.
+        self.assertEqual(browser.run("[...document.querySelectorAll('tr[data-row]')].filter((row) =>"
+                                     " row.offsetHeight !== table.rowHeight).length"), 0)
         browser.run("document.getElementById('rows').scrollTop = 230000")
         browser.wait("Number(document.querySelector('tr[data-row]').dataset.row) > 4000")
         self.assertLess(browser.run(rows), 100)
@@ -227,6 +230,54 @@ class ReportTest(unittest.TestCase):
         self.assertGreater(browser.run("document.querySelectorAll('.pictures canvas').length"), 1)
         self.assertEqual(browser.run("ELSEWHERE.map(({p}) => p)"), [0.3])
         self.assertGreater(browser.run("document.querySelectorAll('.bump polyline').length"), 1)
+
+    def test_ghosts_end_with_the_first_contact(self):
+        browser = self.open("oncoming_may_turn")
+        # Bodies of other candidates and futures in the view in 3-D.
+        ghosts = """(() => { const view = stage.views[0].view; const mesh = view.mesh; let count = 0;
+            view.mesh = function (candidate, ...rest) {
+              count += candidate === null;
+              mesh.call(this, candidate, ...rest);
+            };
+            stage.clock.set(%s);
+            view.mesh = mesh;
+            return count; })()"""
+        self.assertGreater(browser.run(ghosts % "stage.candidate.first - 0.1"), 0)
+        self.assertEqual(browser.run(ghosts % "stage.candidate.first + 0.1"), 0)
+        # A future that is not the likeliest is seen up to its crash.
+        browser.run("stage.show(2)")
+        self.assertIsNone(browser.run("stage.candidate.first"))
+        hit = browser.run("stage.candidate.source.futures.find(({t}) => t !== undefined).t")
+        self.assertGreater(browser.run(ghosts % hit), 0)
+        self.assertEqual(browser.run(ghosts % (hit + 1)), 0)
+
+    def test_the_crash_is_seen_large_and_the_hand_keeps_the_camera(self):
+        browser = self.open("oncoming_truck")
+        distance = "stage.views[0].view.distance"
+        far = browser.run(distance)
+        browser.run("stage.clock.set(stage.candidate.first)")
+        self.assertLess(browser.run(distance), 0.8 * far)
+        browser.run("stage.views[0].view.nearer(0.5)")
+        held = browser.run(distance)
+        browser.run("stage.clock.set(0)")
+        self.assertEqual(browser.run(distance), held)
+
+    def test_the_decision_says_what_is_hit_and_who_is_hurt_in_one_unit_each(self):
+        browser = self.open("oncoming_may_turn")
+        rows = browser.run("[...document.querySelectorAll('.choices tbody tr')].map((row) => "
+                           "[...row.cells].map((cell) => cell.textContent))")
+        self.assertEqual([row[0] for row in rows], [
+            "bestbrake along the parked cars", "next bestbrake hard before the saloon",
+            "worst of 3keep going"])
+        self.assertRegex(rows[0][1], r"^second parked car after .* km/h")
+        self.assertRegex(rows[2][1], r"; but motorcyclist after .* km/h with .* 30 %$")
+        self.assertIn("motorcyclist", rows[2][3])
+        for name in ("oncoming_truck", "oncoming_may_turn", "room_to_spare"):
+            browser = self.open(name)
+            said = browser.run("[...document.querySelectorAll('.decision, .uncertainty')]"
+                               ".map((each) => each.textContent).join(' ')")
+            self.assertNotRegex(said, r"\d m/s(?!2)", name)
+            self.assertNotIn("in 1000", said, name)
 
     def test_paper_has_pictures_on_few_pages(self):
         browser = self.open("oncoming_truck", dark=True)

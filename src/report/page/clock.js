@@ -117,12 +117,12 @@ class Clock {
     // The thumb of a slider keeps its own half from the edges.
     const margin = 8;
     const at = (time) => margin + (width - 2 * margin) * time / this.end;
-    const base = height - 14;
+    const base = height - 18;
     const [candidate] = this.candidates;
     const traces = candidate.hit.map((body) => [body, candidate.bodies.get(body).exposure])
       .filter(([, exposure]) => exposure);
     const most = Math.max(1, ...traces.flatMap(([, exposure]) => exposure.v)) / 1000;
-    context.font = "11px system-ui, sans-serif";
+    context.font = "12px system-ui, sans-serif";
     context.fillStyle = context.strokeStyle = COLOURS.line;
     context.fillRect(margin, base, width - 2 * margin, 1);
     for (const [body, exposure] of traces) {
@@ -142,9 +142,9 @@ class Clock {
       .filter(([, speed]) => speed > 0.3).map(([body, speed]) => `${shortened(nameOf(body))} ${kmh(speed)}`);
     context.textAlign = "left";
     context.fillText(words.length > 0 ? "change within 0.3 s: " + words.join(", ")
-      : "change of velocity within 0.3 s, by contacts and tyres", margin, height - 2);
+      : "change of velocity within 0.3 s, by contacts and tyres", margin, height - 4);
     context.textAlign = "right";
-    if (traces.length > 0) context.fillText("most " + kmh(most), width - margin, height - 2);
+    if (traces.length > 0) context.fillText("most " + kmh(most), width - margin, 12);
     context.textAlign = "left";
   }
 

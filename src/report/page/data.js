@@ -51,7 +51,7 @@ function modelOf(body) {
 }
 
 const tiltOf = (body) => body === EGO ? DATA.ego.tilt : DATA.actors[body].tilt;
-const nameOf = (body) => body === EGO ? "ego" : DATA.actors[body].name;
+const nameOf = (body) => body === EGO ? "our car" : DATA.actors[body].name;
 
 // Words that fit a narrow place; the whole name stands in the text of the page.
 function shortened(words, most = 24) {
@@ -89,6 +89,8 @@ class Candidate {
     this.source = source;
     this.row = source.row;
     this.name = DATA.rows[source.row][2];
+    // What people call it; its place tells manoeuvres of a grid that are called alike apart.
+    this.words = `${DATA.rows[source.row][0]}. ${DATA.rows[source.row][3] || this.name}`;
     this.contacts = source.contacts;
     this.first = this.contacts.length > 0 ? this.contacts[0].t : null;
     this.end = source.end;
@@ -130,6 +132,14 @@ class Candidate {
     const [i, share] = placeIn(moved.exposure.t, 1000 * time);
     const v = moved.exposure.v;
     return (share > 0 ? mix(v[i], v[i + 1], share) : v[i]) / 1000;
+  }
+
+  // Where an actor is in other futures, until this one or that one has its crash: what would have
+  // been afterwards belongs to another story.
+  elsewhere(time) {
+    return ELSEWHERE.filter(({body}) => time < Math.min(this.first ?? Infinity,
+      ...this.source.futures.filter((future) => future.body === body && !future.likeliest)
+        .map((future) => future.t + 0.3)));
   }
 
   // The last time at which its way is still another's: both are within half a metre, and within
@@ -208,6 +218,33 @@ function sceneOf(candidate) {
     if (reach(pose) < near) add(body, pose);
   }
   return points;
+}
+
+// Points of the bodies that crash, in the second after the first contact.
+function crashOf(candidate) {
+  const moving = candidate.hit.filter((body) => !modelOf(body).fixed);
+  return [candidate.contacts[0].at.slice(0, 2)].concat([0, 0.3, 1].flatMap((after) =>
+    moving.flatMap((body) => outlineAt(body, candidate.poseOf(body, candidate.first + after)))));
+}
+
+// Whether another body hides the ego from an eye, [x, y, z].
+function isHidden(candidate, time, eye) {
+  const pose = candidate.poseOf(EGO, time);
+  const point = [...middleOfBody(EGO, pose), pose.z + modelOf(EGO).height / 2];
+  const [px, py, pz] = point;
+  const [dx, dy, dz] = eye.map((value, i) => value - point[i]);
+  return BODIES.some((body) => {
+    const ring = body === EGO ? [] : outlineAt(body, candidate.poseOf(body, time));
+    // Where the line of sight crosses a side.
+    return ring.some(([ax, ay], i) => {
+      const [bx, by] = ring[(i + 1) % ring.length];
+      const across = dx * (by - ay) - dy * (bx - ax);
+      const share = ((ax - px) * (by - ay) - (ay - py) * (bx - ax)) / across;
+      const along = ((ax - px) * dy - (ay - py) * dx) / across;
+      return share > 0 && share < 1 && along >= 0 && along <= 1 &&
+        pz + share * dz < modelOf(body).height;
+    });
+  });
 }
 
 // Colours of the style sheet, which follow the light or dark scheme.

@@ -149,7 +149,7 @@ class PlanPane {
     this.ways(candidate, time, shows);
     for (const body of BODIES) this.body(candidate, body, time);
     this.contacts(candidate, time);
-    this.labels(candidate, time);
+    this.labels(candidate, time, shows);
     this.scaleBar();
   }
 
@@ -188,8 +188,8 @@ class PlanPane {
       context.globalAlpha = 0.5;
       context.stroke();
     }
-    for (const {body, p, plan} of ELSEWHERE) {
-      context.globalAlpha = clamp(p + 0.15, 0.2, 0.9);
+    for (const {body, p, plan} of shows.elsewhere) {
+      context.globalAlpha = clamp(p + 0.35, 0.45, 0.9);
       context.strokeStyle = COLOURS.future;
       context.fillStyle = COLOURS.future;
       context.setLineDash([5, 4]);
@@ -256,7 +256,7 @@ class PlanPane {
       context.arc(x, y, 5 + 14 * flash, 0, 7);
       context.stroke();
       context.globalAlpha = 1;
-      if (age < 1.2) this.kicks(contact, x, y);
+      if (age < 0.5) this.kicks(contact, x, y);
     }
   }
 
@@ -278,28 +278,29 @@ class PlanPane {
   }
 
   // Names below the bodies, or above; those that matter most first.
-  labels(candidate, time) {
+  labels(candidate, time, shows) {
     const labels = new Labels(this.context, this.width, this.height);
     const boxes = new Map(BODIES.map((body) => [body, this.boxOf(body, candidate.poseOf(body, time))]));
-    const isOnOther = (body, x, y) => [...boxes].some(([other, [left, top, right, bottom]]) =>
-      other !== body && x > left && x < right && y > top && y < bottom + 9);
-    const below = (body, pose, text, colour) => {
+    const isOnOther = (body, x, y, half) => [...boxes].some(([other, [left, top, right, bottom]]) =>
+      other !== body && x + half > left && x - half < right && y > top && y < bottom + 9);
+    const below = (body, pose, text, colour, mayCover) => {
       const [x] = this.to(...middleOfBody(body, pose));
       const [, top, , bottom] = this.boxOf(body, pose);
-      const bases = [bottom + 13, top - 4];
-      if (isOnOther(body, x, bases[0]) && !isOnOther(body, x, bases[1])) bases.reverse();
-      labels.add(text, x, bases, colour);
+      const half = labels.halfOf(text);
+      const [free, taken] = [false, true].map((isTaken) => [bottom + 13, top - 4].filter(
+        (y) => isOnOther(body, x, y, half) === isTaken));
+      labels.add(text, x, mayCover ? free.concat(taken) : free, colour);
     };
     const hit = candidate.hit.filter((body) => body !== EGO);
     const rest = BODIES.filter((body) => body !== EGO && !hit.includes(body));
     for (const body of [EGO, ...hit]) {
-      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
+      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink, true);
     }
-    for (const {body, p, plan} of ELSEWHERE) {
-      below(body, poseOn(plan, time), percent(p) + " " + shortened(nameOf(body)), COLOURS.future);
+    for (const {body, p, plan} of shows.elsewhere) {
+      below(body, poseOn(plan, time), percent(p) + " " + shortened(nameOf(body)), COLOURS.future, true);
     }
     for (const body of rest) {
-      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.soft);
+      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.soft, false);
     }
   }
 
@@ -333,10 +334,14 @@ class Labels {
     this.placed = [];
   }
 
+  halfOf(text) {
+    this.context.font = "12px system-ui, sans-serif";
+    return this.context.measureText(text).width / 2;
+  }
+
   // `x` is the middle of the text, `bases` are heights at which it may stand, best first.
   add(text, x, bases, colour) {
-    this.context.font = "12px system-ui, sans-serif";
-    const half = this.context.measureText(text).width / 2;
+    const half = this.halfOf(text);
     if (x < -half || x > this.width + half) return;
     const covers = (at) => this.placed.some(([otherX, otherY, otherHalf]) =>
       Math.abs(otherY - at[1]) < 13 && Math.abs(otherX - at[0]) < half + otherHalf + 3);

@@ -93,7 +93,7 @@ class SceneView {
     this.candidate = candidate;
     this.shows = {ghosts, parts: partings(candidate)};
     const row = DATA.rows[candidate.row];
-    this.title.textContent = `${row[0]}. ${row[3] || row[2]}`;
+    this.title.textContent = candidate.words;
     for (const canvas of this.box.querySelectorAll("[role=img]")) {
       const from = canvas.classList.contains("plan-canvas") ? "from above" : "in 3-D";
       canvas.setAttribute("aria-label", `${row[2]}, ${from}: ${row[9]}`);
@@ -106,8 +106,12 @@ class SceneView {
   draw(time) {
     if (!this.candidate) return;
     this.time = time;
-    this.plan.draw(this.candidate, time, this.shows);
-    if (this.view) this.view.draw(this.candidate, time, this.shows);
+    // Others are ghosts until somebody crashes.
+    const isBefore = (other) => time < Math.min(this.candidate.first ?? Infinity, other.first ?? Infinity);
+    const shows = {ghosts: this.shows.ghosts.filter(isBefore), parts: this.shows.parts,
+      elsewhere: this.candidate.elsewhere(time)};
+    this.plan.draw(this.candidate, time, shows);
+    if (this.view) this.view.draw(this.candidate, time, shows);
   }
 
   redraw() {
@@ -124,9 +128,8 @@ class Stage {
     this.beside = document.getElementById("beside");
     this.told = document.getElementById("told");
     for (const candidate of CANDIDATES) {
-      const row = DATA.rows[candidate.row];
       for (const select of [this.shown, this.beside]) {
-        select.append(element("option", {value: candidate.row}, `${row[0]}. ${row[2]}`));
+        select.append(element("option", {value: candidate.row}, candidate.words));
       }
     }
     this.views = [new SceneView(this.holder)];
@@ -163,7 +166,7 @@ class Stage {
     const parts = partings(this.candidate).filter((part) => !other || part.other === other)
       .slice(0, 1);
     this.told.textContent = parts.map((part) =>
-      `“${part.other.name}” can still be chosen until ${part.time.toFixed(2)} s.`).join(" ");
+      `“${part.other.words}” can still be chosen until ${part.time.toFixed(2)} s.`).join(" ");
     this.clock.pause();
     this.clock.show(other ? [this.candidate, other] : [this.candidate], keepsTime);
   }

@@ -119,7 +119,7 @@ class RankingTable {
     const warnings = element("td");
     if (row[WARNINGS]) warnings.append(element("em", {}, row[WARNINGS]));
     made.append(place, name, score,
-      element("td", {class: "contact", title: row[CONTACT]}, row[CONTACT]), warnings);
+      element("td", {class: "contact", title: row[CONTACT]}, element("span", {}, row[CONTACT])), warnings);
     made.addEventListener("click", () => this.toggle(index));
     return made;
   }

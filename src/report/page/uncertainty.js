@@ -37,7 +37,7 @@ function futureWords(future) {
   const what = future.t === undefined ? "no contact"
     : `hits ${nameOf(future.body)} after ${future.t.toFixed(2)} s at ${kmh(future.closing)}`;
   return `${percent(future.p)}${future.likeliest ? " (likeliest)" : ""}: ${what}` +
-    (future.leaves ? ", leaves the road" : "") + `; ${DATA.measure} ${future.score}`;
+    (future.leaves ? ", leaves the road" : "") + `; ${DATA.measure} ${Number(future.score.toPrecision(2))}`;
 }
 
 // A small plan of each of the candidate's likeliest futures, at its contact.

@@ -188,6 +188,7 @@ class View3d {
   }
 
   move(dx, dy, isShift) {
+    this.near = null;
     if (isShift) {
       const {right, up} = cameraAxes(this.azimuth, this.elevation);
       const step = this.distance * 1.2 / Math.max(1, this.canvas.clientHeight);
@@ -199,14 +200,17 @@ class View3d {
   }
 
   nearer(factor) {
+    this.near = null;
     this.distance = clamp(this.distance / factor, 2, 400);
   }
 
-  // Finds the camera from which the whole manoeuvre is seen, nearest to where the bodies meet.
+  // Finds the camera from which the whole manoeuvre is seen, nearest to where the bodies meet, and
+  // one that it becomes until the first contact, which sees the crash alone.
   fit(candidate) {
     this.candidate = candidate;
-    const points = [];
-    for (const [x, y] of sceneOf(candidate)) points.push([x, y, 0], [x, y, 1.6]);
+    const raised = (flat) => flat.flatMap(([x, y]) => [[x, y, 0], [x, y, 1.6]]);
+    const points = raised(sceneOf(candidate));
+    const crash = candidate.first === null ? [] : raised(crashOf(candidate));
     const width = this.canvas.clientWidth || 600;
     const height = this.canvas.clientHeight || 400;
     const heading = poseOn(candidate.source.plan, candidate.first ?? candidate.begin).heading;
@@ -219,15 +223,17 @@ class View3d {
     let best = null;
     for (const beside of [2.75, -2.75, 2.45, -2.45, 2.1, -2.1, 1.75, -1.75]) {
       for (const elevation of [0.28, 0.38, 0.5]) {
-        const found = this.fitted(points, heading + beside, elevation, width, height);
+        const [found, near] = [points, crash].map((each) =>
+          each.length > 0 ? this.fitted(each, heading + beside, elevation, width, height) : null);
         // What is far is small: none of the three shall be.
         const reach = meant.reduce(
-          (sum, point) => sum + Math.log(Math.hypot(...plus(found.eye, point, -1))), 0);
-        if (best === null || reach < best.reach) best = {...found, reach};
+          (sum, point) => sum + Math.log(Math.hypot(...plus(found.eye, point, -1))),
+          near && isHidden(candidate, candidate.first, near.eye) ? 2 : 0);
+        if (best === null || reach < best.reach) best = {...found, reach, near};
       }
     }
-    Object.assign(this, {azimuth: best.azimuth, elevation: best.elevation, target: best.target,
-      distance: best.distance});
+    const {azimuth, elevation, target, distance} = best;
+    Object.assign(this, {azimuth, elevation, target, distance, whole: best, near: best.near});
     this.paintRoad(points);
   }
 
@@ -311,6 +317,12 @@ class View3d {
       if (canvas.width !== width) canvas.width = width;
       if (canvas.height !== height) canvas.height = height;
     }
+    if (this.near) {
+      const passed = clamp((time - candidate.begin) / (candidate.first - candidate.begin || 1), 0, 1);
+      const share = passed * passed * (3 - 2 * passed);
+      this.target = this.whole.target.map((value, i) => mix(value, this.near.target[i], share));
+      this.distance = mix(this.whole.distance, this.near.distance, share);
+    }
     this.camera();
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     this.fog = rgbOf(COLOURS.sky);
@@ -323,7 +335,7 @@ class View3d {
     for (const body of BODIES) {
       this.mesh(candidate, body, candidate.poseOf(body, time), time, 1);
     }
-    for (const {body, p, plan} of ELSEWHERE) {
+    for (const {body, p, plan} of shows.elsewhere) {
       this.mesh(null, body, poseOn(plan, time), time, clamp(p, 0.2, 0.7));
     }
     const mine = candidate.poseOf(EGO, time);
@@ -334,7 +346,7 @@ class View3d {
       if (apart > 0.8) this.mesh(null, EGO, pose, time, clamp(0.12 * apart, 0.05, 0.3));
     }
     gl.disable(gl.DEPTH_TEST);
-    this.words(candidate, time, ratio);
+    this.words(candidate, time, ratio, shows);
   }
 
   // The road, shadows and ways, all flat.
@@ -362,7 +374,7 @@ class View3d {
       ribbon(other.source.plan, 0, other.first ?? other.end, 0.08,
         [...rgbOf(COLOURS.ghost), 0.6]);
     }
-    for (const {p, plan} of ELSEWHERE) {
+    for (const {p, plan} of shows.elsewhere) {
       ribbon(plan, 0, DATA.horizon, 0.1, [...rgbOf(COLOURS.future), clamp(p + 0.2, 0.3, 0.9)]);
     }
     ribbon(candidate.source.plan, 0, candidate.first ?? candidate.end, 0.15,
@@ -489,7 +501,7 @@ class View3d {
   }
 
   // Names, flashes of contacts and changes of velocity, over the picture.
-  words(candidate, time, ratio) {
+  words(candidate, time, ratio, shows) {
     const context = this.overlay.getContext("2d");
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, this.width, this.height);
@@ -506,12 +518,12 @@ class View3d {
     for (const body of [EGO, ...candidate.hit.filter((each) => each !== EGO)]) {
       over(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
     }
-    for (const {body, p, plan} of ELSEWHERE) {
+    for (const {body, p, plan} of shows.elsewhere) {
       over(body, poseOn(plan, time), percent(p) + " " + shortened(nameOf(body)), COLOURS.future);
     }
     for (const contact of candidate.contacts) {
       const age = time - contact.t;
-      if (age < 0 || age > 1.2) continue;
+      if (age < 0 || age > 0.5) continue;
       const [x, y, z] = contact.at;
       const point = this.onCanvas(x, y, z);
       if (!point) continue;
