@@ -203,7 +203,7 @@ HWY_INLINE std::uint32_t near_pieces(const PressQuery& q, const PieceBlock& bloc
                               all(0.0F)};
     which |= bits(are_near(at, bounds, near_m)) << h;
   }
-  return which & ((1U << block.count) - 1U);
+  return which & block.presses;
 }
 
 inline void list_block(const PressQuery& q, std::size_t i, float near_m, float allowed_m,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace crashrank {
 namespace {
@@ -254,6 +256,40 @@ float thickness(const Silhouettes& s, std::size_t band, const OutlinePiece& p) {
                       flank_share * p.normal_y * p.normal_y * chord(s, s.along_y[band], p.x, p.y));
 }
 
+/// True if two pieces face each other across at most `folding_gap_m`.
+bool face(const OutlinePiece& a, const OutlinePiece& b) {
+  constexpr float opposed = -0.3F;  // cosine of the angle between the normals, at most
+  if (a.normal_x * b.normal_x + a.normal_y * b.normal_y > opposed) return false;
+  const float x = b.x - a.x;
+  const float y = b.y - a.y;
+  const float from_a = x * a.normal_x + y * a.normal_y;
+  const float from_b = -(x * b.normal_x + y * b.normal_y);
+  if (!(std::min(from_a, from_b) > 0.0F && std::max(from_a, from_b) <= folding_gap_m)) return false;
+  const float beside_a = std::abs(y * a.normal_x - x * a.normal_y);
+  const float beside_b = std::abs(y * b.normal_x - x * b.normal_y);
+  return std::min(beside_a, beside_b) <= 0.5F * (a.length_m + b.length_m);
+}
+
+/// By piece: 1 if it faces none of its band. O(pieces log pieces) for outlines along a line.
+std::vector<char> pressing_pieces(const Profile& profile) {
+  const std::vector<OutlinePiece>& pieces = profile.pieces;
+  std::vector<char> presses(pieces.size(), 1);
+  std::vector<std::uint32_t> by_x;
+  for (std::size_t band = lowest_pressing_band; band < profile_bands; ++band) {
+    by_x.resize(profile.first[band + 1] - profile.first[band]);
+    std::iota(by_x.begin(), by_x.end(), profile.first[band]);
+    std::sort(by_x.begin(), by_x.end(), [&](std::uint32_t i, std::uint32_t k) {
+      return std::pair(pieces[i].x, i) < std::pair(pieces[k].x, k);
+    });
+    for (auto a = by_x.begin(); a != by_x.end(); ++a) {
+      for (auto b = a + 1; b != by_x.end() && pieces[*b].x - pieces[*a].x <= folding_gap_m; ++b) {
+        if (face(pieces[*a], pieces[*b])) presses[*a] = presses[*b] = 0;
+      }
+    }
+  }
+  return presses;
+}
+
 PieceRows make_rows(const Profile& profile, const Silhouettes& s, const PieceBlock& block) {
   PieceRows rows;
   for (std::size_t k = 0; k < block_pieces; ++k) {
@@ -295,6 +331,7 @@ Silhouettes make_silhouettes(const Profile& profile) {
   const float longest = std::max(s.max_x - s.min_x, s.max_y - s.min_y);
   const float step =
       std::max(std::clamp(width / nodes_across, finest_m, coarsest_m), longest / most_nodes);
+  const std::vector<char> presses = pressing_pieces(profile);
   for (std::size_t band = lowest_pressing_band; band < profile_bands; ++band) {
     s.along_x[band] = sample(profile, band, false, s.min_y, s.max_y, step, s.nodes);
     s.along_y[band] = sample(profile, band, true, s.min_x, s.max_x, step, s.nodes);
@@ -303,10 +340,23 @@ Silhouettes make_silhouettes(const Profile& profile) {
     s.first_height_y[band] = sample_heights(profile, band, true, s);
     constexpr auto most = static_cast<std::uint32_t>(block_pieces);
     const std::size_t first_block = s.blocks.size();
-    for (std::uint32_t i = profile.first[band]; i < profile.first[band + 1]; i += most) {
-      const std::uint32_t count = std::min(most, profile.first[band + 1] - i);
-      s.blocks.push_back({i, static_cast<std::uint16_t>(count), static_cast<std::uint16_t>(band)});
-      s.rows.push_back(make_rows(profile, s, s.blocks.back()));
+    const std::uint32_t end = profile.first[band + 1];
+    std::uint32_t next = profile.first[band];
+    while (next < end) {
+      if (presses[next] == 0) {
+        ++next;
+        continue;
+      }
+      PieceBlock block;
+      block.first = next;
+      block.count = static_cast<std::uint16_t>(std::min(most, end - next));
+      block.band = static_cast<std::uint16_t>(band);
+      for (std::uint32_t k = 0; k < block.count; ++k) {
+        block.presses |= static_cast<std::uint16_t>(presses[next + k] << k);
+      }
+      s.blocks.push_back(block);
+      s.rows.push_back(make_rows(profile, s, block));
+      next += block.count;
     }
     add_groups(profile, first_block, s);
   }

@@ -33,12 +33,18 @@ struct SilhouetteNode {
 /// Most pieces of a block.
 inline constexpr std::size_t block_pieces = 16;
 
-/// Up to `block_pieces` consecutive pieces of an outline.
+/// Up to `block_pieces` consecutive pieces of an outline, some of which press.
 struct PieceBlock {
   std::uint32_t first = 0;  ///< piece
   std::uint16_t count = 0;  ///< pieces
-  std::uint16_t band = 0;   ///< height band
+  std::uint16_t presses =
+      0;                   ///< bit k: the piece `first` + k faces none of the body's own, see below
+  std::uint16_t band = 0;  ///< height band
 };
+
+/// Pieces of a body that face each other across at most this, m, do not press: between them the
+/// body folds up, and nothing hooks on there, as behind an arm or in a wheel arch.
+inline constexpr float folding_gap_m = 0.3F;
 
 /// Up to eight consecutive blocks of one band by field, for vector units: boxes around them.
 /// Those beyond the group's count are empty.
