@@ -250,7 +250,7 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
     if (stop()) return least;
     if (!scene.futures.is_followed(p)) continue;
     const Body& actor = scene.actors[plans[p].actor];
-    if (!actor.vehicle.has_outline() || passes_over(scene.ego, ego, actor, plans[p].motion)) {
+    if (!actor.vehicle->has_outline() || passes_over(scene.ego, ego, actor, plans[p].motion)) {
       continue;
     }
     const MovingBody other{*actor.outline, plans[p].motion, trajectories.of(p),

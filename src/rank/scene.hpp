@@ -35,9 +35,10 @@ struct Body {
   /// half extents of the root box along its axes
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();
   double radius_m = 0.0;  ///< upper bound on the distance of a point of the body from its origin
-  Vehicle vehicle;        ///< mechanical properties for the crash model
   Footing footing;        ///< contact patches on the road; movable bodies only
-  std::shared_ptr<const BodyOutline> outline;  ///< for distance queries; never null
+  /// Mechanical properties for the crash model, which the bodies of a model share; never null.
+  std::shared_ptr<const Vehicle> vehicle;
+  std::shared_ptr<const BodyOutline> outline;  ///< for distance queries, shared likewise
   std::optional<double> occupants;             ///< persons; absent: the default of its kind
 };
 

@@ -21,10 +21,10 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-std::string with_full_stop(std::string text) {
-  text = capitalised(std::move(text));
-  if (!text.empty() && text.back() != '.') text += '.';
-  return text;
+std::string with_full_stop(const std::string& text) {
+  std::string sentence = capitalised(text);
+  if (!sentence.empty() && sentence.back() != '.') sentence += '.';
+  return sentence;
 }
 
 bool is_clear(const CandidateResult& ranked) {
