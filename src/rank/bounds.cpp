@@ -51,14 +51,20 @@ double max_people_weight(const Scene& scene, std::size_t index) {
 }  // namespace
 
 void ScoreBounds::prepare(const Scene& scene) {
+  actor_energy_j_.resize(scene.actors.size());
+  limit(scene);
+}
+
+void ScoreBounds::limit(const Scene& scene) {
   limits_ = {};
   limits_.ego_mass_kg = scene.ego.mass_kg;
   // Those of the simulation and a first contact without force.
   limits_.contacts = static_cast<double>(SceneRun::most_contacts + 1);
   max_energy_ratio_ = 1.0;
   add(scene, ego_body);
-  for (std::size_t i = 0; i < scene.actors.size(); ++i) add(scene, i);
-  actor_energy_j_.resize(scene.actors.size());
+  for (std::size_t i = 0; i < scene.actors.size(); ++i) {
+    if (scene.futures.exists(i)) add(scene, i);
+  }
   update(scene);
 }
 
@@ -78,6 +84,7 @@ void ScoreBounds::add(const Scene& scene, std::size_t index) {
 void ScoreBounds::update(const Scene& scene) {
   std::fill(actor_energy_j_.begin(), actor_energy_j_.end(), 0.0);
   for (const Plan& plan : scene.futures.plans) {
+    if (!scene.futures.exists(plan.actor)) continue;
     double& max_j = actor_energy_j_[plan.actor];
     max_j = std::max(max_j, max_energy_j(scene, scene.actors[plan.actor], plan.motion));
   }

@@ -218,6 +218,7 @@ void sample_trajectories(const Scene& scene, PlanTrajectories& trajectories) {
   trajectories.fastest_mps.resize(count);
   trajectories.drift.resize(count);
   for (std::size_t p = 0; p < count; ++p) {
+    if (!scene.futures.exists(plans[p].actor)) continue;
     const BodyOutline& outline = *scene.actors[plans[p].actor].outline;
     trajectories.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
     trajectories.drift[p] = drift_of(plans[p].motion, horizon_s);

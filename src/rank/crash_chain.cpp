@@ -73,6 +73,9 @@ void CrashChain::prepare(const Scene& scene) {
   for (const Body& actor : scene.actors) {
     pieces = std::max(pieces, actor.vehicle->profile->pieces.size());
   }
+  for (const std::optional<EnteringBody>& kind : scene.entering) {
+    if (kind) pieces = std::max(pieces, kind->body.vehicle->profile->pieces.size());
+  }
   for (const JoinedBodies& joined : scene.joined) {
     pieces = std::max(pieces, joined.vehicle.profile->pieces.size());
   }
@@ -153,9 +156,12 @@ void CrashChain::sort_actors(double time_s) {
 void CrashChain::mark_relevant_plans(const Scene& scene, std::vector<char>& relevant) const {
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t p = 0; p < plans.size(); ++p) {
-    if (relevant[p] != 0 || scene.futures.is_certain(plans[p].actor)) continue;
+    const std::size_t actor = plans[p].actor;
+    if (relevant[p] != 0 || !scene.futures.exists(actor) || scene.futures.is_certain(actor)) {
+      continue;
+    }
     SceneBody body;
-    body.vehicle = scene.actors[plans[p].actor].vehicle.get();
+    body.vehicle = scene.actors[actor].vehicle.get();
     body.plan = &plans[p].motion;
     if (run_.would_act(body, scene.actors.size() + 1)) relevant[p] = 1;
   }

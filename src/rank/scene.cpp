@@ -267,18 +267,30 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   scene.grip = scenario.grip;
   scene.ego.occupants = scenario.ego.occupants;
 
-  for (const ScenarioActor& actor : scenario.actors) {
-    const Result<RankedBody> body = ranked_body(scenario, models, actor.model);
-    if (!body) return body.error();
-    result.actors.push_back(*body);
-    scene.actors.push_back(make_body(models[body->model], body->mass_kg));
-    Body& added = scene.actors.back();
-    if (Status own = describe(body->model, added); !own) return own.error();
-    result.actors.back().has_outline = added.vehicle->has_outline();
-    if (added.vehicle->movable() && added.vehicle->has_outline()) {
-      added.footing = footing_of(*added.vehicle);
+  const auto make_actor = [&](std::size_t model) -> Result<EnteringBody> {
+    const Result<RankedBody> ranked = ranked_body(scenario, models, model);
+    if (!ranked) return ranked.error();
+    EnteringBody made{make_body(models[model], ranked->mass_kg), *ranked};
+    if (Status own = describe(model, made.body); !own) return own.error();
+    made.ranked.has_outline = made.body.vehicle->has_outline();
+    if (made.body.vehicle->movable() && made.ranked.has_outline) {
+      made.body.footing = footing_of(*made.body.vehicle);
     }
-    added.occupants = actor.occupants;
+    return made;
+  };
+  bool keeps_places = false;
+  for (const ScenarioActor& actor : scenario.actors) {
+    Result<EnteringBody> made = make_actor(actor.model);
+    if (!made) return made.error();
+    result.actors.push_back(made->ranked);
+    scene.actors.push_back(std::move(made->body));
+    scene.actors.back().occupants = actor.occupants;
+    keeps_places = keeps_places || actor.existence_probability == 0.0;
+  }
+  for (std::size_t model = 0; keeps_places && model < models.size(); ++model) {
+    Result<EnteringBody> made = make_actor(model);
+    scene.entering.emplace_back();
+    if (made && !made->body.vehicle->stands()) scene.entering.back() = std::move(*made);
   }
 
   Result<Futures> futures = make_futures(scenario, scene.actors, options);
@@ -295,6 +307,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.slice_s.push_back(scenario.horizon_s * (static_cast<double>(i) / slices));
   }
   scene.slices.resize(scene.slice_s.size() - 1);
+  for (BroadPhase& slice : scene.slices) slice.reserve(scene.futures.plans.size());
   scene.boxes.resize(scene.futures.plans.size());
   scene.apart_at_start.resize(scene.futures.plans.size());
   ImpactWorkspace workspace;
@@ -308,7 +321,7 @@ void update_plans(Scene& scene, ImpactWorkspace& workspace) {
   scene.fastest_plan_mps = 0.0;
   for (const Plan& plan : plans) {
     const Body& actor = scene.actors[plan.actor];
-    if (!actor.vehicle->movable()) continue;
+    if (!actor.vehicle->movable() || !scene.futures.exists(plan.actor)) continue;
     const MotionBound bound =
         plan.motion.bound(0.0, scene.slice_s.back() + SceneOptions{}.longest_s);
     // Points rotate about the centre of mass, which is within one radius of the origin and within
@@ -318,6 +331,8 @@ void update_plans(Scene& scene, ImpactWorkspace& workspace) {
   }
   for (std::size_t s = 0; s < scene.slices.size(); ++s) {
     for (std::size_t i = 0; i < plans.size(); ++i) {
+      scene.boxes[i] = {};
+      if (!scene.futures.exists(plans[i].actor)) continue;
       scene.boxes[i] = swept_box(scene.actors[plans[i].actor], plans[i].motion, scene.slice_s[s],
                                  scene.slice_s[s + 1], scene.impact.tolerance_m);
     }

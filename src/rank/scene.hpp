@@ -47,6 +47,12 @@ struct Body {
 Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
               double tolerance_m);
 
+/// A body of a model of the scenario, ready to enter the scene.
+struct EnteringBody {
+  Body body;
+  RankedBody ranked;
+};
+
 /// Fixed bodies that adjoin each other and act as one body in a contact.
 struct JoinedBodies {
   /// indices of actors, ascending; the pose of the first is that of all
@@ -59,6 +65,9 @@ struct Scene {
   Body ego;
   Pose ego_start;
   std::vector<Body> actors;
+  /// By model of the scenario: nothing where it is fixed or at fault; empty where no actor that
+  /// exists in no future keeps a place.
+  std::vector<std::optional<EnteringBody>> entering;
   std::vector<JoinedBodies> joined;
   std::vector<std::size_t> joined_of;  ///< by actor: index into `joined`, or `not_joined`
   static constexpr std::size_t not_joined = static_cast<std::size_t>(-1);

@@ -16,6 +16,9 @@ constexpr std::chrono::microseconds worker_lead{30};
 void prepare_damage(const Scene& scene, DamageScratch& damage) {
   if (!scored_by_damage(scene.measure)) return;
   for (const Body& actor : scene.actors) damage.collide.prepare(*scene.ego.model, *actor.model);
+  for (const std::optional<EnteringBody>& kind : scene.entering) {
+    if (kind) damage.collide.prepare(*scene.ego.model, *kind->body.model);
+  }
   // Capacity for the intersecting pairs at one pose: twice the largest number seen at crash poses
   // of dense meshes.
   constexpr std::size_t pairs = std::size_t{1} << 17U;
