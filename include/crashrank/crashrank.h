@@ -698,7 +698,10 @@ CRASHRANK_API void crashrank_ranker_free(crashrank_ranker* ranker);
 /// candidates from a scenario. Allocates. Errors: usage for more candidates than the limit, and
 /// where shapes, their kinds or masses, the ego's or an actor's shape, their number, the horizon,
 /// the grip or the harm is not what the ranker was created with; bad_input. The ranker then keeps
-/// its situation.
+/// its situation. Actors enter and leave: one whose existence_probability was 0 at creation, with
+/// one motion, a shape that moves and no joint futures, keeps a place. An update may give it 1,
+/// with any shape of the scenario that moves and any occupants, and 0 again; until then no future
+/// has it, and it costs next to nothing. Answers are those of a ranker created with the update.
 CRASHRANK_API crashrank_status crashrank_ranker_update(crashrank_ranker* ranker,
                                                        const crashrank_scenario* scenario,
                                                        crashrank_error* error);

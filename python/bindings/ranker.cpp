@@ -246,6 +246,9 @@ void bind_rankers(nb::module_& module) {
       .def("candidate_names", &Session::candidate_names)
       .def("update", &Session::update, nb::arg("ego"), nb::arg("actors"), nb::arg("probabilities"),
            nb::call_guard<nb::gil_scoped_release>())
+      .def("enter", &Session::enter, nb::arg("actor"), nb::arg("model"), nb::arg("state"),
+           nb::arg("occupants").none(), nb::call_guard<nb::gil_scoped_release>())
+      .def("leave", &Session::leave, nb::arg("actor"), nb::call_guard<nb::gil_scoped_release>())
       .def("close", &Session::close, nb::call_guard<nb::gil_scoped_release>());
   module.def(
       "make_session",

@@ -121,6 +121,33 @@ public:
     ++situations_;
   }
 
+  /// Lets a body of a model, by its name, enter in place of an actor that keeps a place.
+  void enter(std::size_t actor, const std::string& model, ActorState state,
+             std::optional<double> occupants) {
+    const std::unique_lock<std::mutex> lock = hold();
+    Scenario next = current_;
+    const auto named = [&](const ScenarioModel& each) { return each.name == model; };
+    const auto found = std::find_if(next.models.begin(), next.models.end(), named);
+    ScenarioActor& entering = next.actors.at(actor);
+    entering.model = static_cast<std::size_t>(found - next.models.begin());
+    entering.existence_probability = 1.0;
+    entering.occupants = occupants;
+    static_cast<ActorMotion&>(entering) = std::move(state.motion);
+    if (found != next.models.end()) check(detail::check_scenario(next));
+    const Motion motion = value_of(make_motion(entering));
+    check(ranker_->enter(actor, entering.model, motion, occupants));
+    current_ = std::move(next);
+    ++situations_;
+  }
+
+  /// Takes it out again.
+  void leave(std::size_t actor) {
+    const std::unique_lock<std::mutex> lock = hold();
+    check(ranker_->leave(actor));
+    current_.actors.at(actor).existence_probability = 0.0;
+    ++situations_;
+  }
+
   /// Calls `read(scenario)` while no other thread changes it.
   template <class Read> auto read(const Read& read) {
     const std::unique_lock<std::mutex> lock = hold();

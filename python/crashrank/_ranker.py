@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._answer import Answer
-from ._checks import as_count, as_floats, as_text
+from ._checks import as_count, as_floats, as_number, as_text
 from ._errors import UsageError, checked_call, usage
 from ._motions import (
     MAX_CANDIDATES,
@@ -150,6 +150,46 @@ class Ranker:
         self._session.update(ego_state(ego), states, self._probabilities(probabilities))
 
     @checked_call
+    def enter(
+        self,
+        actor: str,
+        model: str,
+        motion: Mapping[str, Any] | ArrayLike | object,
+        *,
+        times_s: ArrayLike | None = None,
+        occupants: float | None = None,
+    ) -> None:
+        """Let a body enter the scene in place of an actor that keeps a place; on error, nothing.
+
+        An actor keeps a place if the Ranker was made with its ``existence_probability`` 0, one
+        motion, a model that moves and no joint futures. Until a body enters and after `leave`
+        no future has the actor, and it costs next to nothing.
+
+        Parameters
+        ----------
+        actor : str
+            Name of the actor, which answers give to the body.
+        model : str
+            Name of any model of the scenario that moves.
+        motion : mapping, Actor or array_like, shape (T, 3)
+            As in `update`.
+        times_s : array_like, shape (T,)
+            Times of the array, s from now, rising from 0.
+        occupants : float, optional
+            Persons in or on it, 0 to 1000. Default: those of its kind.
+        """
+        times = None if times_s is None else as_times(times_s)
+        index = self._index(actor)
+        state = self._state(index, 0, motion, times)
+        persons = None if occupants is None else as_number(occupants, "occupants", "persons")
+        self._session.enter(index, as_text(model, "model"), state, persons)
+
+    @checked_call
+    def leave(self, actor: str) -> None:
+        """Take the body out of such a place, which is free again; on error, nothing."""
+        self._session.leave(self._index(actor))
+
+    @checked_call
     def rank(
         self,
         candidates: ArrayLike | None = None,
@@ -210,10 +250,8 @@ class Ranker:
     def _actor_states(
         self, name: object, motion: Any, times: NDArray[np.float64] | None
     ) -> list[_core.ActorState]:
-        text = as_text(name, "actors")
-        if text not in self._actors:
-            raise self._unknown(f"actors[{text!r}]")
-        index = self._actors.index(text)
+        index = self._index(name)
+        text = self._actors[index]
         count = self._plans[index][1]
         motions = [motion] if count == 1 else motion
         if count > 1 and (not isinstance(motion, (list, tuple)) or len(motion) != count):
@@ -222,19 +260,29 @@ class Ranker:
                 f"has {count} predictions",
                 f"give a list of {count} motions, one for each",
             )
-        states = []
-        for prediction, one in enumerate(motions):
-            state = _core.ActorState(index, prediction)
-            place = f"actors[{text!r}]"
-            if isinstance(one, Mapping) or dataclasses.is_dataclass(one):
-                set_motion(state, as_mapping(one, place), place)
-            else:
-                if times is None:
-                    raise usage("times_s", "are missing", "give the times of the poses")
-                path = as_path_array(one, place, times)
-                state.set_poses(path, times, self._session.actor_height(index))
-            states.append(state)
-        return states
+        return [
+            self._state(index, prediction, one, times) for prediction, one in enumerate(motions)
+        ]
+
+    def _index(self, name: object) -> int:
+        text = as_text(name, "actors")
+        if text not in self._actors:
+            raise self._unknown(f"actors[{text!r}]")
+        return self._actors.index(text)
+
+    def _state(
+        self, index: int, prediction: int, motion: Any, times: NDArray[np.float64] | None
+    ) -> _core.ActorState:
+        state = _core.ActorState(index, prediction)
+        place = f"actors[{self._actors[index]!r}]"
+        if isinstance(motion, Mapping) or dataclasses.is_dataclass(motion):
+            set_motion(state, as_mapping(motion, place), place)
+        else:
+            if times is None:
+                raise usage("times_s", "are missing", "give the times of the poses")
+            path = as_path_array(motion, place, times)
+            state.set_poses(path, times, self._session.actor_height(index))
+        return state
 
     def _probabilities(self, given: Mapping[str, ArrayLike] | None) -> list[float]:
         if given is None:

@@ -13,6 +13,7 @@ from conftest import DATA
 
 TRUCK = DATA / "scenarios/oncoming_truck.json"
 MOTORWAY = DATA / "scenarios/motorway_pile_up.json"
+MOTION_KEYS = ("pose", "speed_mps", "acceleration_mps2", "yaw_rate_dps")
 
 
 def test_without_a_deadline_it_is_rank():
@@ -69,6 +70,30 @@ def test_an_update_is_the_scenario_that_says_the_same():
     document["actors"][0].update({"pose": {"x_m": 55, "yaw_deg": 180}, "speed_mps": 18.0})
     del document["actors"][0]["acceleration_mps2"]
     assert told == crashrank.rank(document, base=TRUCK.parent).to_dict()["ranking"]
+
+
+def test_bodies_enter_and_leave():
+    document = json.loads(TRUCK.read_text())
+    lorry = dict(document["actors"][0])
+    document["scenario_version"] = 2
+    document["actors"][0].update({"model": "sedan", "existence_probability": 0})
+    document["actors"][0].pop("acceleration_mps2", None)
+    empty = crashrank.rank(document, base=TRUCK.parent).to_dict()["ranking"]
+    motion = {key: value for key, value in lorry.items() if key in MOTION_KEYS}
+    with crashrank.Ranker(document, base=TRUCK.parent) as ranker:
+        for _ in range(2):
+            ranker.enter(lorry["name"], lorry["model"], motion)
+            told = ranker.rank().explain().to_dict()["ranking"]
+            assert told == crashrank.rank(TRUCK).to_dict()["ranking"]
+            with pytest.raises(crashrank.UsageError, match="taken"):
+                ranker.enter(lorry["name"], lorry["model"], motion)
+            ranker.leave(lorry["name"])
+            assert ranker.rank().explain().to_dict()["ranking"] == empty
+        for actor, model in (("nobody", "truck"), (lorry["name"], "wall"), (lorry["name"], "?")):
+            with pytest.raises(crashrank.UsageError):
+                ranker.enter(actor, model, motion)
+        with pytest.raises(crashrank.UsageError, match="place"):
+            ranker.leave("saloon")
 
 
 def posed(count, times):

@@ -44,8 +44,10 @@ bool same_road(const Road& a, const Road& b) {
                     same_area);
 }
 
-/// A Ranker's scene holds the bodies and the horizon that it was prepared with.
-Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
+/// A Ranker's scene holds the bodies and the horizon that it was prepared with, but for those that
+/// enter and leave.
+Status same_bodies(const crashrank_ranker& ranker, const Scenario& scenario) {
+  const Scenario& prepared = ranker.prepared;
   const auto other = [](const char* place) {
     Error error =
         make_error(ErrorCode::usage, "is not what the ranker was created with",
@@ -76,10 +78,14 @@ Status same_bodies(const Scenario& prepared, const Scenario& scenario) {
   if (scenario.ego.model != prepared.ego.model) return other("ego.model");
   if (scenario.ego.occupants != prepared.ego.occupants) return other("ego.occupants");
   if (scenario.ego.uncertainty != prepared.ego.uncertainty) return other("ego.uncertainty");
-  const auto same_actor = [](const ScenarioActor& a, const ScenarioActor& b) {
-    return a.model == b.model && a.occupants == b.occupants &&
-           a.predictions.size() == b.predictions.size() && a.perception == b.perception &&
-           a.existence_probability == b.existence_probability;
+  const auto same_actor = [&](const ScenarioActor& a, const ScenarioActor& b) {
+    const auto index = static_cast<std::size_t>(&b - prepared.actors.data());
+    const double exists = a.existence_probability;
+    const bool same_body =
+        a.model == b.model && a.occupants == b.occupants && exists == b.existence_probability;
+    const bool enters = (exists == 0.0 || exists == 1.0) && ranker.ranker.can_enter(index, a.model);
+    return (same_body || enters) && a.predictions.size() == b.predictions.size() &&
+           a.perception == b.perception;
   };
   if (!std::equal(scenario.actors.begin(), scenario.actors.end(), prepared.actors.begin(),
                   prepared.actors.end(), same_actor)) {
@@ -113,9 +119,37 @@ std::vector<double> plan_probabilities(const Scenario& scenario) {
   return probabilities;
 }
 
+/// Lets bodies leave and enter so that the actors are those of a scenario, with one motion each as
+/// `plan_motions` has it for every plan. `same_bodies` has found no fault.
+Status exchange_bodies(crashrank_ranker& ranker, const Scenario& scenario,
+                       const std::vector<Motion>& motions) {
+  std::size_t plan = 0;
+  for (std::size_t i = 0; i < scenario.actors.size(); ++i) {
+    const ScenarioActor& actor = scenario.actors[i];
+    ScenarioActor& before = ranker.prepared.actors[i];
+    const bool same = actor.model == before.model && actor.occupants == before.occupants;
+    const bool stays = before.existence_probability > 0.0 && actor.existence_probability > 0.0;
+    if (ranker.ranker.can_enter(i, actor.model) && !(stays && same)) {
+      if (before.existence_probability > 0.0) {
+        if (Status left = ranker.ranker.leave(i); !left) return left;
+      }
+      before.existence_probability = 0.0;
+      if (actor.existence_probability > 0.0) {
+        Status entered = ranker.ranker.enter(i, actor.model, motions[plan], actor.occupants);
+        if (!entered) return entered;
+      }
+      before.existence_probability = actor.existence_probability;
+      before.model = actor.model;
+      before.occupants = actor.occupants;
+    }
+    plan += std::max<std::size_t>(1, actor.predictions.size());
+  }
+  return Success{};
+}
+
 /// The candidates and motions of a scenario. Errors: bad_input; usage for other bodies.
 Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
-  if (Status same = same_bodies(ranker.prepared, scenario); !same) return same;
+  if (Status same = same_bodies(ranker, scenario); !same) return same;
   if (Status sound = detail::check_scenario(scenario); !sound) return sound;
   Result<std::vector<Candidate>> candidates =
       make_candidates(scenario, ranker.ego_lengths_m[scenario.ego.model]);
@@ -129,6 +163,9 @@ Status situate(crashrank_ranker& ranker, const Scenario& scenario) {
   const Result<std::vector<Motion>> motions = plan_motions(scenario);
   if (!motions) return motions.error();
   ranker.answer.reserve(candidates->size());
+  if (scenario.futures.empty()) {
+    if (Status there = exchange_bodies(ranker, scenario, *motions); !there) return there;
+  }
   if (Status moved =
           ranker.ranker.move_actors(scenario.ego.pose, *motions,
                                     EgoMotion{scenario.ego.speed_mps, scenario.ego.yaw_rate_radps});

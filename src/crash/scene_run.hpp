@@ -94,8 +94,9 @@ public:
   static constexpr std::size_t most_contacts = 64;  ///< recorded; further ones are not recorded
   static constexpr std::size_t most_pairs = 64;     ///< pairs in contact; further ones do not act
   static constexpr std::size_t most_at_once = 40;   ///< open contacts; further ones open later
-  /// Blocks of outlines that come near other bodies; further ones do not press.
-  static constexpr std::size_t most_near_blocks = std::size_t{3} << 12U;
+  /// Blocks of outlines that come near other bodies; further ones do not press. Twice what random
+  /// pile-ups with 36 pairs in contact take.
+  static constexpr std::size_t most_near_blocks = std::size_t{3} << 11U;
   static constexpr std::size_t most_near = 32;  ///< near bodies listed for each body
   static constexpr double on_plan_m = 0.1;
   static constexpr std::size_t most_recorded =

@@ -117,8 +117,9 @@ void ImpactSearch::place_knots(double from) {
     }
     if (i < count) times.push_back(t);
   }
-  if (memory_.knots.size() < times.size()) memory_.knots.resize(times.size());
-  for (std::size_t i = 0; i < times.size(); ++i) memory_.knots[i].ready = false;
+  const std::size_t kept = std::min(times.size(), kept_knots);
+  if (memory_.knots.size() < kept) memory_.knots.resize(kept);
+  for (std::size_t i = 0; i < kept; ++i) memory_.knots[i].index = Knot::unmade;
 }
 
 RelativeState ImpactSearch::state_at(double t) {
@@ -136,10 +137,10 @@ std::size_t ImpactSearch::knot_index(double t) const {
 }
 
 const Knot& ImpactSearch::knot(std::size_t index) {
-  Knot& k = memory_.knots[index];
-  if (!k.ready) {
+  Knot& k = memory_.knots[index % kept_knots];
+  if (k.index != index) {
     ++work_.poses;
-    k.ready = true;
+    k.index = index;
     k.state = relative_state(motion_a_, motion_b_, radii_, memory_.times[index], until_);
     k.to = box_transform(a_, b_, k.state.b_in_a);
     k.shrink_b = shrink_along_b(k.to);

@@ -19,7 +19,8 @@ namespace crashrank::detail {
 
 /// A state at one of the times that box pairs are looked at, with what boxes need of it.
 struct Knot {
-  bool ready = false;
+  static constexpr auto unmade = static_cast<std::size_t>(-1);
+  std::size_t index = unmade;  ///< of its time
   RelativeState state;
   BoxTransform to;
   double shrink_b = 1.0;
@@ -48,6 +49,9 @@ struct Thresholds {
 inline constexpr std::size_t most_even_times = 512;
 /// And with the kinks of both among them.
 inline constexpr std::size_t most_search_times = most_even_times + 4096;
+/// Knots kept at once: one that is asked for takes the place of those this many before and after.
+/// More than there are without kinks.
+inline constexpr std::size_t kept_knots = 1024;
 
 /// Buffers of a search, kept between searches.
 struct SearchMemory {
@@ -59,7 +63,7 @@ struct SearchMemory {
   };
   std::vector<Entry> stack;
   std::vector<double> times;
-  std::vector<Knot> knots;
+  std::vector<Knot> knots;  ///< that of index i at i modulo `kept_knots`
 };
 
 /// Finds the first time in [from, until] at which two moving surfaces are close. One object serves

@@ -36,9 +36,7 @@ void ImpactWorkspace::prepare(std::uint32_t depth_a, std::uint32_t depth_b) {
   if (memory.distance.stack.size() < needed) memory.distance.stack.resize(needed);
   memory.collide.prepare(depth_a, depth_b);
   memory.search.times.reserve(detail::most_search_times);
-  if (memory.search.knots.size() < detail::most_search_times) {
-    memory.search.knots.resize(detail::most_search_times);
-  }
+  memory.search.knots.resize(detail::kept_knots);
   // A leaf's triangles against a leaf's: a query for any pair ends with them.
   constexpr std::size_t leaf_pairs = 4096;
   memory.pairs.reserve(leaf_pairs);

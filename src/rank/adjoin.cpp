@@ -110,7 +110,7 @@ std::vector<FixedSegment> segments_near(const Body& body, const Rectangle& box,
                                         const Vector2d& origin, double reach_m) {
   const Heading heading(body.fixed_pose);
   std::vector<FixedSegment> near;
-  for (const OutlinePiece& piece : body.vehicle.profile->pieces) {
+  for (const OutlinePiece& piece : body.vehicle->profile->pieces) {
     const Vector2d middle = heading.to_world(piece.x, piece.y);
     const double half_m = 0.5 * static_cast<double>(piece.length_m);
     if (distance_m(box, middle) > half_m + reach_m) continue;
@@ -206,7 +206,7 @@ bool lies_inside(const std::vector<FixedSegment>& pieces, const Body& body,
     if (same_loop) continue;
     const Vector2d local = heading.to_body(s.middle + origin);
     for (std::size_t band = 0; band < profile_bands; ++band) {
-      if (inside_outline(body.vehicle, band, static_cast<float>(local.x()),
+      if (inside_outline(*body.vehicle, band, static_cast<float>(local.x()),
                          static_cast<float>(local.y()))) {
         return true;
       }

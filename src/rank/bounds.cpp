@@ -33,7 +33,8 @@ double max_energy_j(const Scene& scene, const Body& body, const Motion& motion) 
   const double speed = slack * (bound.speed_mps + bound.angular_radps * body.radius_m +
                                 2.0 * SceneOptions{}.plan_ends_mps);
   const double spin = bound.angular_radps;
-  return slack * 0.5 * (body.mass_kg * speed * speed + body.vehicle.yaw_inertia_kgm2 * spin * spin);
+  return slack * 0.5 *
+         (body.mass_kg * speed * speed + body.vehicle->yaw_inertia_kgm2 * spin * spin);
 }
 
 /// Upper bound on the harm to the people in or on a body, without property: their weight, at a risk
@@ -41,7 +42,7 @@ double max_energy_j(const Scene& scene, const Body& body, const Motion& motion) 
 double max_people_weight(const Scene& scene, std::size_t index) {
   const Body& body = body_of(scene, index);
   HarmExposure own;
-  own.kind = body.vehicle.kind;
+  own.kind = body.vehicle->kind;
   own.ego = index == ego_body;
   own.occupants = body.occupants;
   return people_weight(own, scene.harm.weights);
@@ -50,14 +51,20 @@ double max_people_weight(const Scene& scene, std::size_t index) {
 }  // namespace
 
 void ScoreBounds::prepare(const Scene& scene) {
+  actor_energy_j_.resize(scene.actors.size());
+  limit(scene);
+}
+
+void ScoreBounds::limit(const Scene& scene) {
   limits_ = {};
   limits_.ego_mass_kg = scene.ego.mass_kg;
   // Those of the simulation and a first contact without force.
   limits_.contacts = static_cast<double>(SceneRun::most_contacts + 1);
   max_energy_ratio_ = 1.0;
   add(scene, ego_body);
-  for (std::size_t i = 0; i < scene.actors.size(); ++i) add(scene, i);
-  actor_energy_j_.resize(scene.actors.size());
+  for (std::size_t i = 0; i < scene.actors.size(); ++i) {
+    if (scene.futures.exists(i)) add(scene, i);
+  }
   update(scene);
 }
 
@@ -66,17 +73,18 @@ void ScoreBounds::add(const Scene& scene, std::size_t index) {
   limits_.people += max_people_weight(scene, index);
   limits_.triangles += static_cast<double>(body.model->mesh.size());
   if (scene.measure == Measure::area) limits_.area_m2 += surface_area_m2(body.model->mesh);
-  limits_.intrusion_m = std::max(limits_.intrusion_m, max_intrusion_m(body.vehicle));
+  limits_.intrusion_m = std::max(limits_.intrusion_m, max_intrusion_m(*body.vehicle));
   if (!std::isfinite(body.mass_kg)) return;
   // The energy about a point at distance `arm` from the centre of mass grows by m·arm² / I at most.
   const double arm = 2.0 * body.radius_m;
   max_energy_ratio_ =
-      std::max(max_energy_ratio_, 1.0 + body.mass_kg * arm * arm / body.vehicle.yaw_inertia_kgm2);
+      std::max(max_energy_ratio_, 1.0 + body.mass_kg * arm * arm / body.vehicle->yaw_inertia_kgm2);
 }
 
 void ScoreBounds::update(const Scene& scene) {
   std::fill(actor_energy_j_.begin(), actor_energy_j_.end(), 0.0);
   for (const Plan& plan : scene.futures.plans) {
+    if (!scene.futures.exists(plan.actor)) continue;
     double& max_j = actor_energy_j_[plan.actor];
     max_j = std::max(max_j, max_energy_j(scene, scene.actors[plan.actor], plan.motion));
   }

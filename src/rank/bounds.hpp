@@ -15,6 +15,9 @@ public:
   /// Allocates for the scene and computes everything that does not depend on the motions of the
   /// actors.
   void prepare(const Scene& scene);
+  /// Does what follows from the bodies after some have entered or left. O(their triangles) for the
+  /// measure `area`, O(bodies) for the others. Does not allocate.
+  void limit(const Scene& scene);
   /// Updates the kinetic energies after the motions of the actors changed. Does not allocate.
   void update(const Scene& scene);
 

@@ -142,7 +142,7 @@ template <typename Box> double separation_m(const Box& a, const Box& b) {
 /// heights that both bodies have; blended by the squares of its components.
 CrushLaw resistance(const Body& body, const PlanarBody& at, double x, double y, double low_m,
                     double high_m) {
-  const CrushStrength& strength = body.vehicle.strength;
+  const CrushStrength& strength = body.vehicle->strength;
   const double ahead = at.cosine * x + at.sine * y;
   const CrushLaw& end = ahead > 0.0 ? strength.front : strength.rear;
   const CrushLaw& side = strength.side;
@@ -191,7 +191,7 @@ void BoxCrash::prepare(std::size_t bodies) {
 
 void BoxCrash::place(Box& box) const {
   ContactBody at;
-  at.vehicle = &box.body->vehicle;
+  at.vehicle = box.body->vehicle.get();
   box.plan->state_at(now_s_, at.pose, at.velocity);
   box.motion = make_planar(at, Eigen::Vector3d::Zero());
   // A post that breaks away is free from the beginning.
@@ -208,7 +208,7 @@ void BoxCrash::begin(const Scene& scene, const Motion& ego, std::size_t future) 
   boxes_.clear();
   pairs_.clear();
   const auto add = [&](std::size_t index, const Motion& plan) {
-    const Vehicle& vehicle = body_of(scene, index).vehicle;
+    const Vehicle& vehicle = *body_of(scene, index).vehicle;
     cells_[boxes_.size()].clear();
     Box& box = boxes_.emplace_back();
     box.index = index;
@@ -290,8 +290,8 @@ ContactEffect* BoxCrash::effect_of(std::uint32_t i, std::uint32_t j, double spee
 void BoxCrash::press(const Scene& scene, std::uint32_t i, std::uint32_t j, double step_s) {
   const Box& a = boxes_[i];
   const Box& b = boxes_[j];
-  const Vehicle& of_a = a.body->vehicle;
-  const Vehicle& of_b = b.body->vehicle;
+  const Vehicle& of_a = *a.body->vehicle;
+  const Vehicle& of_b = *b.body->vehicle;
   const double low_m = static_cast<double>(
       std::max(of_a.silhouettes.all_heights.low_m, of_b.silhouettes.all_heights.low_m));
   const double high_m = static_cast<double>(
@@ -379,7 +379,7 @@ void BoxCrash::act(const Scene& scene, std::uint32_t i, const Body& by, const Pu
   action.path_mps += change_mps;
   action.crush_j += push.shares[side] * push.lost_j;
   action.light_mps += change_mps * box.body->mass_kg / std::max(by.mass_kg, striking_car_kg);
-  action.edge_m2ps += change_mps * by.vehicle.leading_edge_m;
+  action.edge_m2ps += change_mps * by.vehicle->leading_edge_m;
   const double deeper_m = std::max(0.0, push.depths_m[side] - box.deepest_m);
   box.deepest_m += deeper_m;
   action.deepest_m += deeper_m;
@@ -397,7 +397,7 @@ void BoxCrash::leave_plan(const Scene& scene, std::uint32_t i) {
   Box& box = boxes_[i];
   box.state = State::free;
   if (i == 0) end_s_ = now_s_ + whole_s;
-  const HeldControls held = controls_after(scene, *box.plan, box.body->vehicle, now_s_);
+  const HeldControls held = controls_after(scene, *box.plan, *box.body->vehicle, now_s_);
   box.wheels =
       wheels_after(box.body->footing, scene.harm.after_contact, held.steering_rad, held.brake);
 }

@@ -30,6 +30,7 @@ public:
   /// Compares the motions of all plans and adds up their probabilities. Returns true if the choices
   /// changed, apart from their probabilities. Does not allocate.
   bool update(const std::vector<Plan>& plans);
+  void set_existence(std::size_t actor, double probability) { existence_[actor] = probability; }
 
   std::size_t count(std::size_t actor) const;
   /// Plan that has the motion of a choice, or `absent`.

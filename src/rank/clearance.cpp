@@ -218,6 +218,7 @@ void sample_trajectories(const Scene& scene, PlanTrajectories& trajectories) {
   trajectories.fastest_mps.resize(count);
   trajectories.drift.resize(count);
   for (std::size_t p = 0; p < count; ++p) {
+    if (!scene.futures.exists(plans[p].actor)) continue;
     const BodyOutline& outline = *scene.actors[plans[p].actor].outline;
     trajectories.fastest_mps[p] = fastest_point_mps(plans[p].motion, outline, horizon_s);
     trajectories.drift[p] = drift_of(plans[p].motion, horizon_s);
@@ -250,7 +251,7 @@ Clearance clearance_of(const Scene& scene, const Motion& ego, std::vector<Planar
     if (stop()) return least;
     if (!scene.futures.is_followed(p)) continue;
     const Body& actor = scene.actors[plans[p].actor];
-    if (!actor.vehicle.has_outline() || passes_over(scene.ego, ego, actor, plans[p].motion)) {
+    if (!actor.vehicle->has_outline() || passes_over(scene.ego, ego, actor, plans[p].motion)) {
       continue;
     }
     const MovingBody other{*actor.outline, plans[p].motion, trajectories.of(p),

@@ -69,9 +69,12 @@ void CrashChain::prepare(const Scene& scene) {
   bodies_.reserve(scene.actors.size() + 1);
   actors_.reserve(scene.actors.size() + 1);
   sorted_.reserve(scene.actors.size() + 1);
-  std::size_t pieces = scene.ego.vehicle.profile->pieces.size();
+  std::size_t pieces = scene.ego.vehicle->profile->pieces.size();
   for (const Body& actor : scene.actors) {
-    pieces = std::max(pieces, actor.vehicle.profile->pieces.size());
+    pieces = std::max(pieces, actor.vehicle->profile->pieces.size());
+  }
+  for (const std::optional<EnteringBody>& kind : scene.entering) {
+    if (kind) pieces = std::max(pieces, kind->body.vehicle->profile->pieces.size());
   }
   for (const JoinedBodies& joined : scene.joined) {
     pieces = std::max(pieces, joined.vehicle.profile->pieces.size());
@@ -104,7 +107,7 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
     bodies_.push_back(body);
     actors_.push_back(index);
   };
-  add(ego_body, scene.actors.size(), scene.ego.vehicle, plan);
+  add(ego_body, scene.actors.size(), *scene.ego.vehicle, plan);
   std::size_t partner = 0;
   SceneBody& ego = bodies_.front();
   const Vector3d across(-first.closing.y(), first.closing.x(), 0.0);
@@ -116,7 +119,7 @@ void CrashChain::begin(const Scene& scene, const Motion& plan, std::size_t futur
     const Motion& motion = scene.futures.plans[followed].motion;
     const std::size_t joined = scene.joined_of[i];
     if (joined == Scene::not_joined) {
-      add(i, i, scene.actors[i].vehicle, motion);
+      add(i, i, *scene.actors[i].vehicle, motion);
     } else if (scene.joined[joined].members.front() == i) {
       const bool hit = scene.joined_of[first.actor] == joined;
       add(hit ? first.actor : i, i, scene.joined[joined].vehicle, motion);
@@ -153,9 +156,12 @@ void CrashChain::sort_actors(double time_s) {
 void CrashChain::mark_relevant_plans(const Scene& scene, std::vector<char>& relevant) const {
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t p = 0; p < plans.size(); ++p) {
-    if (relevant[p] != 0 || scene.futures.is_certain(plans[p].actor)) continue;
+    const std::size_t actor = plans[p].actor;
+    if (relevant[p] != 0 || !scene.futures.exists(actor) || scene.futures.is_certain(actor)) {
+      continue;
+    }
     SceneBody body;
-    body.vehicle = &scene.actors[plans[p].actor].vehicle;
+    body.vehicle = scene.actors[actor].vehicle.get();
     body.plan = &plans[p].motion;
     if (run_.would_act(body, scene.actors.size() + 1)) relevant[p] = 1;
   }

@@ -49,7 +49,7 @@ void CrashEffects::add(std::size_t body, View<const ExposureCell> more) {
 HarmExposure exposure_of(const Scene& scene, std::size_t index, const ExposureWindow* window) {
   const Body& body = body_of(scene, index);
   HarmExposure e;
-  e.kind = body.vehicle.kind;
+  e.kind = body.vehicle->kind;
   e.ego = index == ego_body;
   e.occupants = body.occupants;
   if (window == nullptr) return e;
@@ -109,7 +109,7 @@ void CrashScore::list_some(const Scene& scene, const CrashEffects& effects,
       whole.action.add(cells[k].action, share);
       if (cells[k].index >= begin + apart) next = std::min(next, k);
     }
-    windows_.push_back(exposure_window({of.mass_kg, has_cage(of.vehicle.kind), 1.0}, whole,
+    windows_.push_back(exposure_window({of.mass_kg, has_cage(of.vehicle->kind), 1.0}, whole,
                                        begin + 1, whole.action));
     windows_.back().begin = begin;
     first = std::min(next, k);
@@ -119,7 +119,7 @@ void CrashScore::list_some(const Scene& scene, const CrashEffects& effects,
 void CrashScore::list(const Scene& scene, const CrashEffects& effects,
                       const CrashEffects::BodyCells& body, double restitution) {
   const Body& of = body_of(scene, body.body);
-  list_windows(effects.cells_of(body), {of.mass_kg, has_cage(of.vehicle.kind), restitution},
+  list_windows(effects.cells_of(body), {of.mass_kg, has_cage(of.vehicle->kind), restitution},
                windows_);
 }
 
@@ -142,7 +142,7 @@ void CrashScore::add_scores(const Scene& scene, const CrashEffects& effects,
                                                             scene.harm.weights)
                                             : 1.0;
     if (weight == 0.0) continue;
-    const bool is_inside = has_cage(body_of(scene, body.body).vehicle.kind);
+    const bool is_inside = has_cage(body_of(scene, body.body).vehicle->kind);
     const auto same_curve = [is_inside](const HarmSample& p, const HarmSample& q) {
       return p.model == q.model && (is_inside ? p.occupant_speed == q.occupant_speed
                                               : p.outside_speed == q.outside_speed);

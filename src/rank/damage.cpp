@@ -145,7 +145,7 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
   const auto add_path = [&](std::size_t actor) {
     const Body& body = scene.actors[actor];
     // For joined bodies the record holds their common pose; each member needs its own.
-    const bool is_fixed = !body.vehicle.movable();
+    const bool is_fixed = !body.vehicle->movable();
     const Pose fixed_pose = body.fixed_pose;
     DamagePath path;
     path.actor = actor;
@@ -159,7 +159,7 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
     if (actor != query.b) add_path(actor);
   }
   const Body& b = scene.actors[query.b];
-  plan.pose_b = b.vehicle.movable() ? record[0].b : b.fixed_pose;
+  plan.pose_b = b.vehicle->movable() ? record[0].b : b.fixed_pose;
   return plan;
 }
 

@@ -134,6 +134,13 @@ void Futures::update_motions() {
   displace_plans();
 }
 
+void Futures::set_existence(std::size_t actor, bool exists) {
+  existence_[actor] = exists ? 1.0 : 0.0;
+  choices_.set_existence(actor, existence_[actor]);
+  std::fill(reached_.begin(), reached_.end(), char{1});
+  list_futures();
+}
+
 /// Lists all futures, or draws a sample if there are too many.
 void Futures::list_futures() {
   leave_out();

@@ -81,6 +81,18 @@ public:
   /// Returns true if an actor exists in every future and has one plan without errors.
   bool is_certain(std::size_t actor) const;
 
+  /// Returns false if an actor exists in no future: nothing depends on its motion then.
+  bool exists(std::size_t actor) const { return existence_[actor] > 0.0; }
+  /// Returns true if an actor exists in no future and has one plan, so that `set_existence` can let
+  /// it exist without allocating.
+  bool can_enter(std::size_t actor) const {
+    return !exists(actor) && !is_joint() && first_plan_[actor + 1] - first_plan_[actor] == 1;
+  }
+  /// Index of the first plan of an actor.
+  std::size_t first_plan(std::size_t actor) const { return first_plan_[actor]; }
+  /// Lets an actor with one plan exist in every future or in none, and lists the futures again.
+  void set_existence(std::size_t actor, bool exists);
+
   /// Returns true if the number of futures can be reduced by leaving out actors that no candidate
   /// reaches.
   bool can_leave_out() const noexcept;

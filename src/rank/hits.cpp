@@ -37,8 +37,8 @@ void sort_by_time(std::vector<Scratch::Hit>& hits) {
 Impact find_impact(const Scene& scene, const Motion& ego, const Plan& plan, double from_s,
                    double until_s, ImpactWorkspace& workspace, const ImpactOptions& options) {
   const Body& actor = scene.actors[plan.actor];
-  ContactBody p{&scene.ego.vehicle, {}, {}};
-  ContactBody q{&actor.vehicle, {}, {}};
+  ContactBody p{scene.ego.vehicle.get(), {}, {}};
+  ContactBody q{actor.vehicle.get(), {}, {}};
   ego.state_at(from_s, p.pose, p.velocity);
   plan.motion.state_at(from_s, q.pose, q.velocity);
   const AabbTree& ego_tree = scene.ego.model->tree;

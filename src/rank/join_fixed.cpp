@@ -44,8 +44,8 @@ std::vector<std::vector<std::size_t>> adjoining_sets(const Scene& scene,
       const std::size_t p = root_of(parent, i);
       const std::size_t q = root_of(parent, j);
       if (p == q ||
-          scene.actors[certain[i]].vehicle.deflection !=
-              scene.actors[certain[j]].vehicle.deflection ||
+          scene.actors[certain[i]].vehicle->deflection !=
+              scene.actors[certain[j]].vehicle->deflection ||
           !adjoin(scene.actors[certain[i]], boxes[certain[i]], scene.actors[certain[j]],
                   boxes[certain[j]])) {
         continue;
@@ -93,14 +93,14 @@ Status join_fixed(Scene& scene) {
   std::vector<std::size_t> certain;
   std::vector<Rectangle> boxes(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (scene.actors[i].vehicle.movable()) continue;
+    if (scene.actors[i].vehicle->movable()) continue;
     fixed.push_back(i);
     if (scene.futures.is_certain(i)) certain.push_back(i);
     boxes[i] = rectangle_of(scene.actors[i]);
   }
   for (std::vector<std::size_t>& members : adjoining_sets(scene, boxes, certain)) {
     if (members.size() < 2) continue;
-    const Vehicle& first = scene.actors[members.front()].vehicle;
+    const Vehicle& first = *scene.actors[members.front()].vehicle;
     VehicleFacts facts;
     facts.kind = first.kind;
     facts.surface = first.surface;

@@ -17,7 +17,7 @@ constexpr double seam_m = 0.05;
 
 std::array<Vector2d, 4> wheels_of(const Body& body, const Pose& pose) {
   const Footing& footing = body.footing;
-  const Eigen::Vector3d& center = body.vehicle.center_m;
+  const Eigen::Vector3d& center = body.vehicle->center_m;
   std::array<Vector2d, 4> wheels;
   std::size_t k = 0;
   for (const double x : {footing.front_m, footing.rear_m}) {

@@ -117,7 +117,7 @@ Scenario with_small_errors(Scenario scenario, const std::vector<Body>& actors) {
   if (!scenario.ego.uncertainty.any()) scenario.ego.uncertainty = small_errors;
   for (std::size_t i = 0; i < actors.size(); ++i) {
     StateUncertainty& own = scenario.actors[i].perception;
-    if (!actors[i].vehicle.stands() && !own.any()) own = small_errors;
+    if (!actors[i].vehicle->stands() && !own.any()) own = small_errors;
   }
   return scenario;
 }
@@ -139,7 +139,7 @@ Result<Futures> make_futures(const Scenario& scenario, const std::vector<Body>& 
 Status check_fixed(const Scene& scene, const Scenario& scenario) {
   for (std::size_t i = 0; i < scene.actors.size(); ++i) {
     const ScenarioActor& actor = scenario.actors[i];
-    if (!scene.actors[i].vehicle.stands() || !actor.perception.any()) continue;
+    if (!scene.actors[i].vehicle->stands() || !actor.perception.any()) continue;
     return Error{ErrorCode::bad_input,
                  {},
                  actor_place(i, actor.name) + ".perception",
@@ -149,7 +149,7 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
   const std::vector<Plan>& plans = scene.futures.plans;
   for (std::size_t i = 1; i < plans.size(); ++i) {
     const std::size_t actor = plans[i].actor;
-    if (plans[i - 1].actor != actor || !scene.actors[actor].vehicle.stands()) continue;
+    if (plans[i - 1].actor != actor || !scene.actors[actor].vehicle->stands()) continue;
     return Error{ErrorCode::bad_input,
                  {},
                  actor_place(actor, scenario.actors[actor].name),
@@ -163,7 +163,7 @@ Status check_fixed(const Scene& scene, const Scenario& scenario) {
 void set_fixed_poses(Scene& scene) {
   for (const Plan& plan : scene.futures.plans) {
     Body& body = scene.actors[plan.actor];
-    if (!body.vehicle.movable()) body.fixed_pose = plan.motion.pose_at(0.0);
+    if (!body.vehicle->movable()) body.fixed_pose = plan.motion.pose_at(0.0);
   }
 }
 
@@ -233,52 +233,64 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
   }
   scene.ego = make_body(models[ego->model], ego->mass_kg);
   // Cached by model: cutting the outlines takes milliseconds, and many actors share a model.
-  std::vector<std::optional<Vehicle>> described(models.size());
+  std::vector<std::shared_ptr<const Vehicle>> described(models.size());
   std::vector<std::shared_ptr<const BodyOutline>> outlines(models.size());
   const auto describe = [&](std::size_t model, Body& body) -> Status {
     if (!described[model]) {
       Result<Vehicle> made = vehicle_of(scenario.models[model], models[model]);
       if (!made) return made.error();
-      described[model] = std::move(*made);
+      described[model] = std::make_shared<const Vehicle>(std::move(*made));
       outlines[model] = std::make_shared<const BodyOutline>(
           *described[model]->profile, described[model]->movable() ? &models[model].mesh : nullptr);
     }
-    body.vehicle = *described[model];
+    body.vehicle = described[model];
     body.outline = outlines[model];
     return Success{};
   };
   if (Status own = describe(ego->model, scene.ego); !own) return own.error();
-  if (!scene.ego.vehicle.has_outline()) {
+  if (!scene.ego.vehicle->has_outline()) {
     return error_of_mesh(
         make_error(ErrorCode::bad_input,
                    "has no material between 0.1 and 4 m over its ground, but the ego needs it",
                    "check its scale, its up axis and its origin on the ground"),
         scenario.models[ego->model]);
   }
-  scene.ego.footing = footing_of(scene.ego.vehicle);
+  scene.ego.footing = footing_of(*scene.ego.vehicle);
   scene.limits =
       ego_limits(scenario, static_cast<double>(models[ego->model].mesh.bounds().extent().x()),
-                 scene.ego.vehicle.center_m,
-                 scene.ego.vehicle.wheelbase_m > 0.0 ? scene.ego.vehicle.rear_axle_x_m
-                                                     : std::numeric_limits<double>::quiet_NaN());
+                 scene.ego.vehicle->center_m,
+                 scene.ego.vehicle->wheelbase_m > 0.0 ? scene.ego.vehicle->rear_axle_x_m
+                                                      : std::numeric_limits<double>::quiet_NaN());
   scene.infeasible = options.infeasible;
   scene.records_motion = options.records_motion;
   scene.road = scenario.road;
   scene.grip = scenario.grip;
   scene.ego.occupants = scenario.ego.occupants;
 
-  for (const ScenarioActor& actor : scenario.actors) {
-    const Result<RankedBody> body = ranked_body(scenario, models, actor.model);
-    if (!body) return body.error();
-    result.actors.push_back(*body);
-    scene.actors.push_back(make_body(models[body->model], body->mass_kg));
-    Body& added = scene.actors.back();
-    if (Status own = describe(body->model, added); !own) return own.error();
-    result.actors.back().has_outline = added.vehicle.has_outline();
-    if (added.vehicle.movable() && added.vehicle.has_outline()) {
-      added.footing = footing_of(added.vehicle);
+  const auto make_actor = [&](std::size_t model) -> Result<EnteringBody> {
+    const Result<RankedBody> ranked = ranked_body(scenario, models, model);
+    if (!ranked) return ranked.error();
+    EnteringBody made{make_body(models[model], ranked->mass_kg), *ranked};
+    if (Status own = describe(model, made.body); !own) return own.error();
+    made.ranked.has_outline = made.body.vehicle->has_outline();
+    if (made.body.vehicle->movable() && made.ranked.has_outline) {
+      made.body.footing = footing_of(*made.body.vehicle);
     }
-    added.occupants = actor.occupants;
+    return made;
+  };
+  bool keeps_places = false;
+  for (const ScenarioActor& actor : scenario.actors) {
+    Result<EnteringBody> made = make_actor(actor.model);
+    if (!made) return made.error();
+    result.actors.push_back(made->ranked);
+    scene.actors.push_back(std::move(made->body));
+    scene.actors.back().occupants = actor.occupants;
+    keeps_places = keeps_places || actor.existence_probability == 0.0;
+  }
+  for (std::size_t model = 0; keeps_places && model < models.size(); ++model) {
+    Result<EnteringBody> made = make_actor(model);
+    scene.entering.emplace_back();
+    if (made && !made->body.vehicle->stands()) scene.entering.back() = std::move(*made);
   }
 
   Result<Futures> futures = make_futures(scenario, scene.actors, options);
@@ -295,6 +307,7 @@ Result<Scene> make_scene(const Scenario& scenario, View<const Model> models,
     scene.slice_s.push_back(scenario.horizon_s * (static_cast<double>(i) / slices));
   }
   scene.slices.resize(scene.slice_s.size() - 1);
+  for (BroadPhase& slice : scene.slices) slice.reserve(scene.futures.plans.size());
   scene.boxes.resize(scene.futures.plans.size());
   scene.apart_at_start.resize(scene.futures.plans.size());
   ImpactWorkspace workspace;
@@ -308,7 +321,7 @@ void update_plans(Scene& scene, ImpactWorkspace& workspace) {
   scene.fastest_plan_mps = 0.0;
   for (const Plan& plan : plans) {
     const Body& actor = scene.actors[plan.actor];
-    if (!actor.vehicle.movable()) continue;
+    if (!actor.vehicle->movable() || !scene.futures.exists(plan.actor)) continue;
     const MotionBound bound =
         plan.motion.bound(0.0, scene.slice_s.back() + SceneOptions{}.longest_s);
     // Points rotate about the centre of mass, which is within one radius of the origin and within
@@ -318,6 +331,8 @@ void update_plans(Scene& scene, ImpactWorkspace& workspace) {
   }
   for (std::size_t s = 0; s < scene.slices.size(); ++s) {
     for (std::size_t i = 0; i < plans.size(); ++i) {
+      scene.boxes[i] = {};
+      if (!scene.futures.exists(plans[i].actor)) continue;
       scene.boxes[i] = swept_box(scene.actors[plans[i].actor], plans[i].motion, scene.slice_s[s],
                                  scene.slice_s[s + 1], scene.impact.tolerance_m);
     }

@@ -35,9 +35,10 @@ struct Body {
   /// half extents of the root box along its axes
   Eigen::Matrix3d half_axes_m = Eigen::Matrix3d::Zero();
   double radius_m = 0.0;  ///< upper bound on the distance of a point of the body from its origin
-  Vehicle vehicle;        ///< mechanical properties for the crash model
   Footing footing;        ///< contact patches on the road; movable bodies only
-  std::shared_ptr<const BodyOutline> outline;  ///< for distance queries; never null
+  /// Mechanical properties for the crash model, which the bodies of a model share; never null.
+  std::shared_ptr<const Vehicle> vehicle;
+  std::shared_ptr<const BodyOutline> outline;  ///< for distance queries, shared likewise
   std::optional<double> occupants;             ///< persons; absent: the default of its kind
 };
 
@@ -45,6 +46,12 @@ struct Body {
 /// contact tolerance and by more than all rounding errors.
 Box swept_box(const Body& body, const Motion& motion, double from_s, double until_s,
               double tolerance_m);
+
+/// A body of a model of the scenario, ready to enter the scene.
+struct EnteringBody {
+  Body body;
+  RankedBody ranked;
+};
 
 /// Fixed bodies that adjoin each other and act as one body in a contact.
 struct JoinedBodies {
@@ -58,6 +65,9 @@ struct Scene {
   Body ego;
   Pose ego_start;
   std::vector<Body> actors;
+  /// By model of the scenario: nothing where it is fixed or at fault; empty where no actor that
+  /// exists in no future keeps a place.
+  std::vector<std::optional<EnteringBody>> entering;
   std::vector<JoinedBodies> joined;
   std::vector<std::size_t> joined_of;  ///< by actor: index into `joined`, or `not_joined`
   static constexpr std::size_t not_joined = static_cast<std::size_t>(-1);

@@ -189,6 +189,9 @@ std::vector<std::size_t> simulation_of_sample(const Scene& scene) {
 void Scratch::prepare(const Scene& scene) {
   std::uint32_t deepest = scene.ego.model->tree.depth;
   for (const Body& actor : scene.actors) deepest = std::max(deepest, actor.model->tree.depth);
+  for (const std::optional<EnteringBody>& kind : scene.entering) {
+    if (kind) deepest = std::max(deepest, kind->body.model->tree.depth);
+  }
   impact.prepare(deepest, deepest);
   const Futures& futures = scene.futures;
   place.reserve(futures.plans.size());

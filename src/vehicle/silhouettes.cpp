@@ -360,6 +360,8 @@ Silhouettes make_silhouettes(const Profile& profile) {
     }
     add_groups(profile, first_block, s);
   }
+  const auto fit = [](auto&... vectors) { (vectors.shrink_to_fit(), ...); };
+  fit(s.heights, s.nodes, s.blocks, s.rows, s.groups);
   return s;
 }
 

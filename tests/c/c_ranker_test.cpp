@@ -192,4 +192,54 @@ TEST(CApi, AnUpdateChangesMotionsAndNotBodies) {
   }
 }
 
+TEST(CApi, ActorsEnterAndLeaveWithUpdates) {
+  const std::string file = CRASHRANK_SCENARIOS "/crossing_traffic.json";
+  crashrank_error error{};
+  constexpr std::size_t lorry = 1;
+  constexpr std::size_t pole = 3;
+  // Of the lorry and the pole.
+  const auto with_existence = [&](double of_lorry, double of_pole) {
+    Loaded made = load(file);
+    EXPECT_EQ(crashrank_scenario_set_existence(made.scenario.get(), lorry, of_lorry, &error),
+              CRASHRANK_OK);
+    EXPECT_EQ(crashrank_scenario_set_existence(made.scenario.get(), pole, of_pole, &error),
+              CRASHRANK_OK);
+    return made;
+  };
+  const auto create = [&](const Loaded& from) {
+    crashrank_ranker* made = nullptr;
+    EXPECT_EQ(
+        crashrank_ranker_create(from.scenario.get(), from.models.get(), nullptr, &made, &error),
+        CRASHRANK_OK)
+        << error.message;
+    return Ranker(made);
+  };
+  const auto hash_of = [&](const Ranker& ranker) {
+    auto answer = sized<crashrank_answer>();
+    EXPECT_EQ(crashrank_ranker_rank(ranker.get(), nullptr, &answer, &error), CRASHRANK_OK);
+    return answer.hash;
+  };
+  const Loaded empty = with_existence(0.0, 0.0);
+  const Loaded full = with_existence(1.0, 0.0);
+  const Ranker ranker = create(empty);
+  const uint64_t without = hash_of(ranker);
+  const uint64_t with = hash_of(create(full));
+  EXPECT_NE(with, without);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(crashrank_ranker_update(ranker.get(), full.scenario.get(), &error), CRASHRANK_OK)
+        << error.message;
+    EXPECT_EQ(hash_of(ranker), with);
+    // Only some may be there, and what is fixed stays as it was.
+    for (const auto& [of_lorry, of_pole] : {std::pair(0.5, 0.0), std::pair(1.0, 1.0)}) {
+      const Loaded other = with_existence(of_lorry, of_pole);
+      EXPECT_EQ(crashrank_ranker_update(ranker.get(), other.scenario.get(), &error),
+                CRASHRANK_USAGE);
+      EXPECT_NE(std::strstr(error.message, "actors"), nullptr) << error.message;
+      EXPECT_EQ(hash_of(ranker), with);
+    }
+    ASSERT_EQ(crashrank_ranker_update(ranker.get(), empty.scenario.get(), &error), CRASHRANK_OK);
+    EXPECT_EQ(hash_of(ranker), without);
+  }
+}
+
 }  // namespace

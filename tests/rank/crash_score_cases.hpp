@@ -13,7 +13,7 @@ inline Body make_body(BodyKind kind) {
   facts.kind = kind;
   const Result<Vehicle> v = describe_vehicle(test::box_mesh({2.0, 0.9, 0.7}, {1.2, 0, 0.7}), facts);
   Body body;
-  body.vehicle = *v;
+  body.vehicle = std::make_shared<const Vehicle>(*v);
   body.mass_kg = v->mass_kg;
   return body;
 }

@@ -20,6 +20,13 @@ namespace crashrank {
 /// A value; reading from many threads is safe.
 class BroadPhase {
 public:
+  /// Room for a number of boxes, none of them empty.
+  void reserve(std::size_t boxes) {
+    boxes_.reserve(boxes);
+    order_.reserve(boxes);
+    nodes_.reserve(2 * boxes);
+  }
+
   /// Copies the boxes and builds the tree. O(n log n); allocates only to grow beyond earlier sizes.
   void build(View<const Box> boxes) {
     boxes_.assign(boxes.begin(), boxes.end());

@@ -136,6 +136,10 @@ Result<Ranker> Ranker::prepare(const Scenario& scenario, View<const Model> model
     state->new_motions.resize(state->scene.futures.own_plans());
     state->rings.resize(state->scene.actors.size());
     state->needed.resize(state->scene.actors.size());
+    for (std::size_t i = 0; i < state->scene.actors.size(); ++i) {
+      const bool moves = !state->scene.actors[i].vehicle->stands();
+      state->places.push_back(moves && state->scene.futures.can_enter(i) ? 1 : 0);
+    }
     state->prepare_s = seconds_between(start, Deadline::Clock::now());
     return Ranker(std::move(state));
   });
@@ -160,6 +164,10 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
       return detail::refused_motion("ego", "its motion", "is not finite or faster than 300 m/s");
     }
     for (std::size_t i = 0; i < actors.size(); ++i) {
+      if (!scene.futures.exists(plans[i].actor)) {
+        new_motions[i] = plans[i].motion;
+        continue;
+      }
       if (const char* const fault = detail::motion_fault(actors[i], scene.slice_s.back())) {
         return refused_motion_of("actors", i, fault);
       }
@@ -173,6 +181,50 @@ Status Ranker::move_actors(const Pose& ego_start, View<const Motion> actors,
     scene.limits.yaw_rate_radps = ego ? ego->yaw_rate_radps : 0.0;
     detail::update_plans(scene, state_->rounds.caller_scratch().impact);
     state_->bounds.update(scene);
+    return Success{};
+  });
+}
+
+bool Ranker::can_enter(std::size_t actor, std::size_t model) const noexcept {
+  const auto& entering = state_->scene.entering;
+  return actor < state_->places.size() && state_->places[actor] != 0 && model < entering.size() &&
+         entering[model].has_value();
+}
+
+Status Ranker::enter(std::size_t actor, std::size_t model, const Motion& motion,
+                     std::optional<double> occupants) noexcept {
+  state_->rounds.await();
+  return detail::guarded([&]() -> Status {
+    detail::Scene& scene = state_->scene;
+    if (Status open = state_->check_place(actor, false); !open) return open;
+    if (!can_enter(actor, model)) {
+      return make_error(ErrorCode::usage, "no body of the model can enter",
+                        "name a model of the scenario that moves");
+    }
+    if (const char* const fault = detail::motion_fault(motion, scene.slice_s.back())) {
+      return refused_motion_of("actors", actor, fault);
+    }
+    if (occupants && !(*occupants >= 0.0 && *occupants <= harm_limits::people)) {
+      return make_error(ErrorCode::bad_input, "the number of occupants is out of range",
+                        "give 0 to 1000, or none for the default of its kind");
+    }
+    Motion own = motion;
+    // Nothing can fail from here on.
+    const detail::EnteringBody& entering = *scene.entering[model];
+    scene.actors[actor] = entering.body;
+    scene.actors[actor].occupants = occupants;
+    state_->bodies.actors[actor] = entering.ranked;
+    std::swap(scene.futures.plans[scene.futures.first_plan(actor)].motion, own);
+    state_->set_existence(actor, true);
+    return Success{};
+  });
+}
+
+Status Ranker::leave(std::size_t actor) noexcept {
+  state_->rounds.await();
+  return detail::guarded([&]() -> Status {
+    if (Status taken = state_->check_place(actor, true); !taken) return taken;
+    state_->set_existence(actor, false);
     return Success{};
   });
 }

@@ -41,6 +41,22 @@ std::uint64_t hash_of(View<const RankedCandidate> ranking) {
 
 }  // namespace
 
+Status Ranker::State::check_place(std::size_t actor, bool taken) const {
+  if (actor >= places.size() || places[actor] == 0) {
+    return make_error(ErrorCode::usage, "the actor keeps no place for others",
+                      "prepare the Ranker with an actor of one motion and existence_probability 0");
+  }
+  if (scene.futures.exists(actor) == taken) return Success{};
+  return taken ? make_error(ErrorCode::usage, "nobody has the place", "let somebody enter first")
+               : make_error(ErrorCode::usage, "the place is taken", "let its actor leave first");
+}
+
+void Ranker::State::set_existence(std::size_t actor, bool exists) noexcept {
+  scene.futures.set_existence(actor, exists);
+  detail::update_plans(scene, rounds.caller_scratch().impact);
+  bounds.limit(scene);
+}
+
 bool Ranker::State::collect_results(std::size_t steps, const RankBudget& budget,
                                     std::uint64_t& work) noexcept {
   bool in_time = true;

@@ -40,6 +40,7 @@ struct CRASHRANK_HIDDEN Ranker::State {
   std::size_t known = 0;            ///< number of candidates with a known score in this call
   std::vector<char> rings;          ///< by actor: see leave_out_distant_actors
   std::vector<char> needed;         ///< by actor: left out and reached by a crash
+  std::vector<char> places;         ///< by actor: it keeps a place, see Ranker::enter
   bool needs_left_out = false;      ///< there is such an actor
 
   /// Stores the results of a round in the order of its steps, as far as the work budget allows.
@@ -51,6 +52,10 @@ struct CRASHRANK_HIDDEN Ranker::State {
   /// starts again with it included.
   void refine_in_futures(View<const Candidate> candidates, const RankBudget& budget,
                          RankerEffort& effort) noexcept;
+  /// Refuses an actor that keeps no place, or whose place is taken or not as it should not be.
+  Status check_place(std::size_t actor, bool taken) const;
+  /// Lets an actor exist in every future or in none.
+  void set_existence(std::size_t actor, bool exists) noexcept;
   /// Resets all candidates to their upper bounds. Does not touch what running workers use.
   void begin(View<const Candidate> candidates) noexcept;
   /// Evaluates the candidates of an answer in full, the first first. Marks in `needed` the actors

@@ -12,22 +12,27 @@ namespace {
 /// stretches of work between two checks of the clock are shorter (bench/rank: clock_looks).
 constexpr std::chrono::microseconds worker_lead{30};
 
-void prepare_scratch(const Scene& scene, Scratch& scratch) {
-  scratch.prepare(scene);
-  for (const Body& actor : scene.actors) {
-    scratch.damage.collide.prepare(*scene.ego.model, *actor.model);
+/// Measures that the damage is no part of find it in `explain` alone, which allocates.
+void prepare_damage(const Scene& scene, DamageScratch& damage) {
+  if (!scored_by_damage(scene.measure)) return;
+  for (const Body& actor : scene.actors) damage.collide.prepare(*scene.ego.model, *actor.model);
+  for (const std::optional<EnteringBody>& kind : scene.entering) {
+    if (kind) damage.collide.prepare(*scene.ego.model, *kind->body.model);
   }
   // Capacity for the intersecting pairs at one pose: twice the largest number seen at crash poses
   // of dense meshes.
   constexpr std::size_t pairs = std::size_t{1} << 17U;
-  scratch.damage.pairs.reserve(pairs);
+  damage.pairs.reserve(pairs);
 }
 
 }  // namespace
 
 void StepRounds::prepare(std::size_t candidates) {
   scratch_ = std::vector<Scratch>(pool_.size() + 1);
-  for (Scratch& scratch : scratch_) prepare_scratch(scene_, scratch);
+  for (Scratch& scratch : scratch_) {
+    scratch.prepare(scene_);
+    prepare_damage(scene_, scratch.damage);
+  }
   for (std::uint32_t i = 0; i < pool_.size(); ++i) helpers_.push_back({this, i + 1});
   if (pool_.size() > 0) copies_.resize(candidates);
   for (Slot& slot : slots_) slot.state.reserve(scene_.futures);

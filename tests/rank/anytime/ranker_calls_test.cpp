@@ -104,6 +104,38 @@ TEST(RankerCalls, ErrorsOfStatesAllocateNothing) {
   }
 }
 
+TEST(RankerCalls, EnteringAndLeavingAllocateNothing) {
+  std::size_t entered = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Ready ready(seed);
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < ready.motions.size(); ++i) {
+      ScenarioActor& actor = ready.scene.scenario.actors[i];
+      if (actor.model >= scenes::pole_model) continue;
+      actor.existence_probability = 0.0;
+      actor.model = scenes::person_model;
+      places.push_back(i);
+    }
+    for (const unsigned workers : {1U, 2U}) {
+      Result<Ranker> ranker = ready.ranker(Measure::harm, workers);
+      ASSERT_TRUE(ranker.ok());
+      const long before = test::allocations.load();
+      std::size_t sound = 0;
+      for (const std::size_t model : {scenes::truck_model, scenes::two_wheeler_model}) {
+        for (const std::size_t i : places) {
+          sound += ranker->enter(i, model, ready.motions[i]) ? 1U : 0U;
+        }
+        sound += ranker->rank(ready.candidates).complete ? 1U : 0U;
+        for (const std::size_t i : places) sound += ranker->leave(i) ? 1U : 0U;
+      }
+      EXPECT_EQ(test::allocations.load(), before) << "seed " << seed;
+      EXPECT_EQ(sound, 2 * (2 * places.size() + 1));
+      entered += places.size();
+    }
+  }
+  EXPECT_GT(entered, 0U);
+}
+
 #if defined(__linux__) && defined(__x86_64__)
 
 /// Makes the kernel kill the process at any system call except those that wake and await threads

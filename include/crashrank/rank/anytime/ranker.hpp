@@ -179,6 +179,26 @@ public:
   Status move_actors(const Pose& ego_start, View<const Motion> actors,
                      std::optional<EgoMotion> ego = std::nullopt) noexcept;
 
+  /// Lets a body enter the scene in place of an actor of the scenario that keeps a place: it has an
+  /// existence_probability of 0, one motion and a model that moves, and there are no joint futures.
+  /// Until then, and after `leave`, no future has it, its motion is not read, and it costs some
+  /// nanoseconds a call. `actor` is its index in Scenario::actors, which answers refer to; `model`
+  /// that of any model in Scenario::models that moves, whatever the place was prepared with;
+  /// `motion` in world coordinates from time 0, which `move_actors` changes from then on;
+  /// `occupants` as in ScenarioActor. Answers have the bits of a Ranker prepared with that actor
+  /// and an existence_probability of 1. Takes as long as `move_actors` and waits like it, plus, for
+  /// measure `area`, microseconds for every thousand triangles; allocates for timed motions only.
+  /// Errors, without any change: usage for an actor that keeps no place or whose place is taken,
+  /// and for a model that does not exist or does not move; bad_input for a motion as in
+  /// `move_actors` or occupants out of range; out_of_memory.
+  Status enter(std::size_t actor, std::size_t model, const Motion& motion,
+               std::optional<double> occupants = std::nullopt) noexcept;
+  /// Whether the actor keeps a place, free or taken, and the model exists and moves.
+  bool can_enter(std::size_t actor, std::size_t model) const noexcept;
+  /// Takes the body out of such a place, which is free again. Time and waiting as `enter`; never
+  /// allocates. Errors, without any change: usage for an actor that keeps no place, or a free one.
+  Status leave(std::size_t actor) noexcept;
+
   /// Sets the probabilities of the plans: above 0, with a sum of 1 for each actor. Samples are
   /// drawn again from the same strata, so they change as little as the probabilities. Waits like
   /// `move_actors`; does not allocate. Errors, without any change: usage for a wrong number of
