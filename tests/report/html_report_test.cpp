@@ -51,15 +51,15 @@ TEST(HtmlReport, ListsAndMarksContactsBetweenOthers) {
   told.push_into("third");
   const std::string page = html_report(told.scenario, told.models, told.result);
   for (const char* words :
-       {"<td>ego / wall</td><td class='n'>0.500</td>",
-        "<td>wall / third</td><td class='n'>0.750</td><td class='n'>5.0</td>"
-        "<td class='n'>6.2</td>",
+       {"<td>our car / wall</td><td class='n'>0.500</td>",
+        "<td>wall / third</td><td class='n'>0.750</td><td class='n'>18</td>"
+        "<td class='n'>22</td>",
         "<circle class='further'", "<title>wall / third, 0.750 s</title>",
         "others</h3>\n<ul><li>hit: wall is pushed into third", "; then second, wall / third"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
   }
-  EXPECT_LT(page.find("<td>ego / wall</td>"), page.find("<td>wall / third</td>"));
-  EXPECT_LT(page.find("<td>wall / third</td>"), page.find("<td>ego / second</td>"));
+  EXPECT_LT(page.find("<td>our car / wall</td>"), page.find("<td>wall / third</td>"));
+  EXPECT_LT(page.find("<td>wall / third</td>"), page.find("<td>our car / second</td>"));
   EXPECT_EQ(count(page, "<caption>wall</caption>"), 1U);
   EXPECT_EQ(count(page, "<caption>third</caption>"), 1U);
 }
