@@ -181,14 +181,15 @@ class RankingTable {
     }
   }
 
-  // Paper has all rows that are described, and no scrolling.
+  // Paper has the first rows of a long table, and no scrolling.
   print() {
     this.open = null;
     this.putBack();
-    const wasLong = this.isLong;
-    if (wasLong) {
-      const rows = CANDIDATES.map((candidate) => this.row(candidate.row, candidate.row));
-      this.body.replaceChildren(...rows);
+    const most = 12;
+    if (DATA.rows.length > 2 * most) {
+      const rest = element("td", {colspan: "5"}, `${DATA.rows.length - most} more are left out.`);
+      this.body.replaceChildren(
+        ...DATA.rows.slice(0, most).map((_, i) => this.row(i, i)), element("tr", {}, rest));
       this.drawn = null;
     } else {
       this.draw(true);
