@@ -76,7 +76,7 @@ std::string figures(const Candidate& candidate) {
   if (candidate.origin != CandidateOrigin::grid) return {};
   std::string name = candidate.name.substr(0, candidate.name.rfind(" ("));
   for (const auto& [from, to] : {std::pair("brake ", ""), std::pair("speed up ", ""),
-                                 std::pair("m/s2", "m/s²"), std::pair(" deg", "°")}) {
+                                 std::pair(" m/s2", "\u00a0m/s²"), std::pair(" deg ", "°\u00a0")}) {
     const std::size_t at = name.find(from);
     if (at != std::string::npos) name.replace(at, std::strlen(from), to);
   }
@@ -288,9 +288,9 @@ private:
         fmt::format("It is first in {} {} trials in which friction, strengths and risk curves vary",
                     wins_[0] == samples ? "all" : fmt::format("{} of", wins_[0]), samples);
     if (rival_) {
-      text += fmt::format("; {}“{}”, here in place {}, in {}",
-                          wins_[0] + wins_[*rival_] == samples ? "" : "most often else ",
-                          told_apart(*rival_), result_.ranking[*rival_].place, wins_[*rival_]);
+      text += fmt::format("; in {}{} it is “{}”, here in place {}",
+                          wins_[0] + wins_[*rival_] == samples ? "the other " : "", wins_[*rival_],
+                          told_apart(*rival_), result_.ranking[*rival_].place);
     }
     if (first.separable || first.overtaken > separable_share) return text + ".";
     return text + (first.within_sampling_error

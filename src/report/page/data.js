@@ -223,10 +223,16 @@ function sceneOf(candidate) {
   // Whom it passes is a part of its way, and so is whom another manoeuvre hits.
   const reach = (pose) => Math.min(...points.map(([x, y]) => Math.hypot(x - pose.x, y - pose.y)));
   const near = candidate.first === null ? 12 : 5;
+  const ways = points.slice();
+  const comesNear = (body) => candidate.first === null &&
+    reach(candidate.poseOf(body, begin)) < 35 && [0.25, 0.5, 0.75].some((share) => {
+      const {x, y} = candidate.poseOf(body, mix(begin, until, share));
+      return ways.some((point) => Math.hypot(point[0] - x, point[1] - y) < near);
+    });
   const others = new Set(CANDIDATES.slice(0, 5).flatMap((each) => each.hit));
   for (const body of BODIES.filter((each) => !bodies.has(each))) {
     const pose = candidate.poseOf(body, begin);
-    if (reach(pose) < (others.has(body) ? 15 : near)) add(body, pose);
+    if (reach(pose) < (others.has(body) ? 15 : near) || comesNear(body)) add(body, pose);
   }
   return points;
 }

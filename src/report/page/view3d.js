@@ -515,7 +515,8 @@ class View3d {
       const point = this.onCanvas(x, y, pose.z + modelOf(body).height + 0.3);
       if (point) labels.above(text, point, [0, -15, 15], colour);
     };
-    for (const body of [EGO, ...candidate.hit.filter((each) => each !== EGO)]) {
+    const named = candidate.first === null ? BODIES : candidate.hit;
+    for (const body of [EGO, ...named.filter((each) => each !== EGO)]) {
       over(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
     }
     for (const {body, p, plan} of shows.elsewhere) {
