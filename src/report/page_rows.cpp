@@ -61,9 +61,10 @@ std::string kept_words(const Scenario& scenario, const CandidateResult& ranked) 
 }
 
 /// What the first contact changes where that is little against its closing speed, ", changes its
-/// velocity by 5 km/h"; empty where it is more than a brush.
+/// velocity by 5 km/h"; empty where it is more than a brush: a full hit changes the velocity of one
+/// of the two by half the closing speed or more.
 std::string brush_words(const CandidateResult& ranked) {
-  constexpr double little = 0.25;
+  constexpr double little = 1.0 / 3.0;
   const Contact& first = ranked.contacts.front();
   double own = 0.0;
   double its = 0.0;
