@@ -283,15 +283,22 @@ class PlanPane {
     const labels = new Labels(this.context, this.width, this.height);
     const boxes = new Map(BODIES.map(
       (body) => [body, this.boxOf(body, candidate.poseOf(body, time))]));
+    const hit = candidate.hit.filter((body) => body !== EGO && boxes.has(body));
     const isFree = (body, half) => ([x, y]) => ![...boxes].some(
       ([other, [left, top, right, bottom]]) => other !== body && x + half > left - 2 &&
         x - half < right + 2 && y > top - 1 && y < bottom + 10);
     const beside = (body, pose, text, colour, takesPart) => {
       const middle = this.to(...middleOfBody(body, pose));
       const [left, top, right, bottom] = this.boxOf(body, pose);
+      if (right < 0 || bottom < 0 || left > this.width || top > this.height) return;
       const half = labels.halfOf(text);
       const [x, y] = [clamp(middle[0], half + 2, this.width - half - 2), middle[1] + 4];
       const near = [[x, bottom + 13], [x, top - 4], [right + half + 5, y], [left - half - 5, y]];
+      // The side that is away from whom it crashes with comes first.
+      const isBelow = [EGO, ...hit].some((other) => other !== body && takesPart &&
+        boxes.get(other)[3] > bottom && boxes.get(other)[1] < bottom + 20 &&
+        boxes.get(other)[0] < right && boxes.get(other)[2] > left);
+      if (isBelow) near.unshift(...near.splice(1, 1));
       const far = [];
       for (let off = 16; takesPart && off < 100; off += 12) {
         for (const aside of [0, 40, -40]) {
@@ -304,7 +311,6 @@ class PlanPane {
         this.leader([at[0], at[1] < top ? at[1] + 3 : at[1] - 12], middle, colour);
       }
     };
-    const hit = candidate.hit.filter((body) => body !== EGO);
     const named = new Set(hit.map(structureOf));
     // Where many take no part, they stay without names.
     const most = candidate.first === null ? Infinity : 6;
