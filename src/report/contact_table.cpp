@@ -15,8 +15,8 @@ std::string row_of(const std::string& names, double time_s, double closing_mps,
   return fmt::format(
       "<tr><td>{}</td><td class='n'>{:.3f}</td><td class='n'>{}</td><td class='n'>{}</td>"
       "<td class='n'>{}</td>",
-      escape_xml(names), time_s, fixed_text(closing_mps, 1), fixed_text(a.exposure_mps, 1),
-      fixed_text(b.exposure_mps, 1));
+      escape_xml(names), time_s, fixed_text(3.6 * closing_mps, 0),
+      fixed_text(3.6 * a.exposure_mps, 0), fixed_text(3.6 * b.exposure_mps, 0));
 }
 
 /// What the contact does to both bodies, after SAE J224; fixed ones have no code.
@@ -31,7 +31,7 @@ std::string contact_table(const Scenario& scenario, Measure measure,
   const bool has_harm = measure == Measure::harm;
   std::string html =
       "<table class='parts contacts'><caption>contacts</caption><thead><tr><th>bodies</th>"
-      "<th>after s</th><th>closing m/s</th><th>exposure m/s, first</th><th>second</th>";
+      "<th>after s</th><th>closing km/h</th><th>exposure km/h, first</th><th>second</th>";
   if (has_harm) html += "<th>harm</th>";
   html += "<th>energy kJ</th><th>CDC</th>";
   html += "</tr></thead><tbody>\n";
@@ -41,7 +41,7 @@ std::string contact_table(const Scenario& scenario, Measure measure,
     std::string cdc;
     if (contact.own != nullptr) {
       const Contact& own = *contact.own;
-      html += row_of("ego / " + contact_name(scenario, own), own.time_of_impact_s,
+      html += row_of("our car / " + contact_name(scenario, own), own.time_of_impact_s,
                      own.closing_speed_mps, own.severity.ego, own.severity.other);
       harm = own.severity.harm;
       dissipated_j = own.severity.dissipated_j;

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -72,13 +71,45 @@ std::string way_words(double share) {
   return "steer " + how + (share > 0.0 ? "left" : "right");
 }
 
+/// The figures of a generated manoeuvre: " (4.35 m/s², 0.41° left)".
+std::string figures(const Candidate& candidate) {
+  if (candidate.origin != CandidateOrigin::grid) return {};
+  std::string name = candidate.name.substr(0, candidate.name.rfind(" ("));
+  for (const auto& [from, to] : {std::pair("brake ", ""), std::pair("speed up ", ""),
+                                 std::pair(" m/s2", "\u00a0m/s²"), std::pair(" deg ", "°\u00a0")}) {
+    const std::size_t at = name.find(from);
+    if (at != std::string::npos) name.replace(at, std::strlen(from), to);
+  }
+  return " (" + name + ")";
+}
+
+/// Whether a candidate brakes in its lane.
+bool brakes_straight(const Scenario& scenario, const Candidate& candidate) {
+  const double forward = scenario.ego.speed_mps < 0.0 ? -1.0 : 1.0;
+  return candidate.acceleration_mps2 * forward < 0.0 &&
+         std::abs(share_across(scenario, candidate)) < no_share_across;
+}
+
 class Words {
 public:
   Words(const Scenario& scenario, const RankResult& result, const std::vector<std::string>& scores)
-      : scenario_(scenario), result_(result), scores_(scores) {}
+      : scenario_(scenario), result_(result), scores_(scores) {
+    count_wins();
+    choose();
+  }
 
-  std::string manoeuvre(std::size_t row) const {
-    return plain_manoeuvre(scenario_, result_.candidates[result_.ranking[row].candidate]);
+  std::string manoeuvre(std::size_t row) const { return plain_manoeuvre(scenario_, of(row)); }
+
+  /// With its figures where another that the decision names is called alike.
+  std::string told_apart(std::size_t row) const {
+    const std::string words = manoeuvre(row);
+    const auto is_alike = [&](std::size_t other) {
+      return other != row && manoeuvre(other) == words;
+    };
+    const bool is_alone = !(rival_ && is_alike(*rival_)) &&
+                          std::none_of(chosen_.begin(), chosen_.end(),
+                                       [&](const auto& choice) { return is_alike(choice.first); });
+    return is_alone ? words : words + figures(of(row));
   }
 
   /// What comes of a row: "about 2 in 100 that somebody is seriously hurt".
@@ -111,25 +142,10 @@ public:
   }
 
   std::vector<Choice> choices() const {
-    const std::vector<CandidateResult>& rows = result_.ranking;
     std::vector<Choice> all;
-    const auto add = [&](std::size_t row, std::string role) {
-      all.push_back({row, std::move(role), manoeuvre(row), outcome(row, true)});
-    };
-    add(0, rows.size() < 2 ? "the only one" : "best");
-    if (rows.size() > 1) add(1, rows[1].place == rows[0].place ? "just as good" : "next best");
-    // Neighbours of a grid are much alike: the best that goes straight on, or elsewhere, says more.
-    const auto side = [&](std::size_t row) {
-      return side_of(scenario_, result_.candidates[rows[row].candidate]);
-    };
-    for (std::size_t row = 2; row + 1 < rows.size() && side(0) == side(1); ++row) {
-      if (!side(0) || !side(row) || side(row) == side(0) || !rows[row].feasible) continue;
-      if (side(0) != 0 && side(row) != 0) continue;
-      constexpr std::array<const char*, 3> ways{"to the right", "straight on", "to the left"};
-      add(row, fmt::format("best {}", ways.at(static_cast<std::size_t>(*side(row) + 1))));
-      break;
+    for (const auto& [row, role] : chosen_) {
+      all.push_back({row, role, told_apart(row), outcome(row, true)});
     }
-    if (rows.size() > 2) add(rows.size() - 1, fmt::format("worst of {}", rows.size()));
     return all;
   }
 
@@ -154,10 +170,7 @@ public:
                       "tells them apart.",
                       first.sharing));
     }
-    if (!result_.samples.empty() && result_.ranking.size() > 1 && first.sharing == 1 &&
-        first.sample_scores.size() >= range_sample_count(result_)) {
-      lines.push_back(stability(first));
-    }
+    if (!wins_.empty()) lines.push_back(stability(first));
     const std::string interval = interval_text(first);
     if (!interval.empty()) {
       lines.push_back(
@@ -175,6 +188,13 @@ public:
   std::vector<std::string> against() const {
     const CandidateResult& first = result_.ranking.front();
     std::vector<std::string> lines;
+    constexpr double often = 0.1;
+    if (result_.ranking.size() > 1 && (!first.separable || lost() > often)) {
+      // Another may be before the first more often than the next is.
+      const std::size_t other = rival_.value_or(1);
+      lines.push_back(fmt::format("{} as good: {}, {}.", first.sharing > 1 ? "Just" : "Nearly",
+                                  told_apart(other), outcome(other, true)));
+    }
     constexpr double near_limit = 0.95;
     if (!first.feasible) {
       lines.push_back("The vehicle cannot follow it: it " + demand_words(first.demand) + ".");
@@ -198,6 +218,65 @@ public:
   }
 
 private:
+  const Candidate& of(std::size_t row) const {
+    return result_.candidates[result_.ranking[row].candidate];
+  }
+
+  /// The rows that are set beside each other, and what each is.
+  void choose() {
+    const std::vector<CandidateResult>& rows = result_.ranking;
+    const auto add = [&](std::size_t row, std::string role) {
+      chosen_.emplace_back(row, std::move(role));
+    };
+    add(0, rows.size() < 2 ? "the only one" : "best");
+    if (rows.size() > 1) add(1, rows[1].place == rows[0].place ? "just as good" : "next best");
+    // What everybody asks first, and, of a grid, whose neighbours are much alike, the best that
+    // leads elsewhere.
+    const auto side = [&](std::size_t row) { return side_of(scenario_, of(row)); };
+    std::size_t braking = 0;
+    while (braking < rows.size() &&
+           !(rows[braking].feasible && brakes_straight(scenario_, of(braking)))) {
+      ++braking;
+    }
+    const bool goes_straight = side(0) == 0 && rows.size() > 1 && side(1) == 0;
+    if (braking > 1 && braking + 1 < rows.size()) add(braking, "best braking straight on");
+    for (std::size_t row = 2; row + 1 < rows.size() && goes_straight; ++row) {
+      if (!side(row) || side(row) == 0 || !rows[row].feasible) continue;
+      add(row, *side(row) > 0 ? "best to the left" : "best to the right");
+      break;
+    }
+    if (rows.size() > 2) add(rows.size() - 1, fmt::format("worst of {}", rows.size()));
+  }
+
+  /// How often each row would be first, over the samples of what is not known.
+  void count_wins() {
+    const std::vector<CandidateResult>& rows = result_.ranking;
+    const std::size_t samples = range_sample_count(result_);
+    if (result_.samples.empty() || rows.size() < 2 || rows.front().sharing > 1 ||
+        rows.front().sample_scores.size() < samples) {
+      return;
+    }
+    wins_.assign(rows.size(), 0);
+    for (std::size_t i = 0; i < samples; ++i) {
+      std::size_t best = 0;
+      for (std::size_t row = 1; row < rows.size(); ++row) {
+        if (!rows[row].feasible || rows[row].sample_scores.size() <= i) continue;
+        if (rows[row].sample_scores[i] < rows[best].sample_scores[i]) best = row;
+      }
+      ++wins_[best];
+    }
+    rival_ =
+        static_cast<std::size_t>(std::max_element(wins_.begin() + 1, wins_.end()) - wins_.begin());
+    if (wins_[*rival_] == 0) rival_.reset();
+  }
+
+  /// Share of the samples in which the first row is not first.
+  double lost() const {
+    if (wins_.empty()) return 0.0;
+    const auto samples = static_cast<double>(range_sample_count(result_));
+    return 1.0 - static_cast<double>(wins_[0]) / samples;
+  }
+
   std::string stability(const CandidateResult& first) const {
     const std::size_t samples = range_sample_count(result_);
     const CandidateResult& second = result_.ranking[1];
@@ -205,27 +284,14 @@ private:
       return "The next best scores alike; this one is first because " +
              tie_words(scenario_, first, second) + ".";
     }
-    // How often each would be first.
-    std::vector<std::size_t> wins(result_.ranking.size(), 0);
-    for (std::size_t i = 0; i < samples; ++i) {
-      std::size_t best = 0;
-      for (std::size_t row = 1; row < wins.size(); ++row) {
-        const CandidateResult& other = result_.ranking[row];
-        if (!other.feasible || other.sample_scores.size() <= i) continue;
-        if (other.sample_scores[i] < result_.ranking[best].sample_scores[i]) best = row;
-      }
-      ++wins[best];
-    }
-    const auto rival = std::max_element(wins.begin() + 1, wins.end());
     std::string text =
-        wins[0] == samples
-            ? fmt::format("It is first in all {} combinations of what is not known", samples)
-            : fmt::format("It is first in {} of {} combinations of what is not known; {}“{}”, in "
-                          "place {}, in {}",
-                          wins[0], samples, wins[0] + *rival == samples ? "" : "most often else ",
-                          manoeuvre(static_cast<std::size_t>(rival - wins.begin())),
-                          result_.ranking[static_cast<std::size_t>(rival - wins.begin())].place,
-                          *rival);
+        fmt::format("It is first in {} {} trials in which friction, strengths and risk curves vary",
+                    wins_[0] == samples ? "all" : fmt::format("{} of", wins_[0]), samples);
+    if (rival_) {
+      text += fmt::format("; in {}{} it is “{}”, here in place {}",
+                          wins_[0] + wins_[*rival_] == samples ? "the other " : "", wins_[*rival_],
+                          told_apart(*rival_), result_.ranking[*rival_].place);
+    }
     if (first.separable || first.overtaken > separable_share) return text + ".";
     return text + (first.within_sampling_error
                        ? ". Another sample of futures may put the next best before it."
@@ -235,6 +301,9 @@ private:
   const Scenario& scenario_;
   const RankResult& result_;
   const std::vector<std::string>& scores_;
+  std::vector<std::size_t> wins_;     ///< by row; empty where it is not known
+  std::optional<std::size_t> rival_;  ///< the row that is first most often but for the first
+  std::vector<std::pair<std::size_t, std::string>> chosen_;  ///< rows and their roles
 };
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace crashrank::detail {
 /// A row of the ranking that a page sets beside the first.
 struct Choice {
   std::size_t row = 0;    ///< of the ranking
-  std::string role;       ///< "best", "next best", "best straight on", "worst of 225"
-  std::string manoeuvre;  ///< see `plain_manoeuvre`
+  std::string role;       ///< "best", "next best", "best braking straight on", "worst of 225"
+  std::string manoeuvre;  ///< see `plain_manoeuvre`, with figures where others are called alike
   std::string outcome;    ///< "about 2 in 100", or the score with its unit
 };
 

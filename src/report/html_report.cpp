@@ -56,15 +56,24 @@ public:
       stage();
       table();
       uncertainty();
-      out_ += "<div id='candidates'>\n";
+      const std::size_t on_paper = described_on_paper();
+      out_ += fmt::format("<div id='candidates' class='{}'>\n", on_paper < few ? "many" : "");
       for (const std::size_t place : places_) candidate(place);
       out_ += "</div>\n";
+      if (places_.size() > on_paper) {
+        out_ += fmt::format("<p class='paper-only'>{} more are described on the screen.</p>\n",
+                            places_.size() - on_paper);
+      }
     }
     foot();
     return std::move(out_);
   }
 
 private:
+  // As page/style.css has them.
+  static constexpr std::size_t few = 5;
+  std::size_t described_on_paper() const { return result_.ranking.size() > 2 * few ? 3 : few; }
+
   const std::string& name_of(std::size_t place) const {
     return result_.candidates[result_.ranking[place].candidate].name;
   }
@@ -146,16 +155,29 @@ private:
     for (const detail::Choice& choice : choices) {
       const CandidateResult& ranked = result_.ranking[choice.row];
       out_ += "<tr><th scope='row'><span class='words'>" + choice.role + "</span>" +
-              escape_xml(choice.manoeuvre) + "</th><td data-title='hits '>" +
-              escape_xml(detail::contact_words(scenario_, ranked, true)) +
-              "</td><td><span class='bar' " +
-              share_style(ranked.score.value_or(ranked.score_interval.highest)) +
-              "></span>" + escape_xml(choice.outcome) + "</td>";
-      if (is_harm) out_ += "<td>" + escape_xml(hurt(ranked)) + "</td>";
+              escape_xml(choice.manoeuvre) + "</th><td data-title='" +
+              (detail::is_brush(ranked) ? "" : "hits ") + "'>" +
+              escape_xml(detail::contact_words(scenario_, ranked, true)) + "</td><td>" +
+              chance_bar(ranked) + "<span data-title='" + escape_xml(outcome) + ": '>" +
+              escape_xml(choice.outcome) + "</span></td>";
+      if (is_harm) out_ += "<td data-title='who: '>" + escape_xml(hurt(ranked)) + "</td>";
       out_ += "</tr>\n";
     }
     out_ += "</tbody></table>\n";
     if (!is_harm) paragraph("The measure is one of the crash, not of harm to people.");
+  }
+
+  /// As long as the chance, of a hundred on every page, or as the share of the worst score; none
+  /// where there is nothing to show.
+  std::string chance_bar(const CandidateResult& ranked) const {
+    const double score = ranked.score.value_or(ranked.score_interval.highest);
+    const bool is_harm = result_.measure == Measure::harm && !ranked.people.empty();
+    const double length = is_harm           ? detail::chance_of_any(ranked)
+                          : full_bar_ > 0.0 ? std::clamp(score / full_bar_, 0.0, 1.0)
+                                            : 0.0;
+    if (!(length > 0.0)) return {};
+    return fmt::format("<span class='bar whole' {}><span style='width:{:.1f}%'></span></span>",
+                       share_style(score), 100.0 * length);
   }
 
   /// "our car 2 in 100, saloon (2 people) 1 in 100 each"; those in most danger first.
@@ -282,8 +304,9 @@ private:
     out_ += "</tbody></table></div>\n";
     if (places_.size() < result_.ranking.size()) {
       out_ += fmt::format(
-          "<p class='hint'>{} candidates are drawn and described: the best and the worst.</p>\n",
-          places_.size());
+          "<p class='hint'>The best {} and the worst are drawn and described; {} of {} are "
+          "left out.</p>\n",
+          places_.size() - 1, result_.ranking.size() - places_.size(), result_.ranking.size());
     }
     out_ += "</section>\n";
   }
@@ -364,8 +387,8 @@ private:
 
   void damage(const CandidateResult& ranked) {
     out_ += "<div class='damage'><div>";
-    out_ += detail::parts_table(name_of_body(ego_body), models_[scenario_.ego.model].mesh,
-                                ranked.ego);
+    out_ +=
+        detail::parts_table(name_of_body(ego_body), models_[scenario_.ego.model].mesh, ranked.ego);
     for (const detail::DamagedBody& body : detail::damaged_others(scenario_, models_, ranked)) {
       out_ +=
           "</div>\n<div>" +
@@ -384,8 +407,8 @@ private:
       out_ += fmt::format(
           "<tr><td>{}</td><td class='n'>{:g}</td><td class='n'>{}</td><td class='n'>{:.0f}</td>"
           "</tr>\n",
-          escape_xml(name_of_body(risk.body)), risk.persons,
-          detail::chance_words(risk.probability), 3.6 * risk.exposure_mps);
+          escape_xml(name_of_body(risk.body)), risk.persons, detail::chance_words(risk.probability),
+          3.6 * risk.exposure_mps);
     }
     out_ += "</tbody></table>\n";
   }

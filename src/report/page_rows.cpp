@@ -45,7 +45,45 @@ std::string more_words(const Scenario& scenario, const CandidateResult& ranked) 
   return words;
 }
 
+/// "nothing; keeps 7.0 m and 1.9 s from van"; it touches nothing in any future.
+std::string kept_words(const Scenario& scenario, const CandidateResult& ranked) {
+  const auto from = [&](std::size_t actor) { return " from " + scenario.actors[actor].name; };
+  std::string words;
+  if (ranked.nearest) {
+    words = fmt::format("; keeps {:.1f} m", *ranked.least_distance_m);
+    if (ranked.nearest != ranked.soonest) words += from(*ranked.nearest);
+  }
+  if (ranked.soonest) {
+    words += fmt::format("{}{:.1f} s{}", words.empty() ? "; keeps " : " and ",
+                         *ranked.least_time_gap_s, from(*ranked.soonest));
+  }
+  return "nothing" + words;
+}
+
+/// What the first contact changes where that is little against its closing speed, ", changes its
+/// velocity by 5 km/h"; empty where it is more than a brush: a full hit changes the velocity of one
+/// of the two by half the closing speed or more.
+std::string brush_words(const CandidateResult& ranked) {
+  constexpr double little = 1.0 / 3.0;
+  const Contact& first = ranked.contacts.front();
+  double own = 0.0;
+  double its = 0.0;
+  for (const Contact& contact : ranked.contacts) {
+    if (contact.actor != first.actor) continue;
+    own = std::max(own, contact.severity.ego.delta_v_mps);
+    its = std::max(its, contact.severity.other.delta_v_mps);
+  }
+  const double most = std::max(own, its);
+  if (!(most > 0.0) || most > little * first.closing_speed_mps) return {};
+  return fmt::format(", changes {} velocity by {:.0f} km/h", its >= own ? "its" : "our",
+                     3.6 * most);
+}
+
 }  // namespace
+
+bool is_brush(const CandidateResult& ranked) {
+  return !ranked.first_touch && !ranked.contacts.empty() && !brush_words(ranked).empty();
+}
 
 std::string contact_words(const Scenario& scenario, const CandidateResult& ranked, bool in_short) {
   const auto when = [](double time_s, double speed_mps) {
@@ -57,16 +95,15 @@ std::string contact_words(const Scenario& scenario, const CandidateResult& ranke
     words =
         scenario.actors[touch.actor].name + when(touch.time_of_impact_s, touch.closing_speed_mps);
   } else if (ranked.contacts.empty()) {
-    words = passing_words(scenario, ranked);
-    const bool is_clear = ranked.grazes.empty() && ranked.collision_probability == 0.0;
-    if (in_short && is_clear && ranked.nearest) {
-      words = fmt::format("nothing, stays {:.1f} m from {}", *ranked.least_distance_m,
-                          scenario.actors[*ranked.nearest].name);
-    }
+    const bool is_clear =
+        ranked.score && ranked.grazes.empty() && ranked.collision_probability == 0.0;
+    words = is_clear ? kept_words(scenario, ranked) : passing_words(scenario, ranked);
   } else {
     const Contact& first = ranked.contacts.front();
     const std::string name = contact_name(scenario, first);
-    words = name + when(first.time_of_impact_s, first.closing_speed_mps);
+    const std::string brush = brush_words(ranked);
+    words = (brush.empty() ? "" : "brushes ") + name +
+            when(first.time_of_impact_s, first.closing_speed_mps) + brush;
     const std::string others = in_short ? ", " + more_words(scenario, ranked)
                                         : hit_names(scenario, ranked).substr(name.size());
     if (others.size() > 2) words += "; then" + others.substr(1);

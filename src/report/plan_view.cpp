@@ -263,7 +263,10 @@ std::string PlanView::draw(std::size_t place) const {
     if (kind != BodyKind::barrier && kind != BodyKind::pole && kind != BodyKind::building) {
       svg += canvas.nose(outline_of_actor(i), pose);
     }
-    if (canvas.shows(at, 0.0)) labels += canvas.label(at, scenario_.actors[i].name);
+    // Of a crash, those that take part; more names would lie over each other.
+    if ((is_hit || !hit) && canvas.shows(at, 0.0)) {
+      labels += canvas.label(at, scenario_.actors[i].name);
+    }
   }
   const Outline& own = outlines_[scenario_.ego.model];
   svg += canvas.body(own, ego.pose_at(0.0), "start");

@@ -198,6 +198,10 @@ class ReportTest(unittest.TestCase):
         self.assertLess(len(browser.run(names)), len(ranked))
         browser.run("document.querySelector('tr[data-row] .open').click()")
         self.assertIn("CDC", browser.run("document.querySelector('tr.detail').textContent"))
+        # Every column of the tables within has its title above it.
+        self.assertTrue(browser.run("""[...document.querySelectorAll("tr.detail table")].every(
+            ({tHead, tBodies}) => [...tBodies[0].rows[0].cells].every((cell, i) =>
+              tHead.rows[0].cells[i].offsetWidth === cell.offsetWidth))"""))
         row = int(browser.run("document.querySelector('tr[data-row]').dataset.row"))
         self.assertEqual(browser.run("stage.candidate.row"), row)
         self.assertEqual(browser.messages, [])

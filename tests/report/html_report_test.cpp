@@ -51,15 +51,15 @@ TEST(HtmlReport, ListsAndMarksContactsBetweenOthers) {
   told.push_into("third");
   const std::string page = html_report(told.scenario, told.models, told.result);
   for (const char* words :
-       {"<td>ego / wall</td><td class='n'>0.500</td>",
-        "<td>wall / third</td><td class='n'>0.750</td><td class='n'>5.0</td>"
-        "<td class='n'>6.2</td>",
+       {"<td>our car / wall</td><td class='n'>0.500</td>",
+        "<td>wall / third</td><td class='n'>0.750</td><td class='n'>18</td>"
+        "<td class='n'>22</td>",
         "<circle class='further'", "<title>wall / third, 0.750 s</title>",
         "others</h3>\n<ul><li>hit: wall is pushed into third", "; then second, wall / third"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
   }
-  EXPECT_LT(page.find("<td>ego / wall</td>"), page.find("<td>wall / third</td>"));
-  EXPECT_LT(page.find("<td>wall / third</td>"), page.find("<td>ego / second</td>"));
+  EXPECT_LT(page.find("<td>our car / wall</td>"), page.find("<td>wall / third</td>"));
+  EXPECT_LT(page.find("<td>wall / third</td>"), page.find("<td>our car / second</td>"));
   EXPECT_EQ(count(page, "<caption>wall</caption>"), 1U);
   EXPECT_EQ(count(page, "<caption>third</caption>"), 1U);
 }
@@ -148,6 +148,41 @@ TEST(HtmlReport, SaysWhatIsToBeDoneInOneSentence) {
   told.result.ranking[0].people = {{ego_body, 1.0, 0.1, 3.0, 0.0, 0.5},
                                    {0, 2.0, 0.05, 3.0, 0.0, 0.5}};
   EXPECT_EQ(sentence(), "Hit: about 19 in 100 that somebody is seriously hurt.");
+  // A bar is as long as the chance.
+  const std::string page = html_report(told.scenario, told.models, told.result);
+  EXPECT_NE(page.find("<span style='width:18.8%'>"), std::string::npos);
+}
+
+TEST(HtmlReport, TellsABrushFromAHit) {
+  Told told;
+  Contact& contact = told.result.ranking[1].contacts[0];
+  contact.closing_speed_mps = 20.0;
+  contact.severity.ego.delta_v_mps = 1.0;
+  contact.severity.other.delta_v_mps = 2.0;
+  const std::string brush =
+      "<td data-title=''>brushes wall after 0.50 s at 72 km/h, changes its "
+      "velocity by 7 km/h; then second</td>";
+  EXPECT_NE(html_report(told.scenario, told.models, told.result).find(brush), std::string::npos);
+  contact.severity.ego.delta_v_mps = 8.0;
+  const std::string hit = "<td data-title='hits '>wall after 0.50 s at 72 km/h; then second</td>";
+  EXPECT_NE(html_report(told.scenario, told.models, told.result).find(hit), std::string::npos);
+}
+
+TEST(HtmlReport, SaysWhatIsNearlyAsGoodAndWhatBrakesStraightOn) {
+  Told told;
+  told.result.ranking[0].separable = false;
+  const auto page = [&told] { return html_report(told.scenario, told.models, told.result); };
+  EXPECT_NE(page().find("<li>Nearly as good: hit, "), std::string::npos);
+  EXPECT_EQ(page().find("best braking straight on"), std::string::npos);
+  told.result.ranking[0].separable = true;
+  EXPECT_EQ(page().find("Nearly as good"), std::string::npos);
+  // Between the next best and the worst.
+  CandidateResult last = told.result.ranking[2];
+  told.result.candidates[last.candidate].acceleration_mps2 = -5.0;
+  told.result.candidates.emplace_back().name = "last";
+  last.candidate = 3;
+  told.result.ranking.push_back(last);
+  EXPECT_NE(page().find("best braking straight on</span>unknown"), std::string::npos);
 }
 
 }  // namespace

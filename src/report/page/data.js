@@ -53,6 +53,16 @@ function modelOf(body) {
 const tiltOf = (body) => body === EGO ? DATA.ego.tilt : DATA.actors[body].tilt;
 const nameOf = (body) => body === EGO ? "our car" : DATA.actors[body].name;
 
+// What an actor is called in a future that is not the likeliest.
+function nameElsewhere(body, p, plan) {
+  const turns = Math.abs(plan.a[plan.a.length - 1] - plan.a[0]) > 5000;
+  return `${shortened(nameOf(body))}, ${turns ? "if it turns" : "perhaps here"} (${percent(p)})`;
+}
+
+// Walls 1 to 4 are one structure.
+const structureOf = (body) =>
+  modelOf(body).fixed ? nameOf(body).replace(/[\s_-]*\d+$/, "") : null;
+
 // Words that fit a narrow place; the whole name stands in the text of the page.
 function shortened(words, most = 24) {
   const letters = [...words];
@@ -210,12 +220,19 @@ function sceneOf(candidate) {
       }
     }
   }
-  // Whom it passes is a part of its way.
+  // Whom it passes is a part of its way, and so is whom another manoeuvre hits.
   const reach = (pose) => Math.min(...points.map(([x, y]) => Math.hypot(x - pose.x, y - pose.y)));
   const near = candidate.first === null ? 12 : 5;
+  const ways = points.slice();
+  const comesNear = (body) => candidate.first === null &&
+    reach(candidate.poseOf(body, begin)) < 35 && [0.25, 0.5, 0.75].some((share) => {
+      const {x, y} = candidate.poseOf(body, mix(begin, until, share));
+      return ways.some((point) => Math.hypot(point[0] - x, point[1] - y) < near);
+    });
+  const others = new Set(CANDIDATES.slice(0, 5).flatMap((each) => each.hit));
   for (const body of BODIES.filter((each) => !bodies.has(each))) {
     const pose = candidate.poseOf(body, begin);
-    if (reach(pose) < near) add(body, pose);
+    if (reach(pose) < (others.has(body) ? 15 : near) || comesNear(body)) add(body, pose);
   }
   return points;
 }

@@ -277,31 +277,74 @@ class PlanPane {
     return [Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)];
   }
 
-  // Names below the bodies, or above; those that matter most first.
+  // Names beside the bodies, those that matter most first; those of bodies that crash stand further
+  // off, at the end of a line, where there is no room. A structure is named once.
   labels(candidate, time, shows) {
     const labels = new Labels(this.context, this.width, this.height);
-    const boxes = new Map(BODIES.map((body) => [body, this.boxOf(body, candidate.poseOf(body, time))]));
-    const isOnOther = (body, x, y, half) => [...boxes].some(([other, [left, top, right, bottom]]) =>
-      other !== body && x + half > left && x - half < right && y > top && y < bottom + 9);
-    const below = (body, pose, text, colour, mayCover) => {
-      const [x] = this.to(...middleOfBody(body, pose));
-      const [, top, , bottom] = this.boxOf(body, pose);
+    const boxes = new Map(BODIES.map(
+      (body) => [body, this.boxOf(body, candidate.poseOf(body, time))]));
+    const hit = candidate.hit.filter((body) => body !== EGO && boxes.has(body));
+    const isFree = (body, half) => ([x, y]) => ![...boxes].some(
+      ([other, [left, top, right, bottom]]) => other !== body && x + half > left - 2 &&
+        x - half < right + 2 && y > top - 1 && y < bottom + 10);
+    const beside = (body, pose, text, colour, takesPart) => {
+      const middle = this.to(...middleOfBody(body, pose));
+      const [left, top, right, bottom] = this.boxOf(body, pose);
+      if (right < 0 || bottom < 0 || left > this.width || top > this.height) return;
       const half = labels.halfOf(text);
-      const [free, taken] = [false, true].map((isTaken) => [bottom + 13, top - 4].filter(
-        (y) => isOnOther(body, x, y, half) === isTaken));
-      labels.add(text, x, mayCover ? free.concat(taken) : free, colour);
+      const [x, y] = [clamp(middle[0], half + 2, this.width - half - 2), middle[1] + 4];
+      const near = [[x, bottom + 13], [x, top - 4], [right + half + 5, y], [left - half - 5, y]];
+      // The side that is away from whom it crashes with comes first.
+      const isBelow = [EGO, ...hit].some((other) => other !== body && takesPart &&
+        boxes.get(other)[3] > bottom && boxes.get(other)[1] < bottom + 20 &&
+        boxes.get(other)[0] < right && boxes.get(other)[2] > left);
+      if (isBelow) near.unshift(...near.splice(1, 1));
+      const far = [];
+      for (let off = 16; takesPart && off < 100; off += 12) {
+        for (const aside of [0, 40, -40]) {
+          far.push([x + aside, top - 4 - off], [x + aside, bottom + 13 + off]);
+        }
+      }
+      const free = near.concat(far).filter(isFree(body, half));
+      const at = labels.add(text, takesPart ? free.concat(near) : free, colour);
+      if (at && far.some((place) => place[0] === at[0] && place[1] === at[1])) {
+        this.leader([at[0], at[1] < top ? at[1] + 3 : at[1] - 12], middle, colour);
+      }
     };
-    const hit = candidate.hit.filter((body) => body !== EGO);
-    const rest = BODIES.filter((body) => body !== EGO && !hit.includes(body));
+    const named = new Set(hit.map(structureOf));
+    // Where many take no part, they stay without names.
+    const most = candidate.first === null ? Infinity : 6;
+    const rest = BODIES.filter((body) => {
+      if (body === EGO || hit.includes(body)) return false;
+      const [left, top, right, bottom] = boxes.get(body);
+      const structure = structureOf(body);
+      if (right < 0 || bottom < 0 || left > this.width || top > this.height) return false;
+      if (structure === null) return true;
+      const isNew = !named.has(structure);
+      named.add(structure);
+      return isNew;
+    });
     for (const body of [EGO, ...hit]) {
-      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink, true);
+      beside(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink, true);
     }
     for (const {body, p, plan} of shows.elsewhere) {
-      below(body, poseOn(plan, time), percent(p) + " " + shortened(nameOf(body)), COLOURS.future, true);
+      beside(body, poseOn(plan, time), nameElsewhere(body, p, plan), COLOURS.future, true);
     }
-    for (const body of rest) {
-      below(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.soft, false);
+    for (const body of rest.length > most ? [] : rest) {
+      beside(body, candidate.poseOf(body, time), shortened(structureOf(body) ?? nameOf(body)),
+        COLOURS.soft, false);
     }
+  }
+
+  // From a name to the body that it belongs to.
+  leader(from, to, colour) {
+    const context = this.context;
+    context.strokeStyle = colour;
+    context.lineWidth = 1;
+    context.beginPath();
+    context.moveTo(...from);
+    context.lineTo(...to);
+    context.stroke();
   }
 
   scaleBar() {
@@ -339,18 +382,26 @@ class Labels {
     return this.context.measureText(text).width / 2;
   }
 
-  // `x` is the middle of the text, `bases` are heights at which it may stand, best first.
-  add(text, x, bases, colour) {
+  // `places` are those of the middle of the text at which it may stand, best first; returns the one
+  // that is taken.
+  add(text, places, colour) {
     const half = this.halfOf(text);
-    if (x < -half || x > this.width + half) return;
-    const covers = (at) => this.placed.some(([otherX, otherY, otherHalf]) =>
-      Math.abs(otherY - at[1]) < 13 && Math.abs(otherX - at[0]) < half + otherHalf + 3);
-    const at = bases.filter((y) => y > 0 && y < this.height + 12)
-      .map((y) => [clamp(x, half + 2, this.width - half - 2), clamp(y, 12, this.height - 4)])
-      .find((place) => !covers(place));
-    if (!at) return;
+    const covers = ([x, y]) => this.placed.some(([otherX, otherY, otherHalf]) =>
+      Math.abs(otherY - y) < 13 && Math.abs(otherX - x) < half + otherHalf + 3);
+    const at = places.find((place) => !covers(place) && place[0] > half && place[1] >= 12 &&
+      place[0] < this.width - half && place[1] < this.height - 3);
+    if (!at) return null;
     this.placed.push([...at, half]);
     drawLabel(this.context, text, at[0] - half, at[1], colour);
+    return at;
+  }
+
+  // At a point, or shifted up or down; moved inwards where the edge of the picture would cut it.
+  above(text, [x, y], shifts, colour) {
+    const half = this.halfOf(text);
+    if (x < -half || x > this.width + half || y < 0 || y > this.height + 12) return;
+    this.add(text, shifts.map((shift) => [clamp(x, half + 2, this.width - half - 2),
+      clamp(y + shift, 12, this.height - 4)]), colour);
   }
 }
 

@@ -18,7 +18,9 @@ class RankingTable {
     this.holder.classList.toggle("long", this.isLong);
     // Of long tables, as the style sheet says for wide and for narrow pages.
     this.narrow = matchMedia("(max-width: 700px)");
-    this.table.classList.toggle("calm", DATA.rows.every((row) => !row[WARNINGS]));
+    const isCalm = DATA.rows.every((row) => !row[WARNINGS]);
+    this.table.classList.toggle("calm", isCalm);
+    this.columns = isCalm ? 4 : 5;
     this.open = null;
     this.openHeight = 0;
     this.sorted = {column: 0, isDown: false};
@@ -98,7 +100,7 @@ class RankingTable {
   }
 
   space(height) {
-    const cell = element("td", {colspan: "5"});
+    const cell = element("td", {colspan: this.columns});
     cell.style.height = height + "px";
     return element("tr", {class: "space", "aria-hidden": "true"}, cell);
   }
@@ -163,7 +165,7 @@ class RankingTable {
 
   // What is known of a candidate stands in the page for print, and moves here when it is opened.
   detail(index) {
-    const cell = element("td", {colspan: "5"});
+    const cell = element("td", {colspan: this.columns});
     const section = document.getElementById("c" + (index + 1));
     if (section) cell.append(section);
     else cell.append("Only the best candidates and the worst are described; the JSON answer has all.");
@@ -181,14 +183,15 @@ class RankingTable {
     }
   }
 
-  // Paper has all rows that are described, and no scrolling.
+  // Paper has the first rows of a long table, and no scrolling.
   print() {
     this.open = null;
     this.putBack();
-    const wasLong = this.isLong;
-    if (wasLong) {
-      const rows = CANDIDATES.map((candidate) => this.row(candidate.row, candidate.row));
-      this.body.replaceChildren(...rows);
+    const most = 12;
+    if (DATA.rows.length > 2 * most) {
+      const rest = element("td", {colspan: this.columns}, `${DATA.rows.length - most} more are left out.`);
+      this.body.replaceChildren(
+        ...DATA.rows.slice(0, most).map((_, i) => this.row(i, i)), element("tr", {}, rest));
       this.drawn = null;
     } else {
       this.draw(true);

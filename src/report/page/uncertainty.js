@@ -90,7 +90,8 @@ function drawFuture(canvas, candidate, future) {
 // Places of the first candidates in every sample of what is not known, as wide as the page has room.
 function showStability() {
   const told = DATA.stability;
-  if (!told) return;
+  // Where all are first throughout there is nothing to see.
+  if (!told || told.places.flat().every((place) => place === 1)) return;
   const holder = document.getElementById("stability");
   const samples = told.places[0].length;
   const width = clamp(holder.clientWidth, 300, 1000);

@@ -513,13 +513,14 @@ class View3d {
     const over = (body, pose, text, colour) => {
       const [x, y] = middleOfBody(body, pose);
       const point = this.onCanvas(x, y, pose.z + modelOf(body).height + 0.3);
-      if (point) labels.add(text, point[0], [0, -15, 15].map((shift) => point[1] + shift), colour);
+      if (point) labels.above(text, point, [0, -15, 15], colour);
     };
-    for (const body of [EGO, ...candidate.hit.filter((each) => each !== EGO)]) {
+    const named = candidate.first === null ? BODIES : candidate.hit;
+    for (const body of [EGO, ...named.filter((each) => each !== EGO)]) {
       over(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
     }
     for (const {body, p, plan} of shows.elsewhere) {
-      over(body, poseOn(plan, time), percent(p) + " " + shortened(nameOf(body)), COLOURS.future);
+      over(body, poseOn(plan, time), nameElsewhere(body, p, plan), COLOURS.future);
     }
     for (const contact of candidate.contacts) {
       const age = time - contact.t;
@@ -534,8 +535,7 @@ class View3d {
         if (!tip || speed < 1) return;
         const isEgo = contact.bodies[side] === EGO;
         drawArrow(context, point, tip, isEgo ? COLOURS.ego : COLOURS.other);
-        labels.add("Δv " + kmh(speed), tip[0], [-6, 16, 32, -22].map((shift) => tip[1] + shift),
-          COLOURS.ink);
+        labels.above("Δv " + kmh(speed), tip, [-6, 16, 32, -22], COLOURS.ink);
       });
     }
   }
