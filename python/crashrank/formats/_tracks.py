@@ -26,7 +26,8 @@ class Motion:
     """How a body moves from time 0 on: constant speed and yaw rate, or timed poses.
 
     `poses` has seconds from time 0 and the middle of the box. It is empty where `speed_mps` and
-    `yaw_rate_radps` say all.
+    `yaw_rate_radps` say all. Outside of `recorded_s`, from when to when, s from time 0, it is this
+    module's continuation.
     """
 
     start: Pose
@@ -34,6 +35,7 @@ class Motion:
     yaw_rate_radps: float
     poses: list[tuple[float, Pose]]
     probability: float = 1.0
+    recorded_s: tuple[float, float] = (-math.inf, math.inf)
 
 
 def motions(body: Body, time_s: float, horizon_s: float, report: Report) -> list[Motion]:
@@ -123,9 +125,11 @@ def _motion(
     first, last = states[0], states[-1]
     end_s = time_s + horizon_s
     if len(states) == 1:
-        return _constant(
-            _shifted(_with_velocity(states, 0), time_s, name, report), track, horizon_s
-        )
+        state = _shifted(_with_velocity(states, 0), time_s, name, report)
+        motion = _constant(state, track, horizon_s)
+        if motion.speed_mps or motion.poses:
+            motion.recorded_s = (first.t_s - time_s, first.t_s - time_s)
+        return motion
     if first.t_s > end_s:
         report.leave_out(f"{name} appears at {first.t_s:g} s, after the horizon")
         return None
@@ -167,6 +171,7 @@ def _motion(
         start.yaw_rate_radps or 0.0,
         poses if len(poses) > 1 else [],
         track.probability,
+        (first.t_s - time_s, last.t_s - time_s),
     )
 
 
