@@ -313,7 +313,7 @@ def _report_overlaps(
     times = np.arange(0.0, horizon_s + 1e-9, 0.1)
     paths = [(ego.name, ego.size_m, _sampled(own, times))]
     paths += [(body.name, body.size_m, _sampled(found[0], times)) for body, found in others]
-    spans = np.array([(0.0, 0.0)] + [found[0].recorded_s for _, found in others])
+    spans = [(0.0, 0.0)] + [found[0].recorded_s for _, found in others]
     stands = [True] + [body.stands for body, _ in others]
     halves = [math.hypot(*size[:2]) / 2 for _, size, _ in paths]
     lows = np.array(
@@ -333,7 +333,7 @@ def _report_overlaps(
                 report.warn(f"overlaps were searched for in {_MOST_PAIRS} pairs of bodies only")
                 return
             other_name, other_size, other = paths[j]
-            begin, end = spans[[i, j], 0].max(), spans[[i, j], 1].min()
+            begin, end = max(spans[i][0], spans[j][0]), min(spans[i][1], spans[j][1])
             both = (times >= begin - 1e-6) & (times <= end + 1e-6)
             depths = overlap_depths(path[both], size[:2], other[both], other_size[:2])
             if depths.max(initial=0.0) <= 1e-3:
