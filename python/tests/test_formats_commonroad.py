@@ -244,6 +244,17 @@ def test_recorded_overlaps_are_said(tmp_path):
     assert "overlap as the file has them" in warnings[0]
 
 
+@pytest.mark.parametrize(("track", "place_m"), [(late(0, 3), 71.0), (late(4, 3), 53.0)])
+def test_overlaps_are_of_what_is_recorded(tmp_path, track, place_m):
+    """A car that is carried on into a parked one, or back out of one, never touched it."""
+    parked = obstacle(scenes.rectangle(scenes.CAR), (place_m, 3, 0), tag="staticObstacle")
+    found = read(tmp_path, scenes.commonroad(parked + track))
+    assert len(found.scenario["actors"]) == 2
+    assert not any("overlap" in each for each in found.report.warnings)
+    text = scenes.commonroad(parked.replace("<x>" + scenes.number(place_m), "<x>61") + track)
+    assert any("overlap" in each for each in read(tmp_path, text).report.warnings)
+
+
 def test_phantoms_are_left_out(tmp_path):
     body = f'<phantomObstacle id="5">{sets(1, 3)}</phantomObstacle>'
     found = read(tmp_path, scenes.commonroad(body))

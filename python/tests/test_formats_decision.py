@@ -166,6 +166,8 @@ def test_curves_are_text_json_and_plot():
     text = str(curve).splitlines()
     assert len(text) == 6 + len(curve.steps)
     assert "ego hits person at 2.1" in text[0]
+    assert "wheels that turn and brakes that act at once: the real ones are earlier" in text[0]
+    assert plain["note"] in text[0]
     with pytest.raises(dataclasses.FrozenInstanceError):
         curve.file = "other"
     pytest.importorskip("matplotlib")

@@ -92,14 +92,17 @@ CATALOGUE = (
 )
 
 
-def with_catalogue(name="Cars", entry="small", given=""):
+def with_catalogue(name="Cars", entry="small", given="", directory=""):
     reference = (
         f'<ScenarioObject name="third"><CatalogReference catalogName="{name}" entryName="{entry}">'
         f"{given}</CatalogReference></ScenarioObject>"
     )
     init = scenes.private("Ego", scenes.teleport((0, 0, 0)), scenes.speed(15))
     init += scenes.private("third", scenes.teleport((30, 0, 0)))
-    return scenes.openscenario(init, stories="", entities=reference)
+    text = scenes.openscenario(init, stories="", entities=reference)
+    stated = f'<VehicleCatalog><Directory path="{directory}"/></VehicleCatalog>'
+    locations = f"<CatalogLocations>{stated}</CatalogLocations>"
+    return text.replace("<CatalogLocations/>", locations) if directory else text
 
 
 def test_catalogues_in_the_folder_are_read(tmp_path):
@@ -129,6 +132,36 @@ def test_nothing_outside_of_the_folder_is_read(tmp_path):
     (inner / "cars.xosc").write_text(CATALOGUE)
     with pytest.raises(crashrank.BadInputError, match="does not have"):
         read(inner, with_catalogue(entry="huge"))
+
+
+def test_catalogues_are_those_of_the_stated_directory(tmp_path):
+    for name, length in (("a", 3.5), ("b", 4.2), ("c", 4.8)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "cars.xosc").write_text(CATALOGUE.replace("3.5", str(length)))
+    for directory, length in (("./b", 4.2), ("a", 3.5), (f"{tmp_path}/c/", 4.8)):
+        found = read(tmp_path, with_catalogue(directory=directory))
+        (third,) = found.scenario["actors"]
+        assert found.scenario["models"][third["model"]]["box"][0] == length
+    with pytest.raises(crashrank.BadInputError, match=r"both a/cars\.xosc and b/cars\.xosc have"):
+        read(tmp_path, with_catalogue())
+
+
+def test_directories_that_cannot_be_followed_are_refused(tmp_path):
+    inner = tmp_path / "inner"
+    (inner / "broken").mkdir(parents=True)
+    (inner / "broken/cars.xosc").write_text(CATALOGUE[:300])
+    (tmp_path / "cars.xosc").write_text(CATALOGUE)
+    (inner / "link").symlink_to(tmp_path)
+    for directory, text in (
+        ("./none", r"Directory \(line 5\) names \./none, which is no folder"),
+        ("..", r"Directory \(line 5\) leads out of the folder of the file: \.\."),
+        ("link", "leads out of the folder of the file: link"),
+        (".", "not in the directories of CatalogLocations"),
+        ("broken", r"'Cars', but broken/cars\.xosc, line 1, is no XML"),
+    ):
+        with pytest.raises(crashrank.BadInputError, match=text) as caught:
+            read(inner, with_catalogue(directory=directory))
+        assert "CatalogReference (line" in caught.value.place
 
 
 CHANGE = "<LateralAction><LaneChangeAction><LaneChangeTarget/></LaneChangeAction></LateralAction>"

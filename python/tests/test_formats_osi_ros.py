@@ -194,6 +194,53 @@ class TestBag:
         boxes = [found.scenario["models"][a["model"]]["box"] for a in found.scenario["actors"]]
         assert boxes == [[0.5, 0.5, 1.75], [4.0, 2.0, 1.5]]
 
+    def test_other_frames_than_that_of_the_odometry_are_refused(self, tmp_path):
+        def change(objects, _types):
+            objects.header.frame_id = "base_link"
+            return objects
+
+        with pytest.raises(crashrank.BadInputError) as caught:
+            read_bag(scenes.write_bag(tmp_path / "bag", change))
+        assert caught.value.place == "/localization/kinematic_state, message 1"
+        assert "in frame 'map', /objects, message 1 in 'base_link'" in caught.value.reason
+        assert "transform both to one frame" in caught.value.remedy
+
+    @pytest.mark.parametrize(
+        ("change", "place", "reason"),
+        [
+            (lambda k: setattr(k.predicted_paths[0].time_step, "sec", -1), "path 1", "-0.5 s"),
+            (lambda k: setattr(k.predicted_paths[0].time_step, "nanosec", 0), "path 1", "of 0 s"),
+            (lambda k: setattr(k.predicted_paths[0], "confidence", math.nan), "path 1", "nan"),
+            (
+                lambda k: setattr(k.initial_pose_with_covariance.pose.orientation, "w", 0.0),
+                "(number 1)", "unit quaternion",
+            ),
+            (
+                lambda k: setattr(k.predicted_paths[0].path[3].orientation, "w", 0.0),
+                "path 1", "unit quaternion",
+            ),
+        ],
+    )  # fmt: skip
+    def test_what_would_be_read_wrong_is_refused(self, tmp_path, change, place, reason):
+        def changed(objects, _types):
+            change(objects.objects[0].kinematics)
+            return objects
+
+        with pytest.raises(crashrank.BadInputError) as caught:
+            read_bag(scenes.write_bag(tmp_path / "bag", changed))
+        assert caught.value.place.startswith("/objects, message 1, object 02020202 (number 1)")
+        assert caught.value.place.endswith(place)
+        assert reason in caught.value.reason
+
+    def test_paths_of_no_confidence_are_left_out(self, tmp_path):
+        def change(objects, _types):
+            objects.objects[0].kinematics.predicted_paths[0].confidence = 0.0
+            return objects
+
+        found = read_bag(scenes.write_bag(tmp_path / "bag", change))
+        assert "poses" not in found.scenario["actors"][0]
+        assert "object 02020202: predicted paths of confidence 0" in found.report.left_out
+
 
 class TestMarkers:
     @pytest.fixture(autouse=True)

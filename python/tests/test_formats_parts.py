@@ -221,6 +221,21 @@ def test_jumps_and_spins_are_reported():
         assert math.degrees(turn) / (u - t) < 720
 
 
+@pytest.mark.parametrize(("kind", "leap_m"), [("pedestrian", 0.92), ("bicycle", 2.6)])
+def test_persons_faster_than_they_can_be_are_reported(kind, leap_m):
+    def warnings(ahead_m):
+        states = straight(np.arange(0, 3, 0.1), 1.4)
+        states[15:] = [State(s.t_s, Pose(s.pose.x_m + ahead_m, 0, 0)) for s in states[15:]]
+        report = Report("x", "y")
+        person = Body("b", "place", kind, (0.5, 0.5, 1.75), [Track(states)])
+        (motion,) = motions(person, 0.0, 2.5, report)
+        assert motion.poses[-1][1].x_m == pytest.approx(1.4 * 2.5 + ahead_m)
+        return report.warnings
+
+    assert "b jumps at 1.5 s, faster than" in warnings(leap_m - 0.14)[0]
+    assert not warnings(0.8 * leap_m - 0.14)
+
+
 def test_one_state_moves_on_with_its_velocity():
     ahead = State(0.0, Pose(0, 0, 0), (8.0, 0.0), 0.1)
     motion, _ = one_motion([ahead])

@@ -46,6 +46,7 @@ def test_columns_in_any_order_with_predictions(tmp_path):
         (f"{HEAD}\n0,,0,0,0\n", "line 2, id", "is empty"),
         (f"{HEAD},kind\n0,a,0,0,0,lorry\n", "line 2, kind", "is 'lorry'"),
         (f"{HEAD},length_m\n0,a,0,0,0,-4\n", "line 2, length_m", "is -4"),
+        (f"{HEAD}\n0,a,0,0,0\n1,a,9,0,0\n0.0,a,5,0,0\n", "line 4, t_s", "of a in line 2"),
         (f"{HEAD}\n", "", "has no poses"),
         ("\n", "line 1", "no column t_s"),
     ],

@@ -43,6 +43,8 @@ _OBJECTS = (
     "autoware_auto_perception_msgs/msg/PredictedObjects",
 )
 _ODOMETRY = "nav_msgs/msg/Odometry"
+# Of the square of a quaternion's length, as of tf2.
+_UNIT_TOLERANCE = 0.01
 _USUAL_TOPIC = "/localization/kinematic_state"
 
 # Members of the messages, for bags that do not hold their definitions.
@@ -188,7 +190,8 @@ def _read(bag: _Bag, chosen: str | None, at_s: float, horizon_s: float, report: 
     place, stamp_s, message = latest
     if at_s - (stamp_s - first_s) > 1.0:
         report.warn(f"the last objects are {at_s - (stamp_s - first_s):.3g} s old")
-    own = _ego(bag, chosen, first_s, at_s, report)
+    frame = message.header.frame_id
+    own = _ego(bag, chosen, first_s, at_s, (place, frame), report)
     if len(message.objects) > MAX_OBJECTS:
         refuse_size(bag.file, place, f"has more than {MAX_OBJECTS} objects", "leave some out")
     bodies = [
@@ -200,7 +203,11 @@ def _read(bag: _Bag, chosen: str | None, at_s: float, horizon_s: float, report: 
     return make_document(Scene(name, at_s, own, bodies, report, horizon_s=horizon_s))
 
 
-def _ego(bag: _Bag, chosen: str | None, first_s: float, at_s: float, report: Report) -> Body:
+def _ego(
+    bag: _Bag, chosen: str | None, first_s: float, at_s: float, objects: tuple[str, str],
+    report: Report,
+) -> Body:  # fmt: skip
+    """Return the body of an odometry; `objects` are the place and the frame of the objects."""
     topics = bag.topics(_ODOMETRY)
     topic = chosen if chosen is not None else (_USUAL_TOPIC if _USUAL_TOPIC in topics else None)
     if topic is None and len(topics) == 1:
@@ -214,6 +221,12 @@ def _ego(bag: _Bag, chosen: str | None, first_s: float, at_s: float, report: Rep
     states: list[State] = []
     older = 0
     for place, stamp_s, message in bag.messages(topic):
+        if message.header.frame_id != objects[1]:
+            refuse(
+                bag.file, place,
+                f"is in frame {message.header.frame_id!r}, {objects[0]} in {objects[1]!r}",
+                "transform both to one frame and record them again",
+            )  # fmt: skip
         t_s = stamp_s - first_s
         if t_s < at_s - _MARGIN_S:
             older += 1
@@ -243,6 +256,8 @@ def _pose(file: str, place: str, pose: Any) -> Pose:
     numbers = (pose.position.x, pose.position.y, q.x, q.y, q.z, q.w)
     if not all(math.isfinite(value) and abs(value) < 1e8 for value in numbers):
         refuse(file, place, "has a pose that is not finite", "remove it")
+    if abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1.0) > _UNIT_TOLERANCE:
+        refuse(file, place, "has a rotation that is no unit quaternion", "normalise it")
     yaw = math.atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))
     return Pose(pose.position.x, pose.position.y, yaw)
 
@@ -258,7 +273,7 @@ def _twist(file: str, place: str, yaw_rad: float, twist: Any) -> tuple[tuple[flo
 
 def _body(file: str, place: str, i: int, found: Any, stamp_s: float, report: Report) -> Body:
     name = f"object {bytes(found.object_id.uuid).hex()[:8]}"
-    place = f"{place}, object {i + 1}"
+    place = f"{place}, {name} (number {i + 1})"
     kinematics = found.kinematics
     pose = _pose(file, place, kinematics.initial_pose_with_covariance.pose)
     twist = kinematics.initial_twist_with_covariance.twist
@@ -270,15 +285,22 @@ def _body(file: str, place: str, i: int, found: Any, stamp_s: float, report: Rep
     offset = (middle.x_m, middle.y_m)
     now = State(stamp_s, moved(pose, *offset), velocity, rate)
     tracks = []
-    for predicted in list(kinematics.predicted_paths)[:MAX_PATHS]:
+    for p, predicted in enumerate(list(kinematics.predicted_paths)[:MAX_PATHS]):
+        path = f"{place}, predicted path {p + 1}"
         step_s = predicted.time_step.sec + 1e-9 * predicted.time_step.nanosec
         confidence = float(predicted.confidence)
-        if not (step_s > 0.0 and confidence > 0.0 and math.isfinite(confidence)):
+        if not (step_s > 0.0 and 0.0 <= confidence < math.inf):
+            refuse(
+                file, path, f"has a time_step of {step_s:g} s and the confidence {confidence:g}",
+                "give a time_step above 0 and a finite confidence, or remove the path",
+            )  # fmt: skip
+        if not confidence:
+            report.leave_out(f"{name}: predicted paths of confidence 0")
             continue
         states = [now]
         for k, each in enumerate(list(predicted.path)[:2_000]):
             if k:
-                at = moved(_pose(file, place, each), *offset)
+                at = moved(_pose(file, path, each), *offset)
                 states.append(State(stamp_s + k * step_s, at))
         tracks.append(Track(states, confidence))
     if len(kinematics.predicted_paths) > MAX_PATHS:

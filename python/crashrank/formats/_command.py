@@ -62,7 +62,8 @@ def _converted(options: argparse.Namespace) -> tuple[str, dict[str, Any], list[s
     horizon = {} if options.horizon is None else {"horizon_s": options.horizon}
     if options.format == "survey":
         return survey_table(options.file, **horizon), {}, []
-    reader, time_s, curve = reader_of(options.file, options.format), options.time, None
+    reader = reader_of(options.file, options.format, "survey")
+    time_s, curve = options.time, None
     if options.decide:
         curve = find_decision_point(
             options.file, format=options.format, ego=options.ego, time_s=time_s, **horizon,

@@ -13,6 +13,9 @@ from .._tables import missing
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+AT_ONCE = (
+    "latest moments, for wheels that turn and brakes that act at once: the real ones are earlier"
+)
 _COLOURS = {
     "going on": "#c0392b",
     "braking": "#e08e0b",
@@ -107,7 +110,8 @@ class DecisionCurve:
     """What could be chosen before a contact, moment by moment; made by `find_decision_point`.
 
     The last moment of a kind is the latest of `steps` at which it holds: from the next step on it
-    does not, so that the true moment lies less than a step later. None where no step has it.
+    does not. These are latest moments, for wheels that turn and brakes that act at once: the real
+    ones are earlier. None where no step has it.
 
     Examples
     --------
@@ -168,7 +172,7 @@ class DecisionCurve:
             yield key, text, step, None if step is None else getattr(step, way)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain dicts and lists: the members, and under ``last`` the last moments."""
+        """Return plain dicts and lists: the members, the last moments, and a note on them."""
         last = {
             key: None
             if step is None or choice is None
@@ -181,7 +185,7 @@ class DecisionCurve:
         }
         members = dataclasses.asdict(self)
         steps = members.pop("steps")
-        return {**members, "last": last, "steps": steps}
+        return {**members, "note": AT_ONCE, "last": last, "steps": steps}
 
     def to_json(self) -> str:
         """Return `to_dict` as JSON text."""
@@ -191,7 +195,7 @@ class DecisionCurve:
         """Return the last moments and the table of all steps as text."""
         found = [
             f"{self.ego} hits {self.other} at {self.contact_time_s:.2f} s; scores in "
-            f"{self.measure_unit}, steps of {self.step_s:g} s"
+            f"{self.measure_unit}, steps of {self.step_s:g} s; {AT_ONCE}"
         ]
         for _, text, step, choice in self._decisions():
             if step is None or choice is None:

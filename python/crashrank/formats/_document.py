@@ -309,10 +309,11 @@ def _report_overlaps(
     horizon_s: float,
     report: Report,
 ) -> None:
-    """Warn of bodies whose recorded boxes overlap: no crash of the file, but what it states."""
+    """Warn of bodies whose boxes overlap where the file has both: no crash, but what it states."""
     times = np.arange(0.0, horizon_s + 1e-9, 0.1)
-    paths = [(ego.name, ego.size_m, _sampled(own, times[:1]))]
+    paths = [(ego.name, ego.size_m, _sampled(own, times))]
     paths += [(body.name, body.size_m, _sampled(found[0], times)) for body, found in others]
+    spans = [(0.0, 0.0)] + [found[0].recorded_s for _, found in others]
     stands = [True] + [body.stands for body, _ in others]
     halves = [math.hypot(*size[:2]) / 2 for _, size, _ in paths]
     lows = np.array(
@@ -332,15 +333,16 @@ def _report_overlaps(
                 report.warn(f"overlaps were searched for in {_MOST_PAIRS} pairs of bodies only")
                 return
             other_name, other_size, other = paths[j]
-            count = min(len(path), len(other))
-            depths = overlap_depths(path[:count], size[:2], other[:count], other_size[:2])
-            if depths.max() <= 1e-3:
+            begin, end = max(spans[i][0], spans[j][0]), min(spans[i][1], spans[j][1])
+            both = (times >= begin - 1e-6) & (times <= end + 1e-6)
+            depths = overlap_depths(path[both], size[:2], other[both], other_size[:2])
+            if depths.max(initial=0.0) <= 1e-3:
                 continue
             found += 1
             if found > _MOST_WARNINGS:
                 report.warn("more pairs of bodies overlap")
                 return
-            first = times[int(np.argmax(depths > 1e-3))]
+            first = times[both][int(np.argmax(depths > 1e-3))]
             report.warn(
                 f"{name} and {other_name} overlap as the file has them, from {first:.2g} s on and "
                 f"by up to {depths.max():.2g} m"

@@ -1,4 +1,4 @@
-"""OpenSCENARIO: entities and the catalogues that lie in the scenario's folder or below."""
+"""OpenSCENARIO: entities, inline or of catalogues in the scenario's folder or below."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Entity:
 def read_entities(root: Node, parameters: Parameters, report: Report) -> dict[str, Entity]:
     """Return the entities of a scenario by name."""
     found: dict[str, Entity] = {}
-    catalogues = _Catalogues(os.path.dirname(root.file) or ".", report)
+    catalogues = _Catalogues(root, parameters, report)
     for node in root.need("Entities").children("ScenarioObject"):
         name = parameters.text(node, "name")
         if len(found) == MAX_ENTITIES:
@@ -135,59 +135,100 @@ def _wheelbase(node: Node, scope: Parameters) -> float | None:
 
 
 class _Catalogues:
-    """Catalogues in a folder and below, by name. Nothing outside of the folder is read."""
+    """Catalogues by name, of the directories of CatalogLocations, else of the folder and below.
 
-    def __init__(self, folder: str, report: Report) -> None:
-        self._folder = folder
+    Nothing outside of the folder is read.
+    """
+
+    def __init__(self, root: Node, parameters: Parameters, report: Report) -> None:
+        self._base = os.path.realpath(os.path.dirname(root.file) or ".")
+        places = root.child("CatalogLocations")
+        tags = [f"{each}Catalog" for each in _OBJECTS]
+        kinds = [] if places is None else places.children(*tags)
+        self._stated = [node for kind in kinds for node in kind.children("Directory")]
+        self._parameters = parameters
         self._report = report
-        self._known: dict[str, Node] | None = None
+        self._known: dict[str, dict[str, Node]] | None = None  # by name and file
+        self._problems: list[tuple[str, str]] = []
 
     def find(self, reference: Node, parameters: Parameters) -> tuple[Node, Parameters]:
         """Return the entry that a `CatalogReference` names, and its parameters."""
         catalogue = parameters.text(reference, "catalogName")
         entry = parameters.text(reference, "entryName")
         if self._known is None:
-            self._known = dict(self._read())
-        node = self._known.get(catalogue)
-        if node is None:
+            self._known = {}
+            for node in self._read():
+                self._known.setdefault(node.get("name") or "", {})[node.file] = node
+        found = list(self._known.get(catalogue, {}).values())
+        if len(found) != 1:
+            where = "the directories of CatalogLocations" if self._stated else "the folder"
+            reason, remedy = (
+                f"which is not in {where} of the file",
+                "put it there; paths that lead out of the folder are not followed",
+            )
+            if found:
+                first, second = (os.path.relpath(node.file, self._base) for node in found[:2])
+                reason = f"which both {first} and {second} have"
+                remedy = "name the Directory of one in CatalogLocations, or rename the other"
+            elif self._problems:
+                reason, remedy = self._problems[0]
             refuse(
-                reference.file, reference.place,
-                f"names the catalogue {catalogue!r}, which is not in the folder of the file",
-                "put it there or below; paths that lead out of the folder are not followed",
+                reference.file, reference.place, f"names the catalogue {catalogue!r}, {reason}",
+                remedy,
             )  # fmt: skip
-        for each in node.children(*_OBJECTS):
+        for each in found[0].children(*_OBJECTS):
             if each.get("name") == entry:
                 given = assignments(reference.child("ParameterAssignments"), parameters)
                 scope = Parameters().declared(each.child("ParameterDeclarations"), given)
                 return each, scope
+        name = os.path.relpath(found[0].file, self._base)
         raise input_error(
-            reference.file, reference.place, f"names {entry!r}, which {node.file} does not have",
+            reference.file, reference.place, f"names {entry!r}, which {name} does not have",
             "correct the name",
         )  # fmt: skip
 
-    def _read(self) -> Iterator[tuple[str, Node]]:
-        """Return the catalogues by name; files that are none are passed over."""
-        base = os.path.realpath(self._folder)
-        count = 0
-        for visited, (at, folders, files) in enumerate(os.walk(base)):
+    def _folders(self) -> Iterator[tuple[str, list[str]]]:
+        """Return the folders that may hold catalogues, and their files."""
+        for node in self._stated:
+            path = self._parameters.text(node, "path")
+            at = os.path.realpath(os.path.join(self._base, path))
+            if os.path.commonpath((self._base, at)) != self._base:
+                self._problems.append((
+                    f"but {node.place} leads out of the folder of the file: {path}",
+                    "copy that folder into the one of the file, and name it there",
+                ))  # fmt: skip
+            elif not os.path.isdir(at):
+                self._problems.append((
+                    f"but {node.place} names {path}, which is no folder",
+                    "correct the path, which is relative to the file, or create the folder",
+                ))  # fmt: skip
+            else:
+                yield at, next(os.walk(at), (at, [], []))[2]
+        if self._stated:
+            return
+        for visited, (at, folders, files) in enumerate(os.walk(self._base)):
             if visited >= MAX_FOLDERS:
                 self._report.warn(f"only {MAX_FOLDERS} folders were searched for catalogues")
                 return
-            if os.path.relpath(at, base).count(os.sep) >= MAX_DEPTH:
+            if os.path.relpath(at, self._base).count(os.sep) >= MAX_DEPTH:
                 folders.clear()
             folders.sort()
-            for name in sorted(files):
-                path = os.path.join(at, name)
-                if not name.lower().endswith(".xosc") or os.path.islink(path):
-                    continue
-                count += 1
-                if count > MAX_CATALOGUES:
-                    self._report.warn(f"only {MAX_CATALOGUES} files were searched for catalogues")
-                    return
-                try:
-                    root = read_xml(path, "OpenSCENARIO", "OpenSCENARIO file")
-                except Error:
-                    continue
-                found = root.child("Catalog")
-                if found is not None:
-                    yield found.get("name") or "", found
+            yield at, files
+
+    def _read(self) -> Iterator[Node]:
+        """Return the catalogues; files that are none are passed over, those no XML noted."""
+        paths = (os.path.join(at, name) for at, files in self._folders() for name in sorted(files))
+        ours = (path for path in paths if path.lower().endswith(".xosc"))
+        for count, path in enumerate(path for path in ours if not os.path.islink(path)):
+            if count == MAX_CATALOGUES:
+                self._report.warn(f"only {MAX_CATALOGUES} files were searched for catalogues")
+                return
+            try:
+                found = read_xml(path, "OpenSCENARIO", "OpenSCENARIO file").child("Catalog")
+            except Error as error:
+                name = os.path.relpath(path, self._base)
+                place = f"{name}, {error.place}," if error.place else name
+                self._problems.append((f"but {place} {error.reason}", error.remedy))
+                continue
+            if found is not None:
+                yield found

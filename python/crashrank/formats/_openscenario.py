@@ -45,7 +45,8 @@ def read_openscenario(
     Parameters
     ----------
     path : path
-        The file. Catalogues are searched for in its folder and below.
+        The file. Catalogues are those of the directories of its CatalogLocations, which lie in its
+        folder or below; without any they are searched for there.
     time_s : float, optional
         Moment of decision, seconds of simulation. Default: 0.
     ego : str, optional

@@ -38,10 +38,14 @@ def format_of(path: str) -> str | None:
         return "poses-csv"  # whose reader says why it cannot be read
 
 
-def reader_of(path: str, name: str | None = None) -> Callable[..., Imported]:
-    """Return the reader of a format, or the one for a file. Raises `UsageError` without one."""
+def reader_of(path: str, name: str | None = None, *others: str) -> Callable[..., Imported]:
+    """Return the reader of a format, or the one for a file.
+
+    Raises `UsageError` without one, which names the formats and `others` that can be chosen.
+    """
     chosen = format_of(path) if name is None else name
     if chosen in READERS:
         return READERS[chosen]
     what = "its format is not known" if name is None else f"there is no reader of {name!r}"
-    raise choice_error(path if name is None else "", "format", what, f"choose {', '.join(READERS)}")
+    remedy = f"choose {', '.join([*READERS, *others])}"
+    raise choice_error(path if name is None else "", "format", what, remedy)

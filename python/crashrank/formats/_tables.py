@@ -118,7 +118,8 @@ class _Rows:
     line: int
     kind: str
     sides: tuple[float, float, float]
-    states: dict[str, list[State]] = field(default_factory=dict)
+    # By prediction and time, with their lines.
+    states: dict[str, dict[float, tuple[int, State]]] = field(default_factory=dict)
     probabilities: dict[str, float] = field(default_factory=dict)
 
     def body(self, name: str, report: Report) -> Body:
@@ -129,7 +130,7 @@ class _Rows:
             report.assume(f"no kind is stated, so it is a {kind}", name)
         size = completed_size(kind, *self.sides, report, name)
         tracks = [
-            Track(checked_track(states), self.probabilities[key])
+            Track([state for _, (_, state) in sorted(states.items())], self.probabilities[key])
             for key, states in self.states.items()
         ]
         stands = kind in FIXED or (
@@ -172,8 +173,15 @@ class _Pose:
         if prediction not in rows.states:
             stated = bool(self._text("probability"))
             probability = self._number("probability", 1e-9, 1.0) if stated else 1.0
-            rows.states[prediction], rows.probabilities[prediction] = [], probability
-        rows.states[prediction].append(State(self._number("t_s", -1e9, 1e10), pose, velocity))
+            rows.states[prediction], rows.probabilities[prediction] = {}, probability
+        t_s = self._number("t_s", -1e9, 1e10)
+        row = (self._line, State(t_s, pose, velocity))
+        first, _ = rows.states[prediction].setdefault(round(t_s, 9), row)
+        if first != self._line:
+            refuse(
+                self._file, f"{place}, t_s", f"is {t_s:g}, as of {name} in line {first}",
+                "leave one of both out",
+            )  # fmt: skip
 
     def _new(self) -> _Rows:
         kind = self._text("kind")

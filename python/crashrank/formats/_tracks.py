@@ -9,10 +9,13 @@ from __future__ import annotations
 import bisect
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 from ._scene import Body, Pose, Report, State, Track, moved, wrapped
 
 MAX_SPEED_MPS = 150.0
+# What a person reaches on foot, and on a bicycle: faster ones are measured so, and kept.
+LEAP_MPS = {"pedestrian": 8.0, "bicycle": 25.0}
 MAX_TURN_RADPS = math.radians(700.0)
 LEAST_STEP_S = 0.005
 STANDING_MPS = 0.05
@@ -26,7 +29,8 @@ class Motion:
     """How a body moves from time 0 on: constant speed and yaw rate, or timed poses.
 
     `poses` has seconds from time 0 and the middle of the box. It is empty where `speed_mps` and
-    `yaw_rate_radps` say all.
+    `yaw_rate_radps` say all. Outside of `recorded_s`, from when to when, s from time 0, it is this
+    module's continuation.
     """
 
     start: Pose
@@ -34,6 +38,7 @@ class Motion:
     yaw_rate_radps: float
     poses: list[tuple[float, Pose]]
     probability: float = 1.0
+    recorded_s: tuple[float, float] = (-math.inf, math.inf)
 
 
 def motions(body: Body, time_s: float, horizon_s: float, report: Report) -> list[Motion]:
@@ -48,7 +53,7 @@ def motions(body: Body, time_s: float, horizon_s: float, report: Report) -> list
         return [Motion(body.tracks[0].states[0].pose, 0.0, 0.0, [])]
     found = []
     for track in body.tracks:
-        motion = _motion(track, body.name, time_s, horizon_s, report)
+        motion = _motion(track, body, time_s, horizon_s, report)
         if motion is not None:
             found.append(motion)
     total = sum(each.probability for each in found)
@@ -117,15 +122,17 @@ def sideways_speed(state: State) -> float:
 
 
 def _motion(
-    track: Track, name: str, time_s: float, horizon_s: float, report: Report
+    track: Track, body: Body, time_s: float, horizon_s: float, report: Report
 ) -> Motion | None:
-    states = track.states
+    name, states = body.name, track.states
     first, last = states[0], states[-1]
     end_s = time_s + horizon_s
     if len(states) == 1:
-        return _constant(
-            _shifted(_with_velocity(states, 0), time_s, name, report), track, horizon_s
-        )
+        state = _shifted(_with_velocity(states, 0), time_s, name, report)
+        motion = _constant(state, track, horizon_s)
+        if motion.speed_mps or motion.poses:
+            motion.recorded_s = (first.t_s - time_s, first.t_s - time_s)
+        return motion
     if first.t_s > end_s:
         report.leave_out(f"{name} appears at {first.t_s:g} s, after the horizon")
         return None
@@ -134,6 +141,7 @@ def _motion(
         return None
     cleaned = Track(_cleaned(states, name, time_s, end_s, report), track.probability)
     states = cleaned.states
+    _report_leaps(states, body, report)
     first, last = states[0], states[-1]
     if first.t_s > time_s + _SAME_TIME_S:
         report.warn(
@@ -167,6 +175,7 @@ def _motion(
         start.yaw_rate_radps or 0.0,
         poses if len(poses) > 1 else [],
         track.probability,
+        (first.t_s - time_s, last.t_s - time_s),
     )
 
 
@@ -224,6 +233,19 @@ def _cleaned(
             report.warn(f"{name} jumps {way:.3g} m at {state.t_s:g} s: cut there, and continued")
             break
     return kept
+
+
+def _report_leaps(states: list[State], body: Body, report: Report) -> None:
+    """Warn of a person who moves faster than one can."""
+    most = LEAP_MPS.get(body.kind, math.inf)
+    leaps = [
+        f"{b.t_s:g}"
+        for a, b in pairwise(states)
+        if math.dist(a.pose[:2], b.pose[:2]) > most * max(b.t_s - a.t_s, LEAST_STEP_S)
+    ]
+    if leaps:
+        at = ", ".join(leaps[:5]) + (f" and {len(leaps) - 5} more times" if leaps[5:] else "")
+        report.warn(f"{body.name} jumps at {at} s, faster than {most:g} m/s: kept as recorded")
 
 
 def _turning_slowly(
