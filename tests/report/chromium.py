@@ -109,7 +109,7 @@ class Browser:
 
     def open(self, path):
         """Open a file or a URL and wait until it is loaded."""
-        url = path if "://" in path else "file://" + os.path.abspath(path)
+        url = path if "://" in str(path) else "file://" + os.path.abspath(path)
         self._ask("Page.navigate", url=url)
         self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
 
