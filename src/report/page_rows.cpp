@@ -102,7 +102,7 @@ std::string contact_words(const Scenario& scenario, const CandidateResult& ranke
     const Contact& first = ranked.contacts.front();
     const std::string name = contact_name(scenario, first);
     const std::string brush = brush_words(ranked);
-    words = (brush.empty() ? "" : "brushes ") + name +
+    words = (brush.empty() ? "" : "glances off ") + name +
             when(first.time_of_impact_s, first.closing_speed_mps) + brush;
     const std::string others = in_short ? ", " + more_words(scenario, ranked)
                                         : hit_names(scenario, ranked).substr(name.size());

@@ -160,7 +160,7 @@ TEST(HtmlReport, TellsABrushFromAHit) {
   contact.severity.ego.delta_v_mps = 1.0;
   contact.severity.other.delta_v_mps = 2.0;
   const std::string brush =
-      "<td data-title=''>brushes wall after 0.50 s at 72 km/h, changes its "
+      "<td data-title=''>glances off wall after 0.50 s at 72 km/h, changes its "
       "velocity by 7 km/h; then second</td>";
   EXPECT_NE(html_report(told.scenario, told.models, told.result).find(brush), std::string::npos);
   contact.severity.ego.delta_v_mps = 8.0;
