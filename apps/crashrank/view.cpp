@@ -9,6 +9,7 @@
 
 #include "crashrank/mesh/profile.hpp"
 #include "crashrank/model/model.hpp"
+#include "crashrank/rank/anytime/ranker.hpp"
 #include "crashrank/rank/rank.hpp"
 #include "crashrank/report/ranking.hpp"
 #include "crashrank/scenario/scenario.hpp"
@@ -16,6 +17,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -28,6 +30,10 @@
 
 namespace crashrank::cli {
 namespace {
+
+/// Time for the first answer, and for its explanation, s: with the page it is there within a second
+/// of a save. A design choice.
+constexpr double first_answer_s = 0.15;
 
 struct ViewArguments {
   std::string scenario;
@@ -57,6 +63,16 @@ struct Watched {
   void add(const std::string& file) {
     files.push_back(file);
     stamps.push_back(stamps_of({file}).front());
+  }
+
+  /// Whether a file has changed; looks ten times a second at most, and says no between. `next_look`
+  /// is this function's own.
+  bool has_changed(std::atomic<std::int64_t>& next_look) const {
+    constexpr std::chrono::steady_clock::duration pause = std::chrono::milliseconds(100);
+    const std::int64_t now = std::chrono::steady_clock::now().time_since_epoch().count();
+    std::int64_t due = next_look;
+    if (now < due || !next_look.compare_exchange_strong(due, now + pause.count())) return false;
+    return stamps_of(files) != stamps;
   }
 
   /// Waits until a file has changed and stays as it is for a moment; false after an interruption.
@@ -103,9 +119,9 @@ Result<std::shared_ptr<const LoadedModels>> load_anew(Scenario& scenario, const 
   return std::make_shared<const LoadedModels>(std::move(loaded));
 }
 
-/// Reads and ranks the scenario, with the models of `known` if they are the same; `watched` becomes
-/// the files that this depends on, also after an error.
-Result<Shown> rank_anew(const ViewArguments& options,
+/// Reads the scenario, with the models of `known` if they are the same; `watched` becomes the files
+/// that this depends on, also after an error.
+Result<Shown> read_anew(const ViewArguments& options,
                         const std::shared_ptr<const LoadedModels>& known, Watched& watched) {
   watched = {};
   watched.add(options.scenario);
@@ -129,32 +145,75 @@ Result<Shown> rank_anew(const ViewArguments& options,
     if (!loaded) return loaded.error();
     shown.loaded = std::move(*loaded);
   }
-  RankOptions how;
-  how.workers = options.workers;
-  how.records_motion = candidate_count(shown.scenario) <= most_played_candidates;
-  Progress progress("ranking");
-  how.on_progress = [&](std::size_t evaluated, std::size_t candidates) {
-    progress.update(evaluated, candidates);
-    return !is_interrupted();
-  };
-  Result<RankResult> ranked = rank(shown.scenario, shown.loaded->models, how);
-  if (!ranked) {
-    Error error = ranked.error();
-    if (error.file.empty()) error.file = options.scenario;
-    return error;
-  }
-  shown.ranked = std::move(*ranked);
   return shown;
 }
 
-/// `notice` is an error of the scenario's newest version, or empty.
-void publish(PageServer& server, const Shown& shown, std::string notice) {
-  HtmlReportOptions page;
-  page.still = false;
-  page.served_version = server.next_version();
-  page.notice = std::move(notice);
-  server.publish(html_report(shown.scenario, shown.loaded->models, shown.ranked, page));
-}
+class Viewer {
+public:
+  Viewer(const ViewArguments& options, PageServer server)
+      : options_(options), server_(std::move(server)) {}
+
+  /// Publishes the report of the files as they are now: a first answer where the whole one takes
+  /// longer, and then that, unless the files change before it is there.
+  Status show_anew() {
+    Result<Shown> next = read_anew(options_, shown_.loaded, watched_);
+    if (!next) return next.error();
+    const View<const Model> models(next->loaded->models);
+    RankOptions how;
+    how.workers = options_.workers;
+    RankBudget soon;
+    soon.deadline_s = first_answer_s;
+    Result<RankResult> first = rank_within(next->scenario, models, how, soon, first_answer_s);
+    if (!first) return in_scenario(first.error());
+    if (!first->complete) {
+      shown_ = *next;
+      shown_.ranked = std::move(*first);
+      publish({});
+    }
+    how.records_motion = candidate_count(next->scenario) <= most_played_candidates;
+    Progress progress("ranking");
+    std::atomic<std::int64_t> next_look{0};
+    how.on_progress = [&](std::size_t evaluated, std::size_t candidates) {
+      progress.update(evaluated, candidates);
+      return !is_interrupted() && !watched_.has_changed(next_look);
+    };
+    Result<RankResult> whole = rank(next->scenario, models, how);
+    if (!whole) return in_scenario(whole.error());
+    if (!whole->complete) return Success{};
+    shown_ = std::move(*next);
+    shown_.ranked = std::move(*whole);
+    publish({});
+    return Success{};
+  }
+
+  /// Publishes what was ranked last, with a line above it: an error of newer files, or nothing.
+  void publish(std::string notice) {
+    HtmlReportOptions page;
+    page.still = false;
+    page.served_version = server_.next_version();
+    page.notice = std::move(notice);
+    server_.publish(html_report(shown_.scenario, shown_.loaded->models, shown_.ranked, page));
+    if (is_announced_) return;
+    is_announced_ = true;
+    print(server_.url() + "\n");
+    std::fflush(stdout);
+  }
+
+  /// Waits for a change of the files; false after an interruption.
+  bool wait() const { return watched_.wait(); }
+
+private:
+  Error in_scenario(Error error) const {
+    if (error.file.empty()) error.file = options_.scenario;
+    return error;
+  }
+
+  const ViewArguments& options_;
+  PageServer server_;
+  Watched watched_;
+  Shown shown_;
+  bool is_announced_ = false;
+};
 
 int run(const ViewArguments& options) {
   if (is_standard(options.scenario)) {
@@ -164,24 +223,16 @@ int run(const ViewArguments& options) {
   const EndsItself ends_itself;
   Result<PageServer> server = PageServer::start(options.port);
   if (!server) return fail(server.error());
-  Watched watched;
-  Result<Shown> shown = rank_anew(options, nullptr, watched);
+  Viewer viewer(options, std::move(*server));
+  const Status first = viewer.show_anew();
   if (is_interrupted()) return exit_done;
-  if (!shown) return fail(shown.error());
-  publish(*server, *shown, {});
-  print(server->url() + "\n");
-  std::fflush(stdout);
-  while (watched.wait()) {
-    Result<Shown> next = rank_anew(options, shown->loaded, watched);
+  if (!first) return fail(first.error());
+  while (viewer.wait()) {
+    const Status shown = viewer.show_anew();
     if (is_interrupted()) break;
-    std::string notice;
-    if (next) {
-      shown = std::move(next);
-    } else {
-      fail(next.error());
-      notice = next.error().message() + " (below: the report before this error)";
-    }
-    publish(*server, *shown, std::move(notice));
+    if (shown) continue;
+    fail(shown.error());
+    viewer.publish(shown.error().message() + " (below: the report before this error)");
   }
   return exit_done;
 }
@@ -202,8 +253,9 @@ void add_view(CLI::App& app, Action& action) {
   command->footer(
       "Prints the address of the page, which only this machine can reach, and ends with Ctrl-C, "
       "exit code 0.\nThe scenario is ranked as `crashrank rank` does when it or a mesh or model "
-      "file that it names is\nsaved, and the page reloads itself. While the scenario has an error, "
-      "the page shows it above the\nlast report; an error at the start ends the command, with the "
+      "file that it names is\nsaved, and the page reloads itself. Where the whole ranking takes "
+      "longer, a first answer is\nshown until it is there. While the scenario has an error, the "
+      "page shows it above the last\nreport; an error at the start ends the command, with the "
       "exit code of rank.\n\n"
       "Example:\n  crashrank view scenario.json --port 8000");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -51,14 +51,15 @@ double damage_score(const std::map<std::size_t, BodyDamage>& damage, const Measu
 }
 
 /// Sets the people of the result in the nominal sample, the exposure of the bodies of its contacts,
-/// and the harm of each contact: of the harm to the people of a body the share that the delta-v of
-/// the contact has in the sum over all contacts of the body.
+/// and the harm of each contact: of the harm to the people of a body the share that the squared
+/// delta-v of the contact has in the sum over all contacts of the body, as its energy would have. A
+/// nudge after an impact bears next to nothing of it.
 void add_exposures(const Scene& scene, const SimulatedOutcome& from, CrashScore& score,
                    CandidateResult& result) {
   const MeasureRow& row = measure_row(scene.measure);
   const CrashEffects& effects = from.effects.front();
   result.people = score.people(scene, effects);
-  std::vector<double> summed_mps(result.people.size(), 0.0);
+  std::vector<double> summed_m2ps2(result.people.size(), 0.0);
   const auto place_of = [&](std::size_t body) {
     std::size_t k = 0;
     while (k < result.people.size() && result.people[k].body != body) ++k;
@@ -67,7 +68,7 @@ void add_exposures(const Scene& scene, const SimulatedOutcome& from, CrashScore&
   for (const ContactEffect& effect : effects.contacts) {
     for (const SideEffect& side : effect.sides) {
       const std::size_t k = place_of(side.body);
-      if (k < summed_mps.size()) summed_mps[k] += side.delta_v_mps;
+      if (k < summed_m2ps2.size()) summed_m2ps2[k] += side.delta_v_mps * side.delta_v_mps;
     }
   }
   for (std::size_t n = 0; n < effects.contacts.size(); ++n) {
@@ -77,11 +78,12 @@ void add_exposures(const Scene& scene, const SimulatedOutcome& from, CrashScore&
       const SideEffect& side = effects.contacts[n].sides[s];
       BodyOutcome& outcome = s == 0 ? outcomes.a : outcomes.b;
       const std::size_t k = place_of(side.body);
-      if (k == summed_mps.size()) continue;
+      if (k == summed_m2ps2.size()) continue;
       const PersonRisk& person = result.people[k];
       outcome.exposure_mps = person.exposure_mps;
       if (!row.counts_people) continue;
-      const double share = summed_mps[k] > 0.0 ? side.delta_v_mps / summed_mps[k] : 0.0;
+      const double share =
+          summed_m2ps2[k] > 0.0 ? side.delta_v_mps * side.delta_v_mps / summed_m2ps2[k] : 0.0;
       outcome.harm = share * person.probability *
                          people_weight(exposure_of(scene, side.body, nullptr), scene.harm.weights) +
                      row.of_side(side, scene.harm.weights);

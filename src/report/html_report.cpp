@@ -106,6 +106,11 @@ private:
     if (!options_.notice.empty()) {
       out_ += "<p class='note' role='alert'>" + escape_xml(options_.notice) + "</p>\n";
     }
+    if (options_.served_version > 0 && !result_.complete) {
+      out_ +=
+          "<p class='note' role='status'>A first answer. The whole ranking is under way; this page "
+          "shows it as soon as it is there.</p>\n";
+    }
     if (!scenario_.description.empty()) paragraph(scenario_.description);
     out_ += "</header>\n<main>\n";
     if (result_.ranking.empty()) out_ += "<p class='note'>There is no candidate to rank.</p>\n";

@@ -7,7 +7,8 @@
 namespace crashrank {
 
 Result<RankResult> rank_within(const Scenario& scenario, View<const Model> models,
-                               const RankOptions& options, const RankBudget& budget) {
+                               const RankOptions& options, const RankBudget& budget,
+                               double explanation_s) {
   if (scenario.ego.model >= models.size()) {
     return make_error(ErrorCode::usage, "the number of models differs from that of the scenario");
   }
@@ -24,7 +25,7 @@ Result<RankResult> rank_within(const Scenario& scenario, View<const Model> model
   if (!ranker) return ranker.error();
   const RankerAnswer answer = ranker->rank(*candidates, budget);
   const double explained_s = budget.deadline_s < std::numeric_limits<double>::infinity()
-                                 ? std::max(budget.deadline_s, least_explanation_s)
+                                 ? std::max(budget.deadline_s, explanation_s)
                                  : budget.deadline_s;
   return ranker->explain(*candidates, answer, budget.cancel, explained_s);
 }

@@ -235,9 +235,10 @@ inline constexpr double least_explanation_s = 1.0;
 
 /// Ranks like `crashrank::rank` within a budget: prepares a Ranker, ranks the candidates of the
 /// scenario and explains the answer after the deadline, for as long as the deadline or
-/// `least_explanation_s`. Without a budget use `rank`, which shares
-/// all work among threads. Policy and depth have no effect. Errors: as `rank`.
+/// `explanation_s`. Without a budget use `rank`, which shares all work among threads. Policy and
+/// depth have no effect. Errors: as `rank`.
 CRASHRANK_API Result<RankResult> rank_within(const Scenario& scenario, View<const Model> models,
-                                             const RankOptions& options, const RankBudget& budget);
+                                             const RankOptions& options, const RankBudget& budget,
+                                             double explanation_s = least_explanation_s);
 
 }  // namespace crashrank
