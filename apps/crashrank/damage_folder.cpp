@@ -145,29 +145,8 @@ Status write_body(const std::string& stem, const TriangleMesh& mesh,
   return write_file(stem + ".ply", ply_file, damage_ply(mesh, damaged));
 }
 
-// Of a few places around the scene the one from which a small picture shows most damage; what
-// leads is asked first and keeps its place when no other shows a tenth more.
-Result<double> best_azimuth_deg(View<const PictureBody> bodies, double azimuth_deg) {
-  double best = azimuth_deg;
-  double most = -1.0;
-  for (const double turn : {35.0, -35.0, 70.0, -70.0, 110.0, -110.0, 150.0, -150.0}) {
-    PictureOptions options;
-    options.width_px = 240;
-    options.height_px = 150;
-    options.azimuth_deg = azimuth_deg + turn;
-    const Result<Image> image = draw_picture(bodies, options);
-    if (!image) return image.error();
-    const double red = static_cast<double>(count_damage(*image));
-    if (red > 1.1 * most) {
-      most = red;
-      best = options.azimuth_deg;
-    }
-  }
-  return best;
-}
-
-Status write_picture(const std::string& path, View<const PictureBody> bodies, double azimuth_deg) {
-  const Result<double> best = best_azimuth_deg(bodies, azimuth_deg);
+Status write_picture(const std::string& path, View<const PictureBody> bodies) {
+  const Result<double> best = azimuth_of_most_damage_deg(bodies);
   if (!best) return best.error();
   PictureOptions options;
   options.azimuth_deg = *best;
@@ -193,10 +172,9 @@ Status write_candidate(const Picked& picked, const Scenario& scenario, View<cons
     if (Status written = write_body(stem, mesh, body.triangles); !written) return written;
     bodies.push_back({&mesh, body.pose, body.triangles});
   }
-  const double side = azimuth_of_damage_deg(bodies.front());
-  Status drawn = write_picture(ego_stem(picked) + ".png", {bodies.data(), 1}, side);
+  Status drawn = write_picture(ego_stem(picked) + ".png", {bodies.data(), 1});
   if (!drawn) return drawn;
-  return write_picture(picked.stem + ".png", bodies, side);
+  return write_picture(picked.stem + ".png", bodies);
 }
 
 Error cannot_make(const std::string& folder, const std::string& why) {

@@ -67,6 +67,18 @@ void measure(detail::PictureScene& scene) {
   scene.ground_z = box.min.z();
 }
 
+Result<detail::PictureScene> scene_of(View<const PictureBody> bodies) {
+  detail::PictureScene scene;
+  for (const PictureBody& body : bodies) {
+    add_body(scene, body, &body == bodies.begin() ? first_paint : other_paint);
+  }
+  if (scene.triangles.empty()) {
+    return make_error(ErrorCode::usage, "there is no triangle to draw");
+  }
+  measure(scene);
+  return scene;
+}
+
 /// A camera that looks at the scene from the side asked for, near enough to fill the picture.
 detail::Viewer aim(const detail::PictureScene& scene, const PictureOptions& options, int width,
                    int height) {
@@ -115,14 +127,9 @@ detail::Viewer aim(const detail::PictureScene& scene, const PictureOptions& opti
 
 Result<Image> draw_picture(View<const PictureBody> bodies, const PictureOptions& options) {
   if (const Status sound = check(options); !sound) return sound.error();
-  detail::PictureScene scene;
-  for (const PictureBody& body : bodies) {
-    add_body(scene, body, &body == bodies.begin() ? first_paint : other_paint);
-  }
-  if (scene.triangles.empty()) {
-    return make_error(ErrorCode::usage, "there is no triangle to draw");
-  }
-  measure(scene);
+  Result<detail::PictureScene> bodies_seen = scene_of(bodies);
+  if (!bodies_seen) return bodies_seen.error();
+  const detail::PictureScene& scene = *bodies_seen;
   const int width = options.width_px * samples;
   const int height = options.height_px * samples;
   const detail::Viewer camera = aim(scene, options, width, height);
@@ -146,13 +153,30 @@ double azimuth_of_damage_deg(const PictureBody& body) {
   return std::atan2(sum.y(), sum.x()) / static_cast<double>(radians);
 }
 
-std::size_t count_damage(const Image& image) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
-    const int red = image.rgb[i];
-    if (red > 70 && red > 3 * image.rgb[i + 1] && red > 3 * image.rgb[i + 2]) ++count;
+Result<double> azimuth_of_most_damage_deg(View<const PictureBody> bodies) {
+  Result<detail::PictureScene> scene = scene_of(bodies);
+  if (!scene) return scene.error();
+  PictureOptions options;
+  options.width_px = 240;
+  options.height_px = 150;
+  const double start_deg = azimuth_of_damage_deg(*bodies.begin());
+  double best_deg = start_deg;
+  double most = -1.0;
+  for (const double turn_deg : {35.0, -35.0, 70.0, -70.0, 110.0, -110.0, 150.0, -150.0}) {
+    options.azimuth_deg = start_deg + turn_deg;
+    detail::Raster raster(options.width_px, options.height_px);
+    detail::rasterise(scene->triangles, aim(*scene, options, options.width_px, options.height_px),
+                      raster);
+    const auto seen =
+        std::count_if(raster.triangle.begin(), raster.triangle.end(), [&](std::uint32_t triangle) {
+          return triangle != detail::nothing && scene->colours[triangle] == detail::damaged_colour;
+        });
+    if (static_cast<double>(seen) > 1.1 * most) {
+      most = static_cast<double>(seen);
+      best_deg = options.azimuth_deg;
+    }
   }
-  return count;
+  return best_deg;
 }
 
 }  // namespace crashrank

@@ -116,11 +116,17 @@ struct Spot {
 class Shader {
 public:
   Shader(const PictureScene& scene, const Viewer& camera, const Raster& raster, bool edges)
-      : scene_(scene), camera_(camera), raster_(raster), light_(scene, camera), edges_(edges) {}
+      : scene_(scene), camera_(camera), raster_(raster), light_(scene, camera), edges_(edges) {
+    // What shows nothing is far away.
+    constexpr float nearest = 1e-9F;
+    away_.reserve(raster.nearness.size());
+    for (const float nearness : raster.nearness)
+      away_.push_back(1.0F / std::max(nearness, nearest));
+  }
 
-  Colour at(int x, int y) const {
-    const std::size_t i = raster_.at(x, y);
-    const std::uint32_t index = raster_.triangle[i];
+  /// Without edges.
+  Colour lit(int x, int y) const {
+    const std::uint32_t index = raster_.triangle[raster_.at(x, y)];
     if (index == nothing) return background;
     const Spot spot = spot_at(x, y);
     const std::uint32_t hash = pixel_hash(x, y);
@@ -128,13 +134,18 @@ public:
       const float far = (spot.point - scene_.middle).norm() / scene_.radius;
       constexpr float horizon = 2.4F;
       if (far >= horizon) return background;
-      const float light =
-          openness(x, y, spot, hash) * (0.72F + 0.42F * light_.at(spot.point, hash));
+      const float open = far > 1.0F + reach ? 1.0F : openness(x, y, spot, hash);
+      const float light = open * (0.72F + 0.42F * light_.at(spot.point, hash));
       return mixed(scaled(ground_colour, light), background, smooth_step(1.0F, horizon, far));
     }
-    const Colour colour =
-        lit_surface(scene_.colours[index], spot, openness(x, y, spot, hash), hash);
-    return edges_ ? scaled(colour, 1.0F - edge_strength(index, raster_.edge[i])) : colour;
+    return lit_surface(scene_.colours[index], spot, openness(x, y, spot, hash), hash);
+  }
+
+  Colour with_edge(const Colour& colour, int x, int y) const {
+    const std::size_t i = raster_.at(x, y);
+    const std::uint32_t index = raster_.triangle[i];
+    if (!edges_ || index == nothing || index == ground) return colour;
+    return scaled(colour, 1.0F - edge_strength(index, raster_.edge[i]));
   }
 
 private:
@@ -171,17 +182,18 @@ private:
   }
 
   /// Right, up and back of what a pixel shows, from the eye.
-  Vector3f seen_at(int x, int y, float nearness) const {
-    const float away = 1.0F / nearness;
+  Vector3f seen_at(int x, int y) const {
+    const float away = away_[raster_.at(x, y)];
     const float scale = away / camera_.pixels;
     return {(static_cast<float>(x) + 0.5F - camera_.middle_x) * scale,
             (camera_.middle_y - static_cast<float>(y) - 0.5F) * scale, -away};
   }
 
+  static constexpr float reach = 0.10F;  ///< of what darkens a corner, in radii of the scene
   /// Share of the surroundings that is free, from the nearness of pixels around: 1 in the open.
   float openness(int x, int y, const Spot& spot, std::uint32_t hash) const {
-    const float reach_m = 0.10F * scene_.radius;
-    const Vector3f here = seen_at(x, y, raster_.nearness[raster_.at(x, y)]);
+    const float reach_m = reach * scene_.radius;
+    const Vector3f here = seen_at(x, y);
     const Vector3f normal = camera_.axes * spot.normal;
     const float reach_px = reach_m * camera_.pixels / -here.z();
     float covered = 0.0F;
@@ -189,13 +201,12 @@ private:
       const int u = x + static_cast<int>(reach_px * tap.x);
       const int v = y + static_cast<int>(reach_px * tap.y);
       if (u < 0 || v < 0 || u >= raster_.width || v >= raster_.height) continue;
-      const std::size_t other = raster_.at(u, v);
-      if (raster_.triangle[other] == nothing) continue;
-      const Vector3f way = seen_at(u, v, raster_.nearness[other]) - here;
-      const float distance = way.norm();
-      if (distance >= reach_m || !(distance > 0.0F)) continue;
-      const float height = way.dot(normal) / distance;
-      covered += std::max(0.0F, height - 0.08F) * (1.0F - distance / reach_m);
+      const Vector3f way = seen_at(u, v) - here;
+      const float height_m = way.dot(normal);
+      const float distance2 = way.squaredNorm();
+      if (distance2 >= reach_m * reach_m || !(height_m > 0.0F)) continue;
+      const float distance = std::sqrt(distance2);
+      covered += std::max(0.0F, height_m / distance - 0.08F) * (1.0F - distance / reach_m);
     }
     return std::clamp(1.0F - 2.4F * covered / tap_count, 0.15F, 1.0F);
   }
@@ -223,6 +234,7 @@ private:
   Taps<tap_count> taps_;
   KeyLight light_;
   bool edges_;
+  std::vector<float> away_;  ///< along the view, by pixel, m
 };
 
 }  // namespace
@@ -247,7 +259,17 @@ std::vector<Colour> shade(const PictureScene& scene, const Viewer& camera, const
   const Shader shader(scene, camera, raster, edges);
   std::vector<Colour> colours(raster.triangle.size());
   for (int y = 0; y < raster.height; ++y) {
-    for (int x = 0; x < raster.width; ++x) colours[raster.at(x, y)] = shader.at(x, y);
+    for (int x = y % 2; x < raster.width; x += 2) colours[raster.at(x, y)] = shader.lit(x, y);
+    // Light hardly changes across a triangle's pixel: every other one takes its neighbour's.
+    for (int x = 1 - y % 2; x < raster.width; x += 2) {
+      const std::size_t neighbour = raster.at(x ^ 1, y);
+      const bool is_alike = raster.triangle[neighbour] == raster.triangle[raster.at(x, y)];
+      colours[raster.at(x, y)] = is_alike ? colours[neighbour] : shader.lit(x, y);
+    }
+    for (int x = 0; x < raster.width; ++x) {
+      Colour& colour = colours[raster.at(x, y)];
+      colour = shader.with_edge(colour, x, y);
+    }
   }
   return colours;
 }

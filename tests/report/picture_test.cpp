@@ -78,6 +78,28 @@ TEST(Picture, TheCameraGoesWhereTheDamageIs) {
   }
 }
 
+TEST(Picture, OfEightPlacesTheOneThatShowsMostDamage) {
+  const TriangleMesh mesh = cube();
+  const std::vector<std::uint32_t> damaged{2, 3};  // +x, beside which another body stands
+  PictureBody before{&mesh, {}, {}};
+  before.pose.translation = {4, 2, 0};
+  const std::vector<PictureBody> both{{&mesh, {}, damaged}, before};
+  const Result<double> azimuth_deg = azimuth_of_most_damage_deg(both);
+  ASSERT_TRUE(azimuth_deg.ok());
+  const auto red_from = [&](double from_deg) {
+    PictureOptions options = small();
+    options.azimuth_deg = from_deg;
+    const Result<Image> image = draw_picture(both, options);
+    return image.ok() ? static_cast<double>(red_pixels(*image)) : -1.0;
+  };
+  const double shown = red_from(*azimuth_deg);
+  EXPECT_GT(shown, 100.0);
+  for (const double turn_deg : {35.0, -35.0, 70.0, -70.0, 110.0, -110.0, 150.0, -150.0}) {
+    EXPECT_GE(1.2 * shown, red_from(turn_deg)) << turn_deg;
+  }
+  EXPECT_LT(red_from(35.0), 0.9 * shown);  // the first of them is not the best here
+}
+
 TEST(Picture, TheSameInputDrawsTheSamePicture) {
   const TriangleMesh mesh = cube();
   const PictureBody body{&mesh, {}, {}};
