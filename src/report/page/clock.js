@@ -117,7 +117,7 @@ class Clock {
     // The thumb of a slider keeps its own half from the edges.
     const margin = 8;
     const at = (time) => margin + (width - 2 * margin) * time / this.end;
-    const base = height - 18;
+    const base = height - 34;
     const [candidate] = this.candidates;
     const traces = candidate.hit.map((body) => [body, candidate.bodies.get(body).exposure])
       .filter(([, exposure]) => exposure);
@@ -141,8 +141,8 @@ class Clock {
     const words = traces.map(([body]) => [body, candidate.exposureOf(body, this.time)])
       .filter(([, speed]) => speed > 0.3).map(([body, speed]) => `${shortened(nameOf(body))} ${kmh(speed)}`);
     context.textAlign = "left";
-    context.fillText(words.length > 0 ? "change within 0.3 s: " + words.join(", ")
-      : "change of velocity within 0.3 s, by contacts and tyres", margin, height - 4);
+    context.fillText(words.join(", "), margin, base + 15);
+    context.fillText("change of velocity within 0.3 s, tyres included", margin, base + 30);
     context.textAlign = "right";
     if (traces.length > 0) context.fillText("most " + kmh(most), width - margin, 12);
     context.textAlign = "left";

@@ -305,10 +305,11 @@ class PlanPane {
           far.push([x + aside, top - 4 - off], [x + aside, bottom + 13 + off]);
         }
       }
-      const free = near.concat(far).filter(isFree(body, half));
+      const free = near.concat(far.filter((place) => labels.isClear(place, middle)))
+        .filter(isFree(body, half));
       const at = labels.add(text, takesPart ? free.concat(near) : free, colour);
       if (at && far.some((place) => place[0] === at[0] && place[1] === at[1])) {
-        this.leader([at[0], at[1] < top ? at[1] + 3 : at[1] - 12], middle, colour);
+        labels.lead(at, middle, colour);
       }
     };
     const named = new Set(hit.map(structureOf));
@@ -336,17 +337,6 @@ class PlanPane {
     }
   }
 
-  // From a name to the body that it belongs to.
-  leader(from, to, colour) {
-    const context = this.context;
-    context.strokeStyle = colour;
-    context.lineWidth = 1;
-    context.beginPath();
-    context.moveTo(...from);
-    context.lineTo(...to);
-    context.stroke();
-  }
-
   scaleBar() {
     const context = this.context;
     const length = this.scaleOf() * 5;
@@ -366,6 +356,17 @@ function middleOfBody(body, pose) {
   const ends = modelOf(body).outline.map(([forward]) => forward);
   return carry(pose, (Math.min(...ends) + Math.max(...ends)) / 2, 0);
 }
+
+// Where a name may stand beside the point that it is led to: straight above, higher or aside,
+// below; nearest first.
+const LED_PLACES = [0, 25, -25, 50, -50, 80, -80, 120, -120].flatMap((aside) =>
+  [-18, -31, -44, -57, -70, -83, -96, 30, 44, 58, 72, 86].map((off) => [aside, off]));
+const farOff = ([x, y]) => Math.hypot(x, y > 0 ? 60 + y : y);
+LED_PLACES.sort((a, b) => farOff(a) - farOff(b));
+
+// Eight points of a line.
+const along = (from, to) => [0, 1, 2, 3, 4, 5, 6, 7].map((i) =>
+  [mix(from[0], to[0], i / 7), mix(from[1], to[1], i / 7)]);
 
 // Names on a picture; one that would cover another wherever it may stand, or that stands outside,
 // is left out.
@@ -394,6 +395,44 @@ class Labels {
     this.placed.push([...at, half]);
     drawLabel(this.context, text, at[0] - half, at[1], colour);
     return at;
+  }
+
+  // Keeps the names that follow off a line.
+  keepOff(from, to) {
+    this.placed.push(...along(from, to).map(([x, y]) => [x, y + 4, 0]));
+  }
+
+  // Whether a line crosses no name.
+  isClear(from, to) {
+    return !along(from, to).some(([x, y]) => this.placed.some(
+      ([otherX, otherY, otherHalf]) => otherHalf > 0 && Math.abs(otherX - x) < otherHalf + 2 &&
+        Math.abs(otherY - 4 - y) < 8));
+  }
+
+  // A line from the name that stands at a place to the point that it belongs to.
+  lead([x, y], to, colour) {
+    const from = [x, y < to[1] ? y + 3 : y - 12];
+    const context = this.context;
+    for (const [width, style] of [[3, COLOURS.page], [1, colour]]) {
+      context.strokeStyle = style;
+      context.lineWidth = width;
+      context.beginPath();
+      context.moveTo(...from);
+      context.lineTo(...to);
+      context.stroke();
+    }
+  }
+
+  // At the end of a line that leads to a point and crosses no name.
+  led(text, to, colour) {
+    if (to[0] < 0 || to[0] > this.width || to[1] < 0 || to[1] > this.height) return;
+    const half = this.halfOf(text);
+    const places = LED_PLACES.map(([x, y]) =>
+      [clamp(to[0] + x, half + 2, this.width - half - 2), to[1] + y]);
+    const at = this.add(text, [...places.filter((each) => this.isClear(each, to)), ...places], colour);
+    if (!at) return;
+    this.lead(at, to, colour);
+    this.keepOff(at, to);
   }
 
   // At a point, or shifted up or down; moved inwards where the edge of the picture would cut it.

@@ -37,7 +37,7 @@ class RankingTable {
     this.arrange();
   }
 
-  get rowHeight() { return this.narrow.matches ? 92 : 46; }
+  get rowHeight() { return this.narrow.matches ? 112 : 46; }
 
   sort(column) {
     this.sorted = {column, isDown: this.sorted.column === column && !this.sorted.isDown};
@@ -167,8 +167,15 @@ class RankingTable {
   detail(index) {
     const cell = element("td", {colspan: this.columns});
     const section = document.getElementById("c" + (index + 1));
-    if (section) cell.append(section);
-    else cell.append("Only the best candidates and the worst are described; the JSON answer has all.");
+    if (section) {
+      cell.append(section);
+      // On narrow pages every figure of a contact stands behind its title.
+      for (const {tHead, tBodies} of section.querySelectorAll(".contacts")) {
+        for (const {cells} of tBodies[0].rows) {
+          [...cells].forEach((each, i) => each.dataset.title = tHead.rows[0].cells[i].textContent);
+        }
+      }
+    } else cell.append("Only the best candidates and the worst are described; the JSON answer has all.");
     const row = element("tr", {class: "detail"}, cell);
     cell.addEventListener("click", (event) => event.stopPropagation());
     return row;

@@ -35,7 +35,7 @@ function showFutures(candidate) {
 
 function futureWords(future) {
   const what = future.t === undefined ? "no contact"
-    : `hits ${nameOf(future.body)} after ${future.t.toFixed(2)} s at ${kmh(future.closing)}`;
+    : `contact with ${nameOf(future.body)} after ${future.t.toFixed(2)} s at ${kmh(future.closing)}`;
   return `${percent(future.p)}${future.likeliest ? " (likeliest)" : ""}: ${what}` +
     (future.leaves ? ", leaves the road" : "") + `; ${DATA.measure} ${Number(future.score.toPrecision(2))}`;
 }

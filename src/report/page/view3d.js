@@ -510,18 +510,6 @@ class View3d {
       context.drawImage(this.canvas, 0, 0, this.width, this.height);
     }
     const labels = new Labels(context, this.width, this.height);
-    const over = (body, pose, text, colour) => {
-      const [x, y] = middleOfBody(body, pose);
-      const point = this.onCanvas(x, y, pose.z + modelOf(body).height + 0.3);
-      if (point) labels.above(text, point, [0, -15, 15], colour);
-    };
-    const named = candidate.first === null ? BODIES : candidate.hit;
-    for (const body of [EGO, ...named.filter((each) => each !== EGO)]) {
-      over(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
-    }
-    for (const {body, p, plan} of shows.elsewhere) {
-      over(body, poseOn(plan, time), nameElsewhere(body, p, plan), COLOURS.future);
-    }
     for (const contact of candidate.contacts) {
       const age = time - contact.t;
       if (age < 0 || age > 0.5) continue;
@@ -535,9 +523,26 @@ class View3d {
         if (!tip || speed < 1) return;
         const isEgo = contact.bodies[side] === EGO;
         drawArrow(context, point, tip, isEgo ? COLOURS.ego : COLOURS.other);
-        labels.above("Δv " + kmh(speed), tip, [-6, 16, 32, -22], COLOURS.ink);
+        labels.keepOff(point, tip);
+        labels.above("Δv " + kmh(speed), tip, [-10, 20, 34, -24], COLOURS.ink);
       });
     }
+    const names = [];
+    const over = (body, pose, text, colour) => {
+      const [x, y] = middleOfBody(body, pose);
+      const roof = this.onCanvas(x, y, pose.z + modelOf(body).height);
+      if (roof) names.push({text, roof, colour});
+    };
+    const named = candidate.first === null ? BODIES : candidate.hit;
+    for (const body of [EGO, ...named.filter((each) => each !== EGO)]) {
+      over(body, candidate.poseOf(body, time), shortened(nameOf(body)), COLOURS.ink);
+    }
+    for (const {body, p, plan} of shows.elsewhere) {
+      over(body, poseOn(plan, time), nameElsewhere(body, p, plan), COLOURS.future);
+    }
+    // What is nearer stands lower in the picture: names of what is behind it stand above its own.
+    names.sort((a, b) => b.roof[1] - a.roof[1]);
+    for (const {text, roof, colour} of names) labels.led(text, roof, colour);
   }
 
   flash(context, [x, y], strength) {
