@@ -258,13 +258,16 @@ class DecisionCurve:
             colour = _COLOURS[label]
             axes.plot(times, high, marker=".", color=colour, label=label)
             axes.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0)
+        marks: dict[float, list[str]] = {}
         for _, text, moment, _ in self._decisions():
             if moment is not None:
-                axes.axvline(moment.time_s, color="#8a8f98", linewidth=1, linestyle="--")
-                axes.text(
-                    moment.time_s, 0.98, f"last {text} ", rotation=90, ha="right", va="top",
-                    fontsize="small", transform=axes.get_xaxis_transform(),
-                )  # fmt: skip
+                marks.setdefault(moment.time_s, []).append(text)
+        for at_s, texts in marks.items():
+            axes.axvline(at_s, color="#8a8f98", linewidth=1, linestyle="--")
+            axes.text(
+                at_s, 0.98, f"last {', '.join(texts)} ", rotation=90, ha="right", va="top",
+                fontsize="small", transform=axes.get_xaxis_transform(),
+            )  # fmt: skip
         if self.contact_time_s is not None:
             axes.axvline(self.contact_time_s, color="black", linewidth=1.5)
         axes.set_xlabel(f"time [s]; {self.ego} {self._going_on()}")
