@@ -186,7 +186,7 @@ def test_the_command_decides_a_scenario(tmp_path, capsys):
 
     out = tmp_path / "a.json"
     file = SCENES / "crossing_traffic.json"
-    words = ["crashrank", str(file), "-o", str(out), "--decide", "--time", "-0.5", "--step", "0.25"]
+    words = ["crashrank", str(file), "-o", str(out), "--decide", "--time", "-0.6", "--step", "0.5"]
     assert main(words) == 0
     text = capsys.readouterr().err
     assert "the others have held their speed and course" in text
@@ -204,7 +204,7 @@ def test_the_command_decides_a_scenario(tmp_path, capsys):
     [
         ({"time_s": 3.0}, "time_s: is 3, the horizon ends at 3 s"),
         ({"time_s": float("nan")}, "time_s: is not a number"),
-        ({"ego": 3}, "ego: is '3': leave it out"),
+        ({"ego": 3}, "ego: is '3'; leave it out"),
         ({"horizon_s": 0.0}, "horizon_s: is 0"),
     ],
 )

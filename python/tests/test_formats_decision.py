@@ -110,7 +110,7 @@ def test_a_recording_that_stops_has_no_contact(tmp_path):
     """The ego brakes evenly from 15 m/s within 20 m: what it recorded goes on, not its speed."""
     slowing = 15**2 / (2 * 20)
     ego = [(0.1 * i, 15 * 0.1 * i - slowing / 2 * (0.1 * i) ** 2, 0, 0) for i in range(27)]
-    path = table(tmp_path, [*ego, (9, 20, 0, 0)], wall(40))
+    path = table(tmp_path, [*ego, (2.7, 20, 0, 0), (9, 20, 0, 0)], wall(40))
     curve = formats.find_decision_point(path, step_s=0.5, accelerations=3, steerings=3)
     assert (curve.contact_time_s, curve.other) == (None, "wall")
     for step in curve.steps:

@@ -173,7 +173,7 @@ def _actor_at(actor: dict[str, Any], time_s: float, horizon_s: float) -> dict[st
     kept = {key: value for key, value in actor.items() if key not in ("pose", "poses", *_RATES)}
     if "predictions" not in actor:
         return {**kept, **_motion_at(actor, time_s, horizon_s)}
-    stated = {key: actor[key] for key in ("pose", "speed_mps") if key in actor}
+    stated: dict[str, Any] = {key: actor[key] for key in ("pose", "speed_mps") if key in actor}
     kept["predictions"] = [
         {"probability": each["probability"], **_motion_at({**stated, **each}, time_s, horizon_s)}
         for each in actor["predictions"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -165,6 +166,28 @@ class DecisionCurve:
             return None
         return next((step for step in reversed(self.steps) if holds(step)), None)
 
+    def _axis(self) -> str:
+        """Return what is compared over the steps, and its unit."""
+        if self.contact_time_s is None:
+            return "least distance [m], 0 with a contact"
+        return f"{self.measure} [{self.measure_unit}]"
+
+    def _drawn(self, way: Choice | None) -> tuple[float, float]:
+        """Return bounds on what is compared; nan without a manoeuvre or where it is not known."""
+        if way is None:
+            return math.nan, math.nan
+        if self.contact_time_s is not None:
+            return way.least, way.most
+        metres = way.least_distance_m if way.avoids else 0.0
+        return (math.nan, math.nan) if metres is None else (metres, metres)
+
+    def _shown(self, way: Choice | None) -> str:
+        """Return what is compared in nine characters, a bound where it is not known."""
+        low, high = self._drawn(way)
+        if math.isnan(high):
+            return "-"
+        return f"{high:.4g}" if low == high else f"<={high:.3g}"
+
     def _note(self) -> str:
         return NOTHING_TO_AVOID if self.contact_time_s is None else AT_ONCE
 
@@ -211,8 +234,8 @@ class DecisionCurve:
     def lines(self) -> list[str]:
         """Return the last moments and the table of all steps as text."""
         found = [
-            f"{self.ego} {self._going_on()}; scores in {self.measure_unit}, steps of "
-            f"{self.step_s:g} s; {self._note()}"
+            f"{self.ego} {self._going_on()}; {self._axis()}, steps of {self.step_s:g} s; "
+            f"{self._note()}"
         ]
         for _, text, step, choice in self._decisions():
             if self.contact_time_s is None:
@@ -228,7 +251,7 @@ class DecisionCurve:
         found.append("   time_s  going on     least   braking  steering  least harmful")
         for each in self.steps:
             ways = (each.going_on, each.best, each.braking, each.steering)
-            numbers = " ".join(f"{_shown(way):>9}" for way in ways)
+            numbers = " ".join(f"{self._shown(way):>9}" for way in ways)
             way = f"{each.best.candidate}{_passing(each.best)}"
             found.append(f"{each.time_s:9.2f} {numbers}  {way}")
         return found
@@ -253,8 +276,7 @@ class DecisionCurve:
             ("least", "best"),
         ):
             ways = [getattr(step, member) for step in self.steps]
-            low = [float("nan") if way is None else way.least for way in ways]
-            high = [float("nan") if way is None else way.most for way in ways]
+            low, high = zip(*map(self._drawn, ways), strict=True)
             colour = _COLOURS[label]
             axes.plot(times, high, marker=".", color=colour, label=label)
             axes.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0)
@@ -271,7 +293,7 @@ class DecisionCurve:
         if self.contact_time_s is not None:
             axes.axvline(self.contact_time_s, color="black", linewidth=1.5)
         axes.set_xlabel(f"time [s]; {self.ego} {self._going_on()}")
-        axes.set_ylabel(f"{self.measure} [{self.measure_unit}]")
+        axes.set_ylabel(self._axis())
         axes.legend(loc="center left", fontsize="small")
         return figure
 
@@ -288,10 +310,3 @@ def _passing(way: Choice) -> str:
     if not way.avoids or way.least_distance_m is None:
         return ""
     return f", passes {way.least_distance_m:.2f} m from {way.nearest}"
-
-
-def _shown(way: Choice | None) -> str:
-    """Return a score in nine characters: none without a manoeuvre, a bound where not known."""
-    if way is None:
-        return "-"
-    return f"{way.score:.4g}" if way.score is not None else f"<={way.most:.3g}"

@@ -47,7 +47,8 @@ def find_decision_point(
     """Step back from a contact; say when it could last be avoided, or its harm be halved, and how.
 
     An ego that goes on without a contact has none to avoid: the steps then end where it comes
-    closest to another, as distances of `crashrank.rank` say to a centimetre.
+    closest to another, as distances of `crashrank.rank` say to a centimetre. They end earlier where
+    the recording of the ego does.
 
     At each step the first of a grid of manoeuvres is found, and beside it the one that goes on: the
     ego's own recording where the file has one, else its speed and curvature held. Contacts count
@@ -171,8 +172,9 @@ def _recorded(
     start_s = first.report.time_s
     contact = first_contact(first, base)
     end_s = start_s + _closest_approach(first, file, base) if contact is None else contact[0]
-    count = math.ceil((end_s - start_s) / step_s - 1e-6)
-    earliest = max(math.ceil((end_s - before_s - start_s) / step_s - 1e-6), 0)
+    last_s = min(end_s, first.last_s)
+    count = math.ceil((last_s - start_s) / step_s - 1e-6)
+    earliest = max(math.ceil((last_s - before_s - start_s) / step_s - 1e-6), 0)
     if count - earliest > MAX_STEPS:
         raise usage("step_s", f"makes {count - earliest} steps", f"at most {MAX_STEPS} are ranked")
     for i in range(earliest, max(count, 1)):
