@@ -110,9 +110,52 @@ def test_a_recording_that_stops_has_no_contact(tmp_path):
     """The ego brakes evenly from 15 m/s within 20 m: what it recorded goes on, not its speed."""
     slowing = 15**2 / (2 * 20)
     ego = [(0.1 * i, 15 * 0.1 * i - slowing / 2 * (0.1 * i) ** 2, 0, 0) for i in range(27)]
-    path = table(tmp_path, [*ego, (9, 20, 0, 0)], wall(40))
-    with pytest.raises(crashrank.BadInputError, match="goes on without a contact"):
+    path = table(tmp_path, [*ego, (2.7, 20, 0, 0), (9, 20, 0, 0)], wall(40))
+    curve = formats.find_decision_point(path, step_s=0.5, accelerations=3, steerings=3)
+    assert (curve.contact_time_s, curve.other) == (None, "wall")
+    for step in curve.steps:
+        # It stops with its middle at 20 m, its front half a length ahead, the wall at 40 m.
+        assert step.going_on.least_distance_m == pytest.approx(20 - LENGTH / 2, abs=0.02)
+        assert step.best.score == step.going_on.score == 0.0
+        assert step.avoidable
+    # The last centimetre of the approach takes sqrt(2 * 0.01 / slowing), 0.06 s.
+    assert curve.steps[-1].time_s == 2.5
+    assert (curve.last_avoidable, curve.last_halvable) == (None, None)
+    assert (curve.last_avoidable_by_braking, curve.last_avoidable_by_steering) == (None, None)
+
+
+def test_the_steps_end_at_the_closest_approach(tmp_path):
+    """At 10 m/s past a pole 3 m beside the middle, 30 m ahead: closest once the front is there."""
+    path = table(tmp_path, straight(10), ["0,pole,pole,30,3,0,0.4,0.4,6"])
+    curve = formats.find_decision_point(path, step_s=0.1, accelerations=3, steerings=3)
+    assert curve.other == "pole"
+    reached = (30 - 0.2 - LENGTH / 2) / 10
+    # The corners of a car are round: its side is reached up to 0.4 m behind its front.
+    assert reached - 0.15 <= curve.steps[-1].time_s <= reached + 0.05
+    assert curve.steps[0].time_s == pytest.approx(max(curve.steps[-1].time_s - 2.9, 0.0), abs=0.11)
+    text = str(curve).splitlines()
+    assert len(text) == 2 + len(curve.steps)
+    assert "ego goes on without a contact, passes 1.9" in text[0]
+    assert "nothing to avoid" in text[0]
+    assert "last" not in text[1]
+    assert all(" m from pole" in line for line in text[2:])
+    plain = json.loads(curve.to_json())
+    assert plain["contact_time_s"] is None
+    assert set(plain["last"].values()) == {None}
+    assert plain["note"] in text[0]
+    pytest.importorskip("matplotlib")
+    (axes,) = curve.plot().axes
+    assert len(axes.get_lines()) == 4
+    assert "without a contact" in axes.get_xlabel()
+
+
+def test_nothing_near_leaves_nothing_to_rank(tmp_path):
+    path = table(tmp_path, straight(10), ["0,pole,pole,30,80,0,0.4,0.4,6"])
+    with pytest.raises(crashrank.BadInputError, match="nothing comes within 50 m"):
         formats.find_decision_point(path)
+    alone = formats.read_poses_csv(path)
+    with pytest.raises(crashrank.BadInputError, match="nothing comes within 50 m"):
+        formats.find_decision_point([alone])
 
 
 def test_a_contact_at_the_first_moment_leaves_no_choice(tmp_path):

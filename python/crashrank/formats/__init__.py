@@ -1,5 +1,7 @@
 """Readers of scenarios of other tools; each returns a scenario and a report.
 
+`scenario_at` and `read_scenario` give a crashrank scenario at another moment.
+
 `find_decision_point` steps back from a contact and says when it could last be avoided;
 `to_markers` writes a ranking for RViz and Foxglove.
 
@@ -10,6 +12,7 @@
 
 from __future__ import annotations
 
+from ._advance import read_scenario, scenario_at
 from ._bag import read_bag
 from ._commonroad import read_commonroad
 from ._curve import Choice, DecisionCurve, DecisionStep
@@ -34,5 +37,7 @@ __all__ = [
     "read_openscenario",
     "read_osi",
     "read_poses_csv",
+    "read_scenario",
+    "scenario_at",
     "to_markers",
 ]

@@ -23,7 +23,8 @@ least harm that is found within a second."""
 
 _EPILOG = """formats: commonroad (XML 2018b, 2020a), openscenario (followed trajectories), osi
 (ground truth, .osi or .mcap), esmini-csv (its log), poses-csv (columns t_s, id, x_m, y_m, yaw_deg
-and others), ros-bag (predicted objects of Autoware). Packages: pip install '.[formats]' in the
+and others), ros-bag (predicted objects of Autoware), crashrank (a scenario, at another
+time). Packages: pip install '.[formats]' in the
 folder of the source for the first two, [osi] and [ros] for theirs. Exit codes: 0 done, 1 it cannot
 be written, 2 usage, 3 bad input, 4 the memory ended it."""
 
@@ -82,8 +83,8 @@ def _show_progress(done: int, steps: int) -> None:
     """Say once what is computed; on a terminal count the steps, too."""
     if done == 0:
         print(
-            f"crashrank: searching {steps} moments before the contact for the least harm; a longer "
-            "--step makes them fewer",
+            f"crashrank: searching {steps} moments for the least harm; a longer --step makes them "
+            "fewer",
             file=sys.stderr,
         )
     if sys.stderr.isatty():
@@ -115,8 +116,8 @@ def _parser() -> argparse.ArgumentParser:
     add(
         "--decide",
         action="store_true",
-        help="choose the last moment at which the crash can be "
-        "avoided, and print the curve of the least harm over time",
+        help="choose the last moment at which the crash can be avoided, without one the first of "
+        "the curve, and print the curve of the least harm over time",
     )
     add(
         "--step", type=float, default=0.1, metavar="S",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 AT_ONCE = (
     "latest moments, for wheels that turn and brakes that act at once: the real ones are earlier"
 )
+NOTHING_TO_AVOID = "nothing to avoid, so no last moments"
 _COLOURS = {
     "going on": "#c0392b",
     "braking": "#e08e0b",
@@ -111,7 +113,8 @@ class DecisionCurve:
 
     The last moment of a kind is the latest of `steps` at which it holds: from the next step on it
     does not. These are latest moments, for wheels that turn and brakes that act at once: the real
-    ones are earlier. None where no step has it.
+    ones are earlier. None where no step has it, and where going on makes no contact: there is
+    nothing to avoid.
 
     Examples
     --------
@@ -126,9 +129,9 @@ class DecisionCurve:
     ego: str
     """What decides."""
     other: str
-    """Actor that the ego hits if it goes on."""
-    contact_time_s: float
-    """When it is hit, on the file's clock."""
+    """Actor that the ego hits if it goes on; without a contact the one that it passes closest."""
+    contact_time_s: float | None
+    """When it is hit, on the file's clock; None where the ego goes on without a contact."""
     measure: str
     """What is compared; lower is better."""
     measure_unit: str
@@ -136,7 +139,7 @@ class DecisionCurve:
     step_s: float
     """Time between steps."""
     steps: tuple[DecisionStep, ...]
-    """By rising time, all before the contact."""
+    """By rising time, all before the contact or, without one, the closest approach."""
 
     @property
     def last_avoidable(self) -> DecisionStep | None:
@@ -159,7 +162,44 @@ class DecisionCurve:
         return self._last(lambda step: step.halvable)
 
     def _last(self, holds: Callable[[DecisionStep], bool]) -> DecisionStep | None:
+        if self.contact_time_s is None:
+            return None
         return next((step for step in reversed(self.steps) if holds(step)), None)
+
+    def _axis(self) -> str:
+        """Return what is compared over the steps, and its unit."""
+        if self.contact_time_s is None:
+            return "least distance [m], 0 with a contact"
+        return f"{self.measure} [{self.measure_unit}]"
+
+    def _drawn(self, way: Choice | None) -> tuple[float, float]:
+        """Return bounds on what is compared; nan without a manoeuvre or where it is not known."""
+        if way is None:
+            return math.nan, math.nan
+        if self.contact_time_s is not None:
+            return way.least, way.most
+        metres = way.least_distance_m if way.avoids else 0.0
+        return (math.nan, math.nan) if metres is None else (metres, metres)
+
+    def _shown(self, way: Choice | None) -> str:
+        """Return what is compared in nine characters, a bound where it is not known."""
+        low, high = self._drawn(way)
+        if math.isnan(high):
+            return "-"
+        return f"{high:.4g}" if low == high else f"<={high:.3g}"
+
+    def _note(self) -> str:
+        return NOTHING_TO_AVOID if self.contact_time_s is None else AT_ONCE
+
+    def _before_contact_s(self, step: DecisionStep) -> float:
+        return (self.contact_time_s or 0.0) - step.time_s
+
+    def _going_on(self) -> str:
+        """Return what going on leads to, without the ego."""
+        if self.contact_time_s is not None:
+            return f"hits {self.other} at {self.contact_time_s:.2f} s"
+        nearest = least_distant(step.going_on for step in self.steps)
+        return "goes on without a contact" + ("" if nearest is None else _passing(nearest))
 
     def _decisions(self) -> Iterator[tuple[str, str, DecisionStep | None, Choice | None]]:
         """Return key, text, step and choice of each last moment."""
@@ -178,14 +218,14 @@ class DecisionCurve:
             if step is None or choice is None
             else {
                 "time_s": step.time_s,
-                "before_contact_s": self.contact_time_s - step.time_s,
+                "before_contact_s": self._before_contact_s(step),
                 "choice": dataclasses.asdict(choice),
             }
             for key, _, step, choice in self._decisions()
         }
         members = dataclasses.asdict(self)
         steps = members.pop("steps")
-        return {**members, "note": AT_ONCE, "last": last, "steps": steps}
+        return {**members, "note": self._note(), "last": last, "steps": steps}
 
     def to_json(self) -> str:
         """Return `to_dict` as JSON text."""
@@ -194,25 +234,26 @@ class DecisionCurve:
     def lines(self) -> list[str]:
         """Return the last moments and the table of all steps as text."""
         found = [
-            f"{self.ego} hits {self.other} at {self.contact_time_s:.2f} s; scores in "
-            f"{self.measure_unit}, steps of {self.step_s:g} s; {AT_ONCE}"
+            f"{self.ego} {self._going_on()}; {self._axis()}, steps of {self.step_s:g} s; "
+            f"{self._note()}"
         ]
         for _, text, step, choice in self._decisions():
+            if self.contact_time_s is None:
+                break
             if step is None or choice is None:
                 found.append(f"last {text}: at no step")
                 continue
             away = ", leaves the road" if choice.leaves_road else ""
-            if choice.avoids and choice.least_distance_m is not None:
-                away += f", passes {choice.least_distance_m:.2f} m from {choice.nearest}"
             found.append(
-                f"last {text}: {step.time_s:.2f} s, {self.contact_time_s - step.time_s:.2f} s "
-                f"before the contact: {choice.candidate}{away}"
+                f"last {text}: {step.time_s:.2f} s, {self._before_contact_s(step):.2f} s "
+                f"before the contact: {choice.candidate}{away}{_passing(choice)}"
             )
         found.append("   time_s  going on     least   braking  steering  least harmful")
         for each in self.steps:
             ways = (each.going_on, each.best, each.braking, each.steering)
-            numbers = " ".join(f"{_shown(way):>9}" for way in ways)
-            found.append(f"{each.time_s:9.2f} {numbers}  {each.best.candidate}")
+            numbers = " ".join(f"{self._shown(way):>9}" for way in ways)
+            way = f"{each.best.candidate}{_passing(each.best)}"
+            found.append(f"{each.time_s:9.2f} {numbers}  {way}")
         return found
 
     def __str__(self) -> str:
@@ -235,27 +276,37 @@ class DecisionCurve:
             ("least", "best"),
         ):
             ways = [getattr(step, member) for step in self.steps]
-            low = [float("nan") if way is None else way.least for way in ways]
-            high = [float("nan") if way is None else way.most for way in ways]
+            low, high = zip(*map(self._drawn, ways), strict=True)
             colour = _COLOURS[label]
             axes.plot(times, high, marker=".", color=colour, label=label)
             axes.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0)
+        marks: dict[float, list[str]] = {}
         for _, text, moment, _ in self._decisions():
             if moment is not None:
-                axes.axvline(moment.time_s, color="#8a8f98", linewidth=1, linestyle="--")
-                axes.text(
-                    moment.time_s, 0.98, f"last {text} ", rotation=90, ha="right", va="top",
-                    fontsize="small", transform=axes.get_xaxis_transform(),
-                )  # fmt: skip
-        axes.axvline(self.contact_time_s, color="black", linewidth=1.5)
-        axes.set_xlabel(f"time [s]; contact with {self.other} at {self.contact_time_s:.2f} s")
-        axes.set_ylabel(f"{self.measure} [{self.measure_unit}]")
+                marks.setdefault(moment.time_s, []).append(text)
+        for at_s, texts in marks.items():
+            axes.axvline(at_s, color="#8a8f98", linewidth=1, linestyle="--")
+            axes.text(
+                at_s, 0.98, f"last {', '.join(texts)} ", rotation=90, ha="right", va="top",
+                fontsize="small", transform=axes.get_xaxis_transform(),
+            )  # fmt: skip
+        if self.contact_time_s is not None:
+            axes.axvline(self.contact_time_s, color="black", linewidth=1.5)
+        axes.set_xlabel(f"time [s]; {self.ego} {self._going_on()}")
+        axes.set_ylabel(self._axis())
         axes.legend(loc="center left", fontsize="small")
         return figure
 
 
-def _shown(way: Choice | None) -> str:
-    """Return a score in nine characters: none without a manoeuvre, a bound where not known."""
-    if way is None:
-        return "-"
-    return f"{way.score:.4g}" if way.score is not None else f"<={way.most:.3g}"
+def least_distant(choices: Iterable[Choice]) -> Choice | None:
+    """Return the one that passes an actor closest; None where none passes any within 50 m."""
+    known = ((each.least_distance_m, each) for each in choices)
+    passing = [(metres, each) for metres, each in known if metres is not None]
+    return min(passing, key=lambda pair: pair[0])[1] if passing else None
+
+
+def _passing(way: Choice) -> str:
+    """Return how far a manoeuvre without a contact stays from the nearest actor."""
+    if not way.avoids or way.least_distance_m is None:
+        return ""
+    return f", passes {way.least_distance_m:.2f} m from {way.nearest}"

@@ -55,11 +55,14 @@ class Imported:
     going_on : dict
         The candidate, without its name, that goes on as the file has it: the ego's recorded motion,
         and its last velocity after that; else its speed and curvature held.
+    last_s : float
+        Until when the file has the ego, on its clock.
     """
 
     scenario: dict[str, Any]
     report: Report
     going_on: dict[str, Any]
+    last_s: float = math.inf
 
     def to_json(self) -> str:
         """Return the text of the scenario's file."""
@@ -125,7 +128,8 @@ def make_document(scene: Scene) -> Imported:
     report.bodies, report.areas = len(others), len(areas)
     _report_overlaps(ego, own, others, scene.horizon_s, report)
     held = {"acceleration_mps2": 0.0}
-    return Imported(document, report, _written(own, ego, shift) if own.poses else held)
+    going_on = _written(own, ego, shift) if own.poses else held
+    return Imported(document, report, going_on, last_s)
 
 
 def _others(scene: Scene, own: Motion) -> list[tuple[Body, list[Motion]]]:

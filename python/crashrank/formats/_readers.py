@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 
+from ._advance import read_scenario
 from ._bag import read_bag
 from ._commonroad import read_commonroad
 from ._document import Imported
@@ -20,8 +21,12 @@ READERS: dict[str, Callable[..., Imported]] = {
     "esmini-csv": read_esmini_csv,
     "poses-csv": read_poses_csv,
     "ros-bag": read_bag,
+    "crashrank": read_scenario,
 }
-_BY_ENDING = {".xml": "commonroad", ".xosc": "openscenario", ".osi": "osi", ".mcap": "osi"}
+_BY_ENDING = {
+    ".xml": "commonroad", ".xosc": "openscenario", ".osi": "osi", ".mcap": "osi",
+    ".json": "crashrank",
+}  # fmt: skip
 
 
 def format_of(path: str) -> str | None:

@@ -63,7 +63,7 @@ def survey_table(folder: object, *, horizon_s: float = 10.0) -> str:
 
 
 def _files(folder: str) -> Iterator[str]:
-    """Return the files and bags of a known format below a folder, sorted."""
+    """Return the files and bags of other tools below a folder, sorted."""
     if not os.path.isdir(folder):
         raise NotFoundError("not_found", folder, "", "is no folder", "name a folder")
     for at, folders, files in os.walk(folder):
@@ -74,5 +74,5 @@ def _files(folder: str) -> Iterator[str]:
             continue
         for name in sorted(files):
             path = os.path.join(at, name)
-            if format_of(path):
+            if format_of(path) not in (None, "crashrank"):
                 yield path
