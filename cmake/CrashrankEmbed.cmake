@@ -24,6 +24,6 @@ std::string_view embedded_@name@() {
 }  // namespace crashrank::detail
 ]])
   set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES
-    OBJECT_DEPENDS ${file})
+    OBJECT_DEPENDS ${file} SKIP_UNITY_BUILD_INCLUSION ON)  # a unity source drops the dependency
   target_sources(${target} PRIVATE ${source})
 endfunction()

@@ -95,16 +95,20 @@ int usage(const CLI::App& app, const CLI::ParseError& problem, const char* word)
   }
   if (named != &app && dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) {
     text = "not expected:";
-    bool numbers = false;
+    bool numbers = true;
     for (const std::string& stranger : strangers) {
       text += " '" + stranger + "'";
-      numbers = numbers || !parse_numbers(stranger).value_or(std::vector<double>()).empty();
+      numbers = numbers && !parse_numbers(stranger).value_or(std::vector<double>()).empty();
     }
     if (numbers) text += "; numbers of one option stand together with commas, such as 1,2,3";
   }
   for (const std::string& unknown : strangers) {
     const std::string option = unknown.substr(0, unknown.find('='));
-    if (option.rfind("--", 0) == 0) text += meant(option, option_names(*named));
+    if (option.rfind("--", 0) == 0) {
+      text += meant(option, option_names(*named));
+    } else if (option.size() > 2 && option[0] == '-' && named->get_option_no_throw("-" + option)) {
+      text += "; write -" + option;
+    }
   }
   return fail(make_error(ErrorCode::usage, text, "see " + help));
 }

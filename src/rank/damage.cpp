@@ -137,8 +137,8 @@ DamagePlan plan_damage(const Scene& scene, const DamageQuery& query, const Conta
   std::size_t furthest = 0;
   for (std::size_t i = 1; i < record.size(); ++i) {
     const double moved_m = displacement_of_point_m(record[0], record[i], point_m);
-    if (!(moved_m > plan.crush_m)) continue;
-    plan.crush_m = moved_m;
+    if (!(moved_m > plan.travel_m)) continue;
+    plan.travel_m = moved_m;
     furthest = i;
   }
   const std::vector<std::size_t> chosen = select_poses(a, record, furthest);

@@ -54,10 +54,10 @@ struct DamagePlan {
   /// Index of the first pose to be tested for intersecting triangles. It is 1 if the bodies were
   /// apart until first contact, because at pose 0 they share only the first pair of triangles.
   std::size_t first_pose = 0;
-  Pose pose_a;           ///< body to world at first contact
-  Pose pose_b;           ///< body to world of b at first contact
-  double crush_s = 0.0;  ///< duration, see Contact::crush_s
-  double crush_m = 0.0;
+  Pose pose_a;            ///< body to world at first contact
+  Pose pose_b;            ///< body to world of b at first contact
+  double crush_s = 0.0;   ///< duration, see Contact::crush_s
+  double travel_m = 0.0;  ///< see Contact::travel_m
 
   /// Number of poses to be tested.
   std::size_t queries() const {

@@ -225,7 +225,7 @@ std::vector<ReportedContact> report_contacts(const Scene& scene, const CrashChai
     }
     DamagePlan plan = plan_damage(scene, query, from.outcome.motion, pressed_view);
     contact.crush_s = plan.crush_s;
-    contact.crush_m = plan.crush_m;
+    contact.travel_m = plan.travel_m;
     plans[index] = std::move(plan);
   }
   for (DamagePlan& plan : further_plans) plans.push_back(std::move(plan));

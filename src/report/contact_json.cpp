@@ -109,7 +109,8 @@ Json contact_json(const Scenario& scenario, View<const Model> models, const Cont
              {"point_m", vector_json(contact.point_m)},
              {"normal", vector_json(contact.normal)},
              {"crush_s", contact.crush_s},
-             {"crush_m", contact.crush_m},
+             {"crush_m", contact.severity.ego.crush_m},
+             {"travel_m", contact.travel_m},
              {"region_m", both(region(contact.ego.region), region(contact.other.region))}};
   entry["severity"] = severity_json(contact.severity);
   add_damage(entry, summary_of(contact.ego, models[scenario.ego.model].mesh),

@@ -30,8 +30,10 @@ std::string contact_table(const Scenario& scenario, Measure measure,
                           const CandidateResult& ranked) {
   const bool has_harm = measure == Measure::harm;
   std::string html =
-      "<table class='parts contacts'><caption>contacts</caption><thead><tr><th>bodies</th>"
-      "<th>after s</th><th>closing km/h</th><th>exposure km/h, first</th><th>second</th>";
+      "<table class='parts contacts'><caption>contacts <span class='words'>exposure: the "
+      "body's greatest change of velocity by contacts alone within 0.3 s</span></caption><thead>"
+      "<tr><th>bodies</th><th>after s</th><th>closing km/h</th><th>exposure of first km/h</th>"
+      "<th>of second km/h</th>";
   if (has_harm) html += "<th>harm</th>";
   html += "<th>energy kJ</th><th>CDC</th>";
   html += "</tr></thead><tbody>\n";

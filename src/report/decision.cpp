@@ -188,6 +188,7 @@ public:
   std::vector<std::string> against() const {
     const CandidateResult& first = result_.ranking.front();
     std::vector<std::string> lines;
+    if (const std::string crash = crash_words(first); !crash.empty()) lines.push_back(crash);
     constexpr double often = 0.1;
     if (result_.ranking.size() > 1 && (!first.separable || lost() > often)) {
       // Another may be before the first more often than the next is.
@@ -220,6 +221,23 @@ public:
 private:
   const Candidate& of(std::size_t row) const {
     return result_.candidates[result_.ranking[row].candidate];
+  }
+
+  /// "It still crashes into lorry at 31 km/h."; empty where no crash is known.
+  std::string crash_words(const CandidateResult& ranked) const {
+    if (ranked.first_touch || !ranked.contacts.empty()) {
+      const bool is_known = !ranked.contacts.empty();
+      const double speed_mps = is_known ? ranked.contacts.front().closing_speed_mps
+                                        : ranked.first_touch->closing_speed_mps;
+      return fmt::format("It still {} {} at {:.0f} km/h.",
+                         is_brush(ranked) ? "glances off" : "crashes into",
+                         is_known ? contact_name(scenario_, ranked.contacts.front())
+                                  : scenario_.actors[ranked.first_touch->actor].name,
+                         3.6 * speed_mps);
+    }
+    if (!(ranked.collision_probability > 0.0)) return {};
+    return "It still crashes with a probability of " + percent_text(ranked.collision_probability) +
+           ".";
   }
 
   /// The rows that are set beside each other, and what each is.

@@ -250,8 +250,8 @@ private:
         "<input id='time' type='range' min='0' step='0.01' value='0' aria-label='Time'>\n"
         "<output id='now' for='time'></output>\n"
         "<label><input id='slow' type='checkbox' checked> slow at contacts</label>\n"
-        "<canvas id='trace' role='img' aria-label='Exposure of each body over "
-        "time'></canvas></div>\n"
+        "<canvas id='trace' role='img' aria-label='Change of each body&apos;s "
+        "velocity within 0.3 s, over time'></canvas></div>\n"
         "<p class='hint'>Space plays, arrows step, N and P go from contact to contact. Orange "
         "marks: until then another manoeuvre can still be chosen. In a picture that has focus: "
         "drag to move or turn, wheel or pinch to come nearer, 0 for all.</p>\n";

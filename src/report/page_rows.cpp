@@ -60,30 +60,7 @@ std::string kept_words(const Scenario& scenario, const CandidateResult& ranked) 
   return "nothing" + words;
 }
 
-/// What the first contact changes where that is little against its closing speed, ", changes its
-/// velocity by 5 km/h"; empty where it is more than a brush: a full hit changes the velocity of one
-/// of the two by half the closing speed or more.
-std::string brush_words(const CandidateResult& ranked) {
-  constexpr double little = 1.0 / 3.0;
-  const Contact& first = ranked.contacts.front();
-  double own = 0.0;
-  double its = 0.0;
-  for (const Contact& contact : ranked.contacts) {
-    if (contact.actor != first.actor) continue;
-    own = std::max(own, contact.severity.ego.delta_v_mps);
-    its = std::max(its, contact.severity.other.delta_v_mps);
-  }
-  const double most = std::max(own, its);
-  if (!(most > 0.0) || most > little * first.closing_speed_mps) return {};
-  return fmt::format(", changes {} velocity by {:.0f} km/h", its >= own ? "its" : "our",
-                     3.6 * most);
-}
-
 }  // namespace
-
-bool is_brush(const CandidateResult& ranked) {
-  return !ranked.first_touch && !ranked.contacts.empty() && !brush_words(ranked).empty();
-}
 
 std::string contact_words(const Scenario& scenario, const CandidateResult& ranked, bool in_short) {
   const auto when = [](double time_s, double speed_mps) {

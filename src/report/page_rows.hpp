@@ -27,9 +27,6 @@ struct PageRow {
   std::string warnings;   ///< may be empty
 };
 
-/// Whether the first contact changes little of what moves: it glances off.
-bool is_brush(const CandidateResult& ranked);
-
 /// What a row hits first, when and at which speed, and what then: by name, or `in_short` counted.
 std::string contact_words(const Scenario& scenario, const CandidateResult& ranked, bool in_short);
 

@@ -94,6 +94,26 @@ std::string pair_name(const Scenario& scenario, const FurtherContact& contact) {
   return scenario.actors[contact.a].name + " / " + scenario.actors[contact.b].name;
 }
 
+std::string brush_words(const CandidateResult& ranked) {
+  constexpr double little = 1.0 / 3.0;
+  const Contact& first = ranked.contacts.front();
+  double own = 0.0;
+  double its = 0.0;
+  for (const Contact& contact : ranked.contacts) {
+    if (contact.actor != first.actor) continue;
+    own = std::max(own, contact.severity.ego.delta_v_mps);
+    its = std::max(its, contact.severity.other.delta_v_mps);
+  }
+  const double most = std::max(own, its);
+  if (!(most > 0.0) || most > little * first.closing_speed_mps) return {};
+  return fmt::format(", changes {} velocity by {:.0f} km/h", its >= own ? "its" : "our",
+                     3.6 * most);
+}
+
+bool is_brush(const CandidateResult& ranked) {
+  return !ranked.first_touch && !ranked.contacts.empty() && !brush_words(ranked).empty();
+}
+
 std::vector<FurtherPair> further_pairs(const CandidateResult& ranked) {
   std::vector<FurtherPair> pairs;
   for (const FurtherContact& contact : ranked.further) {
@@ -169,9 +189,10 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
     return text;
   }
   const Contact& first = ranked.contacts.front();
-  std::string text =
-      fmt::format("hits {} after {:.2f} s at {:.0f} km/h", scenario.actors[first.actor].name,
-                  first.time_of_impact_s, 3.6 * first.closing_speed_mps);
+  const bool glances = is_brush(ranked);
+  std::string text = fmt::format(
+      "{} {} after {:.2f} s at {:.0f} km/h", glances ? "glances off" : "hits",
+      scenario.actors[first.actor].name, first.time_of_impact_s, 3.6 * first.closing_speed_mps);
   if (begins_in_contact(first)) {
     text = fmt::format("overlaps {} at the start, closing at {:.0f} km/h",
                        scenario.actors[first.actor].name, 3.6 * first.closing_speed_mps);
@@ -179,7 +200,9 @@ std::string outcome_of_likeliest(const Scenario& scenario, const CandidateResult
   if (leaves_in_likeliest(ranked)) text = in_kmh(leaving_words(ranked)) + " and " + text;
   const std::vector<std::size_t> actors = hit_actors(ranked);
   for (std::size_t i = 1; i < actors.size(); ++i) {
-    text += (i + 1 == actors.size() ? " and " : ", ") + scenario.actors[actors[i]].name;
+    text += i + 1 == actors.size() ? " and " : ", ";
+    if (glances && i == 1) text += "hits ";
+    text += scenario.actors[actors[i]].name;
   }
   constexpr std::size_t described = 3;
   const std::vector<FurtherPair> pairs = further_pairs(ranked);

@@ -24,6 +24,14 @@ std::vector<std::size_t> hit_actors(const CandidateResult& ranked);
 /// `contact_without_force`: "sedan (overlaps at start) (no force)".
 std::string contact_name(const Scenario& scenario, const Contact& contact);
 
+/// What the first contact changes where that is little against its closing speed, ", changes its
+/// velocity by 5 km/h"; empty where it is more than a brush: a full hit changes the velocity of one
+/// of the two by half the closing speed or more. There is a contact.
+std::string brush_words(const CandidateResult& ranked);
+
+/// Whether the first contact changes little of what moves: it glances off.
+bool is_brush(const CandidateResult& ranked);
+
 /// What the first mark of `contact_name` means, one sentence without a full stop.
 extern const char* const overlap_meaning;
 

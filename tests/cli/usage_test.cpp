@@ -246,6 +246,9 @@ TEST(Usage, WhatIsNotExpectedIsToldInItsOrder) {
   const Outcome run = place.crashrank({"rank", "s.json", "--elephant", "grey"});
   EXPECT_EQ(run.code, 2);
   EXPECT_NE(run.err.find("not expected: '--elephant' 'grey'"), std::string::npos) << run.err;
+  const Outcome dash = place.crashrank({"rank", "s.json", "-top", "3"});
+  EXPECT_EQ(dash.code, 2);
+  EXPECT_NE(dash.err.find("not expected: '-top' '3'; write --top"), std::string::npos) << dash.err;
 }
 
 TEST(Usage, HowOftenAnOptionOrItsValueIsThereIsToldInPlainWords) {

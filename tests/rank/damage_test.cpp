@@ -198,7 +198,7 @@ TEST(Damage, ContainsAllPairsAtTheFurthestAndTheLastPose) {
     for (std::size_t k = 1; k < record.size(); ++k) {
       if (way(record[k]) > way(record[furthest])) furthest = k;
     }
-    EXPECT_NEAR(contact.crush_m, way(record[furthest]), 1e-9);
+    EXPECT_NEAR(contact.travel_m, way(record[furthest]), 1e-9);
     const TriangleMesh& ego = scene.models[0].mesh;
     const TriangleMesh& other = scene.models[1].mesh;
     for (const std::size_t k : {furthest, record.size() - 1}) {
@@ -242,9 +242,9 @@ TEST(Damage, ReachesAsDeepAsTheSimulatedCrush) {
     const double depth = front_m - static_cast<double>(contact.ego.region.min.x());
     std::printf(
         "%.0f m/s: region %.3f m deep, law %.3f m, way of the point %.3f m, %zu triangles\n", speed,
-        depth, own.outcome.a.crush_depth_m, contact.crush_m, contact.ego.triangles.size());
+        depth, own.outcome.a.crush_depth_m, contact.travel_m, contact.ego.triangles.size());
     EXPECT_NEAR(depth, own.outcome.a.crush_depth_m + own.outcome.b.crush_depth_m, piece_m);
-    EXPECT_NEAR(depth, contact.crush_m, 1e-3);
+    EXPECT_NEAR(depth, contact.travel_m, 1e-3);
     EXPECT_GT(depth, before);
     EXPECT_GE(contact.ego.area_m2, area_before);
     before = depth;
@@ -321,7 +321,7 @@ TEST(Damage, ExchangingEgoAndActorExchangesTheDamage) {
     const Contact here = only(make(false).ranked()).contacts.at(0);
     const Contact there = only(make(true).ranked()).contacts.at(0);
     EXPECT_NEAR(here.crush_s, there.crush_s, 1e-3);
-    EXPECT_NEAR(here.crush_m, there.crush_m, 1e-3);
+    EXPECT_NEAR(here.travel_m, there.travel_m, 1e-3);
     EXPECT_EQ(here.ego.triangles, there.other.triangles);
     EXPECT_EQ(here.other.triangles, there.ego.triangles);
     compared += here.ego.triangles.size() + here.other.triangles.size();
@@ -350,7 +350,7 @@ TEST(Damage, WithoutForceOnlyTheFirstPairIsDamaged) {
   EXPECT_EQ(contact.ego.triangles.size(), 1U);
   EXPECT_EQ(contact.other.triangles.size(), 1U);
   EXPECT_EQ(contact.crush_s, 0.0);
-  EXPECT_EQ(contact.crush_m, 0.0);
+  EXPECT_EQ(contact.travel_m, 0.0);
 }
 
 // The damage of the ego does not depend on how the wall is divided: the seam is at the middle of

@@ -102,7 +102,7 @@ void write(std::ostream& out, const Scenario& scenario, const Contact& c) {
   out << scenario.actors[c.actor].name << ' ' << static_cast<int>(c.state) << ' '
       << c.time_of_impact_s << ' ' << c.gap_m << ' ' << c.point_m.transpose() << ' '
       << c.normal.transpose() << ' ' << c.closing_speed_mps << ' ' << c.normal_speed_mps << ' '
-      << c.closing_energy_j << ' ' << c.crush_s << ' ' << c.crush_m;
+      << c.closing_energy_j << ' ' << c.crush_s << ' ' << c.travel_m;
   for (const BodyDamage* damage : {&c.ego, &c.other}) {
     out << " | " << damage->area_m2 << ' ' << damage->region.min.transpose() << ' '
         << damage->region.max.transpose() << ' ' << damage->pose.translation.transpose() << ':';

@@ -130,13 +130,13 @@ TEST(Rank, DamageExtendsAsFarAsTheCrush) {
   EXPECT_NEAR(contact.ego.area_m2, 2 * 1.5 + 2 * (4 * 1.5) + 2 * (4 * 2), 1e-6);
   // The car touches only the near side of the wall.
   EXPECT_EQ(scenes::part_names(wall, contact.other), (Names{"rear"}));
-  EXPECT_GT(contact.crush_m, 0.3);
-  EXPECT_LT(contact.crush_m, 0.9);
+  EXPECT_GT(contact.travel_m, 0.3);
+  EXPECT_LT(contact.travel_m, 0.9);
   ASSERT_TRUE(result.ranking[0].score.has_value());
   EXPECT_NEAR(*result.ranking[0].score, contact.ego.area_m2 + contact.other.area_m2, 1e-9);
   // The region of contact: the crushed part of the front of the car, and the middle 2 × 1.5 m of
   // the wall.
-  EXPECT_NEAR(contact.ego.region.min.x(), 2.0 - contact.crush_m, 1e-3);
+  EXPECT_NEAR(contact.ego.region.min.x(), 2.0 - contact.travel_m, 1e-3);
   EXPECT_NEAR(contact.ego.region.max.x(), 2.0, 1e-3);
   EXPECT_NEAR(contact.other.region.extent().y(), 2.0, 1e-3);
   EXPECT_NEAR(contact.other.region.extent().z(), 1.5, 1e-3);
@@ -182,8 +182,8 @@ TEST(Rank, AThinBodyLeavesAFurrow) {
                                 std::abs(box.center().y() - 0.3F) < 0.1F;
                        });
   };
-  ASSERT_GT(contact.crush_m, 0.5);
-  const double end = 2.0 - contact.crush_m;
+  ASSERT_GT(contact.travel_m, 0.5);
+  const double end = 2.0 - contact.travel_m;
   for (double x = 1.95; x > end + 0.05; x -= 0.1) EXPECT_TRUE(top_damaged(x)) << x;
   EXPECT_FALSE(top_damaged(end - 0.3));
 }

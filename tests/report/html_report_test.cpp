@@ -162,10 +162,28 @@ TEST(HtmlReport, TellsABrushFromAHit) {
   const std::string brush =
       "<td data-title=''>glances off wall after 0.50 s at 72 km/h, changes its "
       "velocity by 7 km/h; then second</td>";
-  EXPECT_NE(html_report(told.scenario, told.models, told.result).find(brush), std::string::npos);
+  const std::string page = html_report(told.scenario, told.models, told.result);
+  EXPECT_NE(page.find(brush), std::string::npos);
+  EXPECT_NE(page.find("<p>It glances off wall after 0.50 s at 72 km/h and hits second"),
+            std::string::npos);
+  EXPECT_EQ(page.find("It hits wall"), std::string::npos);
   contact.severity.ego.delta_v_mps = 8.0;
   const std::string hit = "<td data-title='hits '>wall after 0.50 s at 72 km/h; then second</td>";
   EXPECT_NE(html_report(told.scenario, told.models, told.result).find(hit), std::string::npos);
+}
+
+TEST(HtmlReport, SaysThatTheFirstStillCrashes) {
+  Told told;
+  told.result.ranking[0].grazes.clear();
+  const auto page = [&told] { return html_report(told.scenario, told.models, told.result); };
+  EXPECT_EQ(page().find("It still"), std::string::npos);
+  std::swap(told.result.ranking[0], told.result.ranking[1]);
+  Contact& contact = told.result.ranking[0].contacts[0];
+  contact.closing_speed_mps = 20.0;
+  contact.severity.ego.delta_v_mps = 10.0;
+  EXPECT_NE(page().find("<li>It still crashes into wall at 72 km/h.</li>"), std::string::npos);
+  contact.severity.ego.delta_v_mps = 2.0;
+  EXPECT_NE(page().find("<li>It still glances off wall at 72 km/h.</li>"), std::string::npos);
 }
 
 TEST(HtmlReport, SaysWhatIsNearlyAsGoodAndWhatBrakesStraightOn) {

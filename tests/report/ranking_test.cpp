@@ -16,7 +16,9 @@ namespace crashrank {
 namespace {
 
 TEST(RankingJson, SumsWhatIsHitAndLeavesOutWhatIsNotKnown) {
-  const Told told;
+  Told told;
+  told.result.ranking[1].contacts[0].severity.ego.crush_m = 0.12;
+  told.result.ranking[1].contacts[0].travel_m = 0.34;
   const std::string text = ranking_json(told.scenario, told.models, told.result);
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
   const auto answer = nlohmann::json::parse(text);
@@ -37,6 +39,8 @@ TEST(RankingJson, SumsWhatIsHitAndLeavesOutWhatIsNotKnown) {
   EXPECT_EQ(hit["other"], "wall");
   EXPECT_EQ(hit["time_of_impact_s"], 0.5);
   EXPECT_EQ(hit["contacts"].size(), 2U);
+  EXPECT_EQ(hit["contacts"][0]["crush_m"], 0.12);
+  EXPECT_EQ(hit["contacts"][0]["travel_m"], 0.34);
   EXPECT_EQ(hit["contacts"][1]["other"], "second");
   EXPECT_EQ(hit["damaged_triangles"]["ego"], 1);
   EXPECT_EQ(hit["damaged_triangles"]["other"], 2);

@@ -98,7 +98,7 @@ struct Contact {
   /// Largest displacement during that motion of the point of the ego at `point_m`, in the frame of
   /// the other body, m. The sum of both crush depths in a perpendicular impact; more if the
   /// surfaces slide.
-  double crush_m = 0.0;
+  double travel_m = 0.0;
   /// Damage to the ego, including damage by fixed bodies that adjoin `actor` and that the ego
   /// presses on in the same contact.
   BodyDamage ego;

@@ -411,16 +411,7 @@ class Labels {
 
   // A line from the name that stands at a place to the point that it belongs to.
   lead([x, y], to, colour) {
-    const from = [x, y < to[1] ? y + 3 : y - 12];
-    const context = this.context;
-    for (const [width, style] of [[3, COLOURS.page], [1, colour]]) {
-      context.strokeStyle = style;
-      context.lineWidth = width;
-      context.beginPath();
-      context.moveTo(...from);
-      context.lineTo(...to);
-      context.stroke();
-    }
+    drawLine(this.context, [[x, y < to[1] ? y + 3 : y - 12], to], 1, colour);
   }
 
   // At the end of a line that leads to a point and crosses no name.
@@ -429,7 +420,8 @@ class Labels {
     const half = this.halfOf(text);
     const places = LED_PLACES.map(([x, y]) =>
       [clamp(to[0] + x, half + 2, this.width - half - 2), to[1] + y]);
-    const at = this.add(text, [...places.filter((each) => this.isClear(each, to)), ...places], colour);
+    const clear = places.filter((each) => this.isClear(each, to));
+    const at = this.add(text, [...clear, ...places], colour);
     if (!at) return;
     this.lead(at, to, colour);
     this.keepOff(at, to);
@@ -444,20 +436,21 @@ class Labels {
   }
 }
 
+// With a rim of the page's colour.
+function drawLine(context, points, width, colour) {
+  for (const [each, style] of [[width + 2.5, COLOURS.page], [width, colour]]) {
+    context.strokeStyle = style;
+    context.lineWidth = each;
+    context.beginPath();
+    for (const point of points) context.lineTo(...point);
+    context.stroke();
+  }
+}
+
 function drawArrow(context, from, to, colour) {
   const angle = Math.atan2(to[1] - from[1], to[0] - from[0]);
   const wing = (turn) => [to[0] - 9 * Math.cos(angle + turn), to[1] - 9 * Math.sin(angle + turn)];
-  for (const [width, style] of [[5, COLOURS.page], [2.5, colour]]) {
-    context.strokeStyle = style;
-    context.lineWidth = width;
-    context.beginPath();
-    context.moveTo(...from);
-    context.lineTo(...to);
-    context.moveTo(...wing(0.5));
-    context.lineTo(...to);
-    context.lineTo(...wing(-0.5));
-    context.stroke();
-  }
+  drawLine(context, [from, to, wing(0.5), to, wing(-0.5)], 2.5, colour);
 }
 
 function drawLabel(context, text, x, y, colour) {

@@ -523,8 +523,8 @@ class View3d {
         if (!tip || speed < 1) return;
         const isEgo = contact.bodies[side] === EGO;
         drawArrow(context, point, tip, isEgo ? COLOURS.ego : COLOURS.other);
-        labels.keepOff(point, tip);
         labels.above("Δv " + kmh(speed), tip, [-10, 20, 34, -24], COLOURS.ink);
+        labels.keepOff(point, tip);
       });
     }
     const names = [];
