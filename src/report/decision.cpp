@@ -223,17 +223,22 @@ private:
     return result_.candidates[result_.ranking[row].candidate];
   }
 
-  /// "It still crashes into lorry at 31 km/h."; empty where no crash is known.
+  /// "It still crashes into lorry at 31 km/h, then hits pole."; empty where no crash is known.
   std::string crash_words(const CandidateResult& ranked) const {
     if (ranked.first_touch || !ranked.contacts.empty()) {
       const bool is_known = !ranked.contacts.empty();
       const double speed_mps = is_known ? ranked.contacts.front().closing_speed_mps
                                         : ranked.first_touch->closing_speed_mps;
-      return fmt::format("It still {} {} at {:.0f} km/h.",
-                         is_brush(ranked) ? "glances off" : "crashes into",
-                         is_known ? contact_name(scenario_, ranked.contacts.front())
-                                  : scenario_.actors[ranked.first_touch->actor].name,
-                         3.6 * speed_mps);
+      std::string words = fmt::format("It still {} {} at {:.0f} km/h",
+                                      is_brush(ranked) ? "glances off" : "crashes into",
+                                      is_known ? contact_name(scenario_, ranked.contacts.front())
+                                               : scenario_.actors[ranked.first_touch->actor].name,
+                                      3.6 * speed_mps);
+      const std::vector<std::size_t> hit = hit_actors(ranked);
+      for (std::size_t i = 1; i < hit.size(); ++i) {
+        words += (i == 1 ? ", then hits " : ", ") + scenario_.actors[hit[i]].name;
+      }
+      return words + ".";
     }
     if (!(ranked.collision_probability > 0.0)) return {};
     return "It still crashes with a probability of " + percent_text(ranked.collision_probability) +

@@ -181,9 +181,11 @@ TEST(HtmlReport, SaysThatTheFirstStillCrashes) {
   Contact& contact = told.result.ranking[0].contacts[0];
   contact.closing_speed_mps = 20.0;
   contact.severity.ego.delta_v_mps = 10.0;
-  EXPECT_NE(page().find("<li>It still crashes into wall at 72 km/h.</li>"), std::string::npos);
+  EXPECT_NE(page().find("<li>It still crashes into wall at 72 km/h, then hits second.</li>"),
+            std::string::npos);
   contact.severity.ego.delta_v_mps = 2.0;
-  EXPECT_NE(page().find("<li>It still glances off wall at 72 km/h.</li>"), std::string::npos);
+  EXPECT_NE(page().find("<li>It still glances off wall at 72 km/h, then hits second.</li>"),
+            std::string::npos);
 }
 
 TEST(HtmlReport, SaysWhatIsNearlyAsGoodAndWhatBrakesStraightOn) {
