@@ -144,7 +144,7 @@ def test_the_command_surveys_a_folder():
     ("words", "code", "text"),
     [
         (("import", "nonsense", "x", "-o", "y"), 2, "there is no reader of 'nonsense'"),
-        (("import", "nonsense", "x", "-o", "y"), 2, "ros-bag, survey"),
+        (("import", "nonsense", "x", "-o", "y"), 2, "ros-bag, crashrank, survey"),
         (("import", "poses-csv", "none.csv", "-o", "y"), 3, "none.csv: cannot be read"),
         (("import", "poses-csv", "{}", "-o", "y", "--ego", "who"), 2, "choose of ego, person"),
         (("import", "poses-csv", "{}", "-o", "no/where"), 1, "cannot be written"),
